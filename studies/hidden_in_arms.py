@@ -143,7 +143,7 @@ def run(case: Case, seed: int, folder: Path, *, quick: bool = False) -> None:
     )
     among = QUICK_EFFECTS if quick else None
     begin = processor_seconds()
-    diagnosis = td.find_missing_in_arm(td.load_experiment(experiment), among=among)
+    diagnosis = td.find_missing(td.load_experiment(experiment), among=among)
     spent = processor_seconds() - begin
     path.parent.mkdir(parents=True, exist_ok=True)
     write_answer(diagnosis, path)

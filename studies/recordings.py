@@ -28,7 +28,6 @@ from _one_case import processor_seconds
 
 import teleopdesign as td
 from teleopdesign.base.errors import TeleopDesignError
-from teleopdesign.diagnose import find_missing_in_arm
 from teleopdesign.diagnose.search_plan import PLAN, QUICK
 from teleopdesign.measurement import Experiment
 from teleopdesign.measurement.recordings import RECORDINGS
@@ -64,9 +63,7 @@ def row_of(
     """What is found on one recording; its figure and its text beside the table."""
     wall, processor = time.perf_counter(), processor_seconds()
     plan, among = (QUICK if quick else PLAN), (only or None)
-    is_arm = experiment.arm is not None
-    find = find_missing_in_arm if is_arm else td.find_missing
-    diagnosis: Any = find(experiment, plan=plan, among=among)
+    diagnosis = td.find_missing(experiment, plan=plan, among=among)
     seconds = time.perf_counter() - wall, processor_seconds() - processor
     return described(diagnosis, output, name) | {
         "seconds": {"wall": seconds[0], "processor": seconds[1]},

@@ -111,7 +111,6 @@ if TYPE_CHECKING:
     from .diagnose import Diagnosis as Diagnosis
     from .diagnose import Ranking as Ranking
     from .diagnose import compare, find_missing, fit, load_answer, rank
-    from .diagnose import find_missing_in_arm as find_missing_in_arm
     from .diagrams import ANY as ANY
     from .diagrams import Diagram, haptic_interface, read_diagram, teleoperator, write_diagram
     from .effects import EFFECTS, load_effect
@@ -298,7 +297,6 @@ FURTHER: dict[str, dict[str, str]] = {
         "fit_simulation": "tuning",
     },
     "recordings": {
-        "find_missing_in_arm": "diagnose",
         "Record": "measurement",
         "fetch": "measurement.recordings",
         "measured_impedance": "frequency",

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from .estimates import rank as rank
     from .fit import Fit as Fit
     from .ladder import find_missing as find_missing
-    from .ladder import find_missing_in_arm as find_missing_in_arm
     from .ranking import Ranked as Ranked
     from .ranking import Ranking as Ranking
     from .statements import LadderRow as LadderRow

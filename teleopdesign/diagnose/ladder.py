@@ -58,10 +58,6 @@ def find_missing(
     return diagnosis if among is None else _with_candidates_named(among, diagnosis)
 
 
-#: the same search, under the name that it has for arms
-find_missing_in_arm = find_missing
-
-
 def _with_candidates_named(among: Collection[str], diagnosis: Diagnosis) -> Diagnosis:
     """The diagnosis, with the names of the candidates that its search was restricted to."""
     words = f"only these effects were candidates: {', '.join(sorted(among))}"

@@ -120,7 +120,7 @@ def test_what_helps_further_at_a_joint_stands_in_the_answer_and_is_not_searched_
 @pytest.mark.slow
 def test_an_adequate_model_of_an_arm_lacks_nothing(tmp_path):
     _, folder = made(tmp_path, 9, 3)
-    diagnosis = td.find_missing_in_arm(td.load_experiment(folder))
+    diagnosis = td.find_missing(td.load_experiment(folder))
     assert diagnosis.missing == ()
     assert diagnosis.verdict == "model_adequate"
 

@@ -45,7 +45,7 @@ def folder(tmp_path_factory) -> Path:
 @pytest.fixture(scope="module")
 def diagnosis(folder) -> td.Diagnosis:
     """The diagnosis where only what is hidden, and one more, are tried."""
-    return td.find_missing_in_arm(
+    return td.find_missing(
         td.load_experiment(folder), plan=QUICK, among=("spring", "quadratic_drag")
     )
 
@@ -242,7 +242,7 @@ def test_two_effects_at_two_joints_are_both_named(tmp_path):
     other.bit_generator.state = state
     second = write_experiment(tmp_path / "b", arm, other, ("quadratic_drag", 1, 1.0), seconds=20.0)
     join(folder, second, "u2")
-    diagnosis = td.find_missing_in_arm(td.load_experiment(folder))
+    diagnosis = td.find_missing(td.load_experiment(folder))
     assert {c.key for c in diagnosis.missing} == {
         ("stribeck", "joint1"),
         ("quadratic_drag", "joint2"),

@@ -162,7 +162,7 @@ def test_a_log_that_is_early_by_a_row_makes_no_delay_beside_what_is_hidden(tmp_p
     arm = random_arm(generator, 2)
     folder = write_experiment(tmp_path, arm, generator, ("spring", 1, 1.35), late=-1.0)
     among = ("spring", "actuation_delay", "actuator_lag")
-    diagnosis = td.find_missing_in_arm(td.load_experiment(folder), among=among)
+    diagnosis = td.find_missing(td.load_experiment(folder), among=among)
     assert {c.key for c in diagnosis.missing} == {("spring", "joint2")}
     (late,) = (v.value for v in diagnosis.joints["joint2"].model.record_shift.values())
     assert late == pytest.approx(-0.01, abs=0.002)  # a row; joint 1 hardly tells it

@@ -58,7 +58,7 @@ def test_the_motion_that_acts_on_a_joint_is_chosen_among_all(coupled):
 
 def test_a_coupling_of_motors_is_named_at_its_joint_with_the_one_that_acts(coupled, tmp_path):
     experiment = td.load_experiment(coupled)
-    diagnosis = td.find_missing_in_arm(experiment, plan=QUICK, among=AMONG)
+    diagnosis = td.find_missing(experiment, plan=QUICK, among=AMONG)
     # at the other joint with the other sign it is the same, for links that nobody knows may couple
     # the two both ways: that is said
     (named,) = diagnosis.missing
@@ -80,7 +80,7 @@ def test_a_coupling_of_motors_is_named_at_its_joint_with_the_one_that_acts(coupl
 
 
 def test_no_coupling_is_named_where_none_is(tmp_path):
-    diagnosis = td.find_missing_in_arm(
+    diagnosis = td.find_missing(
         td.load_experiment(made(tmp_path / "arm", None)), plan=QUICK, among=("coupling",)
     )
     assert diagnosis.verdict == "model_adequate"

@@ -24,9 +24,7 @@ def poor(tmp_path_factory):
         patch.setattr(simulator, "path", lambda g, k, t: whole(g, k, t, harmonics=1, base=0.2))
         folder = tmp_path_factory.mktemp("poor") / "arm"
         simulator.write_experiment(folder, arm, generator, seconds=10.0)
-    diagnosis = td.find_missing_in_arm(
-        td.load_experiment(folder), plan=QUICK, among=("quadratic_drag",)
-    )
+    diagnosis = td.find_missing(td.load_experiment(folder), plan=QUICK, among=("quadratic_drag",))
     return diagnosis, folder
 
 

@@ -132,7 +132,7 @@ def test_a_right_model_is_adequate_where_few_reversals_mislead_the_shift(tmp_pat
     """The fit record has 12 reversals: with a shift of -4.6 ms 2.2 noise floors were left."""
     generator = np.random.default_rng([112701, 25, 1])
     folder = write_experiment(tmp_path, random_arm(generator, 2), generator)
-    diagnosis = td.find_missing_in_arm(td.load_experiment(folder), among=("bias",))
+    diagnosis = td.find_missing(td.load_experiment(folder), among=("bias",))
     assert diagnosis.verdict == "model_adequate"
     assert diagnosis.joints["joint1"].left < 1.2
     assert diagnosis.rungs[-1].joints["joint1"].check_error < 0.0045
@@ -148,7 +148,7 @@ def test_a_joint_that_its_reversals_mislead_has_the_shift_of_the_other(tmp_path)
     """Alone it says 0.67 +- 0.04 rows early, and leaves 1.24 noise floors."""
     generator = np.random.default_rng([260113, 30, 1])
     folder = write_experiment(tmp_path, random_arm(generator, 2), generator, late=-1.0)
-    diagnosis = td.find_missing_in_arm(td.load_experiment(folder), among=("actuator_lag",))
+    diagnosis = td.find_missing(td.load_experiment(folder), among=("actuator_lag",))
     assert diagnosis.verdict == "model_adequate"
     for rows in rows_late(diagnosis).values():
         assert rows == pytest.approx(-1.0, abs=0.15)
@@ -161,7 +161,7 @@ def test_a_joint_of_an_arm_whose_drive_is_late_is_adequate_with_its_shift(tmp_pa
     generator = np.random.default_rng([900, 1])
     late = np.array([0.5, 0.5, -0.5])
     folder = write_experiment(tmp_path, random_arm(generator, 3), generator, late=late)
-    diagnosis = td.find_missing_in_arm(td.load_experiment(folder), among=("actuator_lag",))
+    diagnosis = td.find_missing(td.load_experiment(folder), among=("actuator_lag",))
     assert diagnosis.verdict == "model_adequate"
     assert rows_late(diagnosis)["joint3"] == pytest.approx(-0.5, abs=0.15)
     assert rows_late(diagnosis)["joint1"] == pytest.approx(0.5, abs=0.15)
