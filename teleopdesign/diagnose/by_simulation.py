@@ -164,9 +164,8 @@ def compare_by_simulation(
     raises ModelError: an effect has no simulated form, or a loop names no joint
     """
     prepared = experiment if isinstance(experiment, PreparedParts) else prepare_parts(experiment)
-    if prepared.is_linked:
-        model = model if model.links else model.with_links(prepared.initial)
-        prepared = with_bodies_of(model, prepared)
+    model = model if model.links else model.with_links(prepared.initial)
+    prepared = with_bodies_of(model, prepared)
     models = {j: model_of_body(model, j) if j else model for j in prepared.parts}
     errors, by_force = [], {}
     for use in ("fit", "check"):

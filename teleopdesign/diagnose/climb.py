@@ -60,9 +60,9 @@ def bar_what_explains_nothing(
     """
     before, after = ({r.added.key for r in s.rungs if r.added} for s in (state, moved))
     new = [r for r in moved.rungs if r.added is not None and r.added.key not in state.effects]
-    if not new or not before <= after or moved.fit.check_error >= state.fit.check_error:
+    if not search.plan.stand_ins or not new or not before <= after:
         return None
-    if search.prepared.is_linked:
+    if moved.fit.check_error >= state.fit.check_error:
         return None
     last = replace(new[-1], fit=moved.fit)
     prepared, criteria = search.prepared, search.criteria

@@ -106,8 +106,6 @@ def compare(
     raises ModelError: a loop is given without a simulation, or the model cannot be simulated
     """
     if by == "simulation":
-        if experiment.arm is None and isinstance(loop, Mapping):
-            raise ModelError("compare: found a loop for each joint, but the experiment has no arm")
         return compare_by_simulation(model, experiment, loop=loop)
     if loop is not None:
         raise ModelError('compare: a loop is simulated: found by="force", expected "simulation"')

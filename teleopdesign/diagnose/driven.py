@@ -67,7 +67,7 @@ def driven_stretches(
     stretches = [remove_links(p.of(use)) for p in prepared.parts.values()]
     located = [apply_record_offsets(m, s) for m, s in zip(models.values(), stretches, strict=True)]
     kept = [(int(s.keep[0]), int(s.keep[-1]) + 1) for s in stretches[0]]
-    if prepared.is_linked:
+    if prepared.joints:
         rows = zip(kept, zip(*located, strict=True), strict=True)
         return [[_drive_arm(models, prepared, one, gains, ends) for ends, one in rows]]
     alone = [

@@ -46,9 +46,9 @@ class PreparedParts(ByValue):
     others: Mapping[str, str] = field(default_factory=dict)
 
     @property
-    def is_linked(self) -> bool:
-        """Whether the parts are the joints of an arm, which its links join."""
-        return self.experiment.arm is not None
+    def joints(self) -> Mapping[str, Prepared]:
+        """The parts that links join; empty where there is one part."""
+        return {} if self.experiment.arm is None else self.parts
 
     @cached_property
     def size(self) -> dict[str, float]:
@@ -142,8 +142,8 @@ def with_inertias(prepared: PreparedParts, inertias: Mapping[str, float]) -> Pre
     inertias: joint -> this part (SI); the model's body has it too, and it is subtracted from the
         force of the links
     """
-    parts = {j: with_inertia(one, inertias[j]) for j, one in prepared.parts.items()}
-    return replace(prepared, parts=parts)
+    joints = {j: with_inertia(one, inertias[j]) for j, one in prepared.joints.items()}
+    return replace(prepared, parts={**prepared.parts, **joints})
 
 
 def with_bodies_of(model: Model, prepared: PreparedParts) -> PreparedParts:
@@ -151,11 +151,11 @@ def with_bodies_of(model: Model, prepared: PreparedParts) -> PreparedParts:
 
     This is the bodies' inertia less the inertia of their motors, which the experiment states.
     """
-    motors = motor_inertias(prepared.experiment, model)
-    return with_inertias(
-        prepared,
-        {j: model.parameters[f"{j}.inertia"].value - motors[j] for j in prepared.parts},
-    )
+    if not prepared.joints:
+        return prepared
+    motors, values = motor_inertias(prepared.experiment, model), model.parameters
+    inertias = {j: values[f"{j}.inertia"].value - motors[j] for j in prepared.joints}
+    return with_inertias(prepared, inertias)
 
 
 def motor_inertias(experiment: Experiment, model: Model) -> dict[str, float]:

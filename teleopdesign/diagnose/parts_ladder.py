@@ -49,7 +49,7 @@ def begin_parts(
     bandwidth: Hz; None: that of the experiment;  the rest as in `find_missing`
     """
     prepared = prepare_parts(experiment, bandwidth=bandwidth, seed=seed)
-    if prepared.is_linked:
+    if prepared.joints:
         return _begin_joints(prepared, stated, report, seed=seed, plan=plan)
     (whole,) = prepared.parts.values()
     search = search_for(whole, stated, progress=report, seed=seed, plan=plan)
@@ -153,7 +153,7 @@ def _climb_part(
     """
     while True:
         state, final = climb(part.search, part.state)
-        if not prepared.is_linked:  # one part alone: its ladder is that of the experiment
+        if not prepared.joints:  # one part alone: its ladder is that of the experiment
             records = {part.name: part.search.prepared}
             each = [PartsRung(r.added, PartsFit({part.name: r.fit}, records)) for r in final]
             return replace(part, state=state, rungs=final), tuple(each)

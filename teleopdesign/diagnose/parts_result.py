@@ -35,7 +35,7 @@ def diagnosis_of_parts(
     stated: the user's model
     """
     experiment, joints = prepared.experiment, {j: diagnosis_of(end) for j, end in ends.items()}
-    if not prepared.is_linked:
+    if not prepared.joints:
         (whole,) = joints.values()
         return whole
     each, named = joints.values(), {c.key for d in joints.values() for c in d.missing}

@@ -110,7 +110,7 @@ class DiagnosedRecording:
         raises ExperimentError: an arm with other joints or links than the model
         """
         prepared, model = prepare_parts(self.experiment, bandwidth=self.bandwidth), self.model
-        if not prepared.is_linked or model is None:
+        if model is None:
             return prepared
         if len(model.links) != len(prepared.initial):
             raise ExperimentError(

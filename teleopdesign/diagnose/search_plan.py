@@ -36,6 +36,9 @@ class SearchPlan:
     #: whether the errors of the readings are taken out of the last fit. Not at a joint of an arm:
     #: its readings are drawn with those of all joints
     corrected: bool = True
+    #: whether an effect is barred that stands in for other values of the model, for the noise of
+    #: readings or for a few moments. Not at a joint of an arm: its effects are tested on all joints
+    stand_ins: bool = True
     #: most effects that are added at once where no other move leads on; 0: none, as at a joint of
     #: an arm. Eight: friction of the speed, of the direction, and forces of the place, one of each
     together: int = 8
@@ -155,6 +158,7 @@ class SearchPlan:
             trials=min(self.trials, most),
             partial_pairs=False,
             corrected=False,
+            stand_ins=False,
             tip_starts=0,
             draws=0,
             together=0,
