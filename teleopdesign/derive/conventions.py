@@ -99,11 +99,14 @@ def impedance_from_hybrid(h: sp.Matrix, *, convention: Convention) -> sp.Matrix:
 
 
 def _second_port_turned(m: sp.Matrix, convention: Convention) -> sp.Matrix:
-    """The matrix with force and motion of port 2 exchanged; the same rule in both directions."""
+    """The matrix with force and motion of port 2 exchanged; the same rule in both directions.
+
+    With several axes the entries do not commute: the inverse acts first on what acts on port 2.
+    """
     sign = -1 if convention == "velocity" else 1
-    through, back = m[0, 1] / m[1, 1], m[1, 0] / m[1, 1]
-    corner = m[0, 0] - through * m[1, 0]
-    return sp.Matrix([[corner, sign * through], [-sign * back, 1 / m[1, 1]]])
+    inverse = sp.Pow(m[1, 1], -1)
+    through, back = m[0, 1] * inverse, inverse * m[1, 0]
+    return sp.Matrix([[m[0, 0] - m[0, 1] * back, sign * through], [-sign * back, inverse]])
 
 
 def _check_shape(matrix: sp.Matrix) -> None:
