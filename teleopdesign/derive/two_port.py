@@ -11,10 +11,13 @@ the place of velocities and the force on the slave in the place of its reaction.
 
 from __future__ import annotations
 
+import sympy as sp
+
 from ..base.arguments import check_types
 from ..base.errors import ModelError
 from ..base.frozen import Frozen
-from ..diagrams import Diagram
+from ..diagrams import Attached, Diagram
+from ..diagrams.parts import PortRole
 from .conventions import VELOCITY_TEXTS, Convention, check_convention, convert_convention
 from .printing import block_symbol
 from .transfer_functions import Case, TransferFunctions
@@ -48,24 +51,31 @@ def two_port_cases(diagram: Diagram) -> dict[str, Case]:
     for name in _SIGNALS:
         if name not in diagram.signals:
             raise ModelError(f'{diagram.name}: no teleoperator: it has no signal "{name}"')
-    ports = diagram.without("Z_H", "Z_E")
+    hands, environments = (_held(diagram, role) for role in ("hand", "environment"))
+    ports = diagram.without(*hands, *environments)
     both = ("X_m", "X_s")
     of: dict[str, tuple[str, str, tuple[str, ...]]]
     of = {f"Z_{i}{j}": (f"F_{i}", f"X_{j}", both) for i in "ms" for j in "ms"}
     for row, output in ((1, "F_m"), (2, "X_s")):
         of |= {f"h_{row}1": (output, "X_m", ("X_m",)), f"h_{row}2": (output, "F_d", ("X_m",))}
     cases = {n: Case(ports, *case, _TEXTS[n]) for n, case in of.items()}
-    if diagram.has("Z_E"):
-        touched = diagram.without("Z_H")
+    if environments:
+        touched = diagram.without(*hands)
         cases["Z_t"] = Case(touched, "F_m", "X_m", ("X_m",), _TEXTS["Z_t"])
     return cases
+
+
+def _held(diagram: Diagram, role: PortRole) -> list[str]:
+    """Names of the blocks of that role at the master or at the slave."""
+    resisting = (b for b in diagram.blocks if isinstance(b, Attached))
+    return [b.name for b in resisting if b.role == role and b.motion in ("X_m", "X_s")]
 
 
 @check_types
 def two_port_functions(
     diagram: Diagram, *, convention: Convention = "position"
 ) -> TransferFunctions:
-    """Every function of a teleoperator; Z_t and Z_t - Z_E only with an environment Z_E.
+    """Every function of a teleoperator; Z_t and Z_t - Z_E only with an environment at the slave.
 
     convention: "position", or "velocity" as in Hannaford's hybrid matrix, see `conventions`
     raises ModelError: the diagram lacks X_m, F_m of a master or X_s, F_s of a slave; no convention
@@ -73,7 +83,8 @@ def two_port_functions(
     check_convention(convention)
     expressions = {name: case.derive() for name, case in two_port_cases(diagram).items()}
     if "Z_t" in expressions:
-        expressions["Z_t - Z_E"] = expressions["Z_t"] - block_symbol("Z_E")
+        touched = sum((block_symbol(n) for n in _held(diagram, "environment")), sp.S(0))
+        expressions["Z_t - Z_E"] = expressions["Z_t"] - touched
     texts = {name: _TEXTS[name] for name in expressions}
     if convention == "velocity":
         expressions = {n: convert_convention(n, e, convention) for n, e in expressions.items()}

@@ -24,6 +24,7 @@ from ..diagrams import Diagram
 from ..diagrams.units import unit_of_value
 from ..realise.lti import LinearBlocks, S, linear_blocks, numerical
 from ..realise.tips import linear_tips
+from .holders import without_holders
 from .two_port.two_port import passive_margin, stable_margin
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ def margin_map(
             f"margin_map: expected values of two blocks, found {', '.join(values) or 'none'}"
         )
     f = np.geomspace(*_FREQUENCY) if frequency is None else np.asarray(frequency, dtype=float)
-    device = linear_tips(diagram.without("Z_H", "Z_E"))
+    device = linear_tips(without_holders(diagram))
     matrix, s = _Matrix(device), 2j * np.pi * f
     base = linear_blocks(device, speed=speed)
     fixed = _responses(base, f)

@@ -22,7 +22,7 @@ from ..controllers import Controller, make_exact
 from ..derive import symbol_values, transfer
 from ..derive.elimination import rows
 from ..derive.printing import dead_time_symbol
-from ..diagrams import Control, Diagram, Kinematics, Moving, position_symbol
+from ..diagrams import Diagram, Kinematics, Moving, position_symbol
 from ..effects import is_linear
 from ..realise.lti import LinearBlocks, S, linear_blocks
 from ..realise.simulated import without_absent
@@ -30,9 +30,6 @@ from ..realise.tips import with_tips
 from .declarations import falsely_linear
 from .linear.impedance import exact
 from .shares import shares_of, total_share
-
-#: names of blocks that act at a port, a hand and an environment: left out of the judged diagram
-HOLDING = ("Z_H", "Z_E")
 
 
 @dataclass(frozen=True)
@@ -237,22 +234,6 @@ def _mark_delays(form: sp.Expr, late: Mapping[sp.Symbol, sp.Symbol]) -> sp.Expr:
         return sp.Mul(*(mark ** -(power.coeff(S).coeff(t)) for t, mark in late.items()))
 
     return sp.sympify(form).replace(sp.exp, lambda power: product(sp.expand(power)))
-
-
-def without_holding(diagram: Diagram, motion: str = "") -> Diagram:
-    """The diagram without hands and environments; with `motion`, without those at that motion.
-
-    A hand or environment on several axes is at all their motions. A controller with such a name
-    remains.
-    """
-    names = [
-        b.name
-        for b in diagram.blocks
-        if b.name in HOLDING
-        and not isinstance(b, Control)
-        and (not motion or getattr(b, "motion", motion) == motion)
-    ]
-    return diagram.without(*names)
 
 
 def is_spanned(motion: str, standing: Sequence[Port]) -> bool:

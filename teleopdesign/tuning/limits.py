@@ -20,11 +20,12 @@ from ..base.errors import ModelError, UnstableLoop, did_you_mean
 from ..base.quantity import unit_after_number
 from ..diagrams import Diagram
 from ..frequency import delay_margin, gain_margin, loop_gain, phase_margin
+from ..passivity.holders import without_holders
 from ..passivity.intervals.box import ValueBox
 from ..passivity.intervals.family import family_of
 from ..passivity.intervals.linear import CLAIMS, margin_over
 from ..passivity.intervals.over_box import claim_over_intervals
-from ..passivity.ports import drop_absent_effects, nonlinear_parts, without_holding
+from ..passivity.ports import drop_absent_effects, nonlinear_parts
 from ..studies.chosen_measures import Measure, measures_of
 from ..studies.measures import MEASURES
 
@@ -129,7 +130,7 @@ def margin_function(
     """
     if limited.name in LOOP_MARGINS:
         return lambda v: loop_margin(diagram.with_values(v), limited.name, limited.controller)
-    whole = diagram if limited.name == "stable" else without_holding(diagram)
+    whole = diagram if limited.name == "stable" else without_holders(diagram)
     kept = tuple(n for n in box.names if n in whole.values)
     if not nonlinear_parts(drop_absent_effects(whole)):
         within = box.select(kept)

@@ -11,7 +11,8 @@ from ...base.expectations import describe_value
 from ...diagrams import Diagram
 from ...diagrams.units import first_axis, unit_of_value
 from ..claims.axis_units import use_rotary_units
-from ..ports import drop_absent_effects, ports, without_holding
+from ..holders import without_holders
+from ..ports import drop_absent_effects, ports
 from .at_points import judge_at_points
 from .box import box_of, nonlinear_within
 from .friction import judge_friction
@@ -31,7 +32,7 @@ def claim_over_intervals(
     """Does a claim hold for all values within intervals, and where is it worst?
 
     intervals: names of `diagram.values` -> (low, high), SI
-    claim: "passive": at all ports together, hands and environments (`Z_H`, `Z_E`) left out;
+    claim: "passive": at all ports together, hands and environments (`role`) left out;
         "absolutely stable": two ports between any passive terminations; "stable": every pole of the
         whole diagram, hand and environment included, has a negative real part; delay blocks and
         intervals of their dead times are allowed. Or a function of a diagram that returns a margin
@@ -50,17 +51,17 @@ def claim_over_intervals(
         raise ModelError(f"claim: found {describe_value(claim)}, expected {', '.join(CLAIMS)}")
     if claim == "stable":
         return _finish(diagram, intervals, judge_stability(middle, box, points, seed))
-    alone = without_holding(drop_absent_effects(middle))
-    away = [n for n in box.names if not without_holding(middle).has(n.partition(".")[0])]
+    alone = without_holders(drop_absent_effects(middle))
+    away = [n for n in box.names if not without_holders(middle).has(n.partition(".")[0])]
     if away:
         raise ModelError(f'{away[0]}: holds a port, and no part of what is "{claim}": see "stable"')
     at = ports(alone)
     if len(at) > 2 or (claim == "absolutely stable" and len(at) != 2):
         raise ModelError(f'{diagram.name}: "{claim}" is for two ports at most, found {len(at)}')
-    if nonlinear_within(without_holding(middle), box):
-        return _finish(diagram, intervals, judge_friction(without_holding(middle), box, claim))
+    if nonlinear_within(without_holders(middle), box):
+        return _finish(diagram, intervals, judge_friction(without_holders(middle), box, claim))
     return _finish(
-        diagram, intervals, judge_linear(without_holding(middle), box, claim, points, seed)
+        diagram, intervals, judge_linear(without_holders(middle), box, claim, points, seed)
     )
 
 

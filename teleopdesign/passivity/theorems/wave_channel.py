@@ -28,10 +28,11 @@ from ...realise.lti import S, linear_blocks
 from ..claims.certificate import Certificate, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
 from ..declarations import falsely_linear, is_shipped
+from ..holders import without_holders
 from ..linear.hidden_modes import body_hides_growth, hides_growth
 from ..linear.impedance import decimal, exact
 from ..linear.positive_real import positive_real
-from ..ports import drop_absent_effects, without_holding
+from ..ports import drop_absent_effects
 from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, require_hypotheses
 from ._theorem import Theorem
 
@@ -124,7 +125,7 @@ def wave_claim(diagram: Diagram) -> Claim:
     raises ModelError: another wiring, a block without values, two wave impedances that differ, a
         slave's controller that is not linear
     """
-    alone = without_holding(drop_absent_effects(diagram))
+    alone = without_holders(drop_absent_effects(diagram))
     wave_impedance = _wave_impedance(alone)
     linear = linear_blocks(alone)
     if "P" in linear.left_out:
