@@ -12,11 +12,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import sympy as sp
 
 from ..base.errors import ModelError
+from ..controllers import make_exact
+from ..derive.all_states import all_states
+from ..derive.polynomials import is_free_of_growth
+from ..diagrams import Diagram
 from ..realise.lti import S
 
 Terms = Mapping[float, np.ndarray]
@@ -72,29 +77,108 @@ class LateRatio:
         return np.asarray(np.unique(points[points > 0]))
 
 
-def late_ratio(expression: sp.Expr) -> LateRatio:
-    """The expression in `S` and e^(-s T) as a LateRatio.
+def terms_of(
+    polynomial: Any, times: Mapping[sp.Symbol, sp.Expr], unit: Fraction | None = None
+) -> Terms:
+    """A polynomial in s and symbols of dead times as delayed terms.
+
+    polynomial: an element of a ring whose first generator is s
+    times: symbol of e^(-s T) -> T, s;  unit: divides all numbers; default: the largest of them
+    """
+    unit = unit or _largest(polynomial)
+    delays = [times.get(x, sp.S(0)) for x in polynomial.ring.symbols]
+    made: dict[Fraction, dict[int, Fraction]] = {}
+    for powers, c in polynomial.items():
+        late = sum((k * t for k, t in zip(powers[1:], delays[1:], strict=True)), sp.S(0))
+        of_this = made.setdefault(Fraction(int(late.p), int(late.q)), {})
+        of_this[powers[0]] = of_this.get(powers[0], 0) + Fraction(c.numerator, c.denominator)
+    floats = {t: {k: float(c / unit) for k, c in p.items() if c} for t, p in sorted(made.items())}
+    return {float(t): _array(p) for t, p in floats.items() if p}
+
+
+def _largest(*polynomials: Any) -> Fraction:
+    return max((abs(Fraction(c.numerator, c.denominator)) for p in polynomials for c in p.values()),
+               default=Fraction(1))  # fmt: skip
+
+
+@dataclass(frozen=True)
+class CountedLoop:
+    """The gain of a loop, from the equations of all states.
+
+    ratio: the gain;  fault: why the loop has no margins, whatever its gain; "" for none
+    """
+
+    ratio: LateRatio
+    fault: str = ""
+
+
+def count_loop(diagram: Diagram, controller: str, *, speed: float) -> CountedLoop:
+    """The loop of a controller of a linear diagram, with the modes that the loop does not see.
+
+    With a factor g at the output of the controller, the determinant of all equations is d + g n.
+    The loop gain is n/d, and common factors of n and d are modes that the loop does not change.
+
+    raises ModelError: the wiring does not determine the loop
+    """
+    factor = sp.Symbol("factor")
+    states = all_states(diagram, gains={controller: factor}, speed=speed)
+    whole = states.determinant()
+    place = states.ring.symbols.index(factor)
+    sides = [states.ring({k: c for k, c in whole.items() if k[place] == power}) for power in (0, 1)]
+    below, above = sides[0], sides[1].exquo(states.ring.gens[place]) if sides[1] else sides[1]
+    if not below:
+        raise ModelError(f"{diagram.name}: the wiring does not determine the loop of {controller}")
+    return _counted(above, below, states.times)
+
+
+def loop_as_written(gain: sp.Expr) -> CountedLoop:
+    """A loop by its gain alone, in `S` and e^(-s T), without states that the gain does not show.
 
     raises ModelError: it is no ratio of polynomials in s and dead times
     """
-    powers = sorted(expression.atoms(sp.exp), key=str)
-    marks = [sp.Dummy(f"late_{k}") for k in range(len(powers))]
-    times = [-power.args[0].coeff(S) for power in powers]
-    plain = expression.xreplace(dict(zip(powers, marks, strict=True)))
-    sides = sp.fraction(sp.cancel(sp.together(plain)))
-    if not all(t.is_Rational for t in times) or not all(p.is_polynomial(S, *marks) for p in sides):
+    powers = {x: sp.Dummy(f"late_{k}") for k, x in enumerate(sorted(gain.atoms(sp.exp), key=str))}
+    sides = sp.fraction(sp.cancel(sp.together(gain.xreplace(powers))))
+    times = {mark: -power.args[0].coeff(S) for power, mark in powers.items()}
+    ring, *_ = sp.ring((S, *times), sp.QQ)
+    is_ratio = all(t.is_Rational for t in times.values())
+    if not is_ratio or not all(p.is_polynomial(S, *times) for p in sides):
         raise ModelError("loop: expected a ratio of polynomials in s and dead times")
-    made: list[dict[Fraction, dict[int, float]]] = []
-    for side in sides:
-        terms: dict[Fraction, dict[int, float]] = {}
-        for (degree, *exponents), c in sp.Poly(side, S, *marks).terms():
-            late = sum((n * t for n, t in zip(exponents, times, strict=True)), sp.S(0))
-            of_this = terms.setdefault(Fraction(int(late.p), int(late.q)), {})
-            of_this[degree] = of_this.get(degree, 0.0) + float(c)
-        made.append(terms)
-    first = min(t for terms in made for t in terms)
-    above, below = ({float(t - first): _array(p) for t, p in sorted(m.items())} for m in made)
-    return LateRatio(above, below)
+    above, below = (ring.from_expr(make_exact(sp.expand(p))) for p in sides)
+    return _counted(above, below, times)
+
+
+def _counted(above: Any, below: Any, times: Mapping[sp.Symbol, sp.Expr]) -> CountedLoop:
+    unseen, above, below = above.cofactors(below)
+    closed, order = above + below, _order(above, below)
+    fault = ""
+    if modes := describe_growth(unseen, times):
+        fault = f"a mode that it does not see grows: {modes}"
+    elif _order(closed) < order:
+        fault = "its gain is -1 at high frequency: the least change makes a mode grow at once"
+    unit = _largest(above, below)
+    sides = [terms_of(side, times, unit) for side in (above, below)]
+    first = min(t for terms in sides for t in terms)
+    made = ({t - first: p for t, p in terms.items()} for terms in sides)
+    return CountedLoop(LateRatio(*made), fault)
+
+
+def _order(*polynomials: Any) -> int:
+    """The highest power of s in polynomials; -1 if all are zero."""
+    return max((powers[0] for p in polynomials for powers in p), default=-1)
+
+
+def describe_growth(polynomial: Any, times: Mapping[sp.Symbol, sp.Expr]) -> str:
+    """Modes of a polynomial, in words, that grow, 1/s; "" where all decay or keep their size."""
+    if any(any(powers[1:]) for powers in polynomial):
+        least = min(powers[0] for powers in polynomial)  # a mode at s = 0 keeps its size
+        rest = polynomial.exquo(polynomial.ring.gens[0] ** least)
+        return "with dead times" if count_growing(terms_of(rest, times)) else ""
+    p = sp.Poly(polynomial.as_expr(), S, domain="QQ")
+    if p.degree() < 1 or is_free_of_growth(p):
+        return ""
+    roots = np.array([complex(r) for r in p.sqf_part().nroots(n=20, maxsteps=200)])
+    growing = roots[(roots.real > 0) & (roots.imag >= 0)]
+    return ", ".join(f"{r:.4g}" if r.imag else f"{r.real:.4g}" for r in growing) + " 1/s"
 
 
 def count_growing(terms: Terms) -> int:

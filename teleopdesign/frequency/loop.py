@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from ..realise.lti import S, as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
 from . import sampled_margins
 from .late_envelope import unity_grid
-from .late_loop import LateRatio, count_growing, crossings, late_ratio
+from .late_loop import CountedLoop, LateRatio, count_growing, count_loop, crossings, loop_as_written
 from .measured_loop import measured_crossings
 from .sampled_loop import SampledLoop, sampled_loop
 
@@ -42,6 +42,7 @@ class LoopGain:
     growing: poles of the controller itself in the right half plane
     sampled: the loop in discrete time, where this controller alone samples: its margins are exact.
         None where others sample too: those of `held` then count as their response over frequency
+    counted: the loop with all states, where nothing samples or is measured
     """
 
     expression: sp.Expr
@@ -51,6 +52,7 @@ class LoopGain:
     fastest: float
     growing: int = 0
     sampled: SampledLoop | None = None
+    counted: CountedLoop | None = field(default=None, compare=False, repr=False)
 
     def __call__(self, s: Any) -> Any:
         """Value at complex s (1/s), a number or an array of any shape."""
@@ -104,7 +106,11 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
     fastest = np.pi / max(periods) if periods else float("inf")
     growing = _count_growing_poles(linear.blocks[controller])
     sampled = sampled_loop(diagram, part, linear) if linear.held else None
-    return LoopGain(gain, controller, linear.left_out, linear.held, fastest, growing, sampled)
+    counted = None
+    if not linear.held and not gain.atoms(AppliedUndef):
+        counted = count_loop(diagram, controller, speed=speed)
+    made = gain, controller, linear.left_out, linear.held, fastest, growing, sampled, counted
+    return LoopGain(*made)
 
 
 def _count_growing_poles(form: sp.Expr) -> int:
@@ -150,6 +156,8 @@ def unity_crossings(
         if loop.expression.atoms(AppliedUndef):
             return *measured_crossings(loop.expression, growing=loop.growing), True
         if loop.sampled is not None:
+            if loop.sampled.fault:
+                raise UnstableLoop(f"the loop of {loop.controller}: {loop.sampled.fault}")
             if loop.sampled.grows():
                 raise _unstable()
             phase, angles = sampled_margins.unity_crossings(loop.sampled)
@@ -158,7 +166,10 @@ def unity_crossings(
             if _grows_by_pade(loop):
                 raise _unstable()
             return *_crossings(loop, None), True
-        ratio = late_ratio(loop.expression)
+        counted = loop.counted or loop_as_written(loop.expression)
+        if counted.fault:
+            raise UnstableLoop(f"the loop of {loop.controller}: {counted.fault}")
+        ratio = counted.ratio
     else:
         ratio = _ratio_of(loop)
     if count_growing(ratio.closed):

@@ -7,7 +7,6 @@ that no port shows from rest. Evidence includes this as far as it can be checked
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -17,7 +16,7 @@ from ..base.errors import ModelError
 from ..diagrams import Diagram
 from .claims.axis_units import use_units_of
 from .claims.claim import Claim, Unknown
-from .linear.hidden_modes import controllers_grow, growth_within
+from .linear.family import explain_unseen, family_at
 from .linear.positive_real import NEARBY, positive_real
 from .ports import Port, impedance_matrix, nonlinear_parts
 from .search.growing_wave import GrowingWave, wave_of
@@ -45,9 +44,7 @@ def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClai
         return [TopicClaim(WHOLE[0], Claim(statement, Unknown(f"not linear: {', '.join(bent)}")))]
     claims = _linear_claims(diagram, all_ports)
     if any(one.claim.holds for one in claims):
-        claims = _restate_beside_growth(claims, growth_within(diagram))
-    if any(one.claim.status == "evidence" for one in claims) and controllers_grow(diagram):
-        claims = [_open_inside(one) for one in claims]
+        claims = _restate_beside_modes(claims, diagram, all_ports)
     if not any(one.claim.status == "refuted" for one in claims):
         return claims
     for other in _nearby(diagram):
@@ -86,41 +83,22 @@ def _fails(one: TopicClaim, z: sp.Matrix) -> bool:
     return is_shown_unstable(two_port(z.tolist()))
 
 
-def _restate_beside_growth(claims: list[TopicClaim], rate: float | None) -> list[TopicClaim]:
-    """The claims with the growth of internal modes taken into account.
-
-    rate: of `growth_within`. A number: no claim holds. NaN: not known, so nothing is proved
-    """
-    if rate is None:
-        return claims
-    if math.isnan(rate):
-        why = (
-            "from rest its impedance is that of a passive port, but with a dead time, a loop that "
-            "determines nothing, or a state of an effect that its force does not show, a mode that "
-            "no port shows may grow"
-        )
-        return [
-            replace(one, claim=Claim(one.claim.statement, Unknown(why)))
-            if one.claim.status == "proved"
-            else one
-            for one in claims
-        ]
-    how = f"at {rate:.4g} 1/s" if rate else "as a power of time, a multiple pole on the axis"
-    why = (
-        "from rest its impedance is that of a passive port, but a mode that no port shows grows "
-        f"{how}"
-    )
+def _restate_beside_modes(
+    claims: list[TopicClaim], diagram: Diagram, all_ports: Sequence[Port]
+) -> list[TopicClaim]:
+    """The claims that hold become unknown where a mode that no port shows is not shown to decay."""
+    try:
+        modes = family_at(diagram, all_ports).undecayed()
+    except ModelError as problem:
+        why = str(problem)
+    else:
+        if not modes:
+            return claims
+        why = explain_unseen(modes)
     return [
         replace(one, claim=Claim(one.claim.statement, Unknown(why))) if one.claim.holds else one
         for one in claims
     ]
-
-
-def _open_inside(one: TopicClaim) -> TopicClaim:
-    if not one.claim.holds:
-        return one
-    why = "with its dead times a law has a growing mode that no port shows"
-    return replace(one, claim=Claim(one.claim.statement, Unknown(why)))
 
 
 def _nearby(diagram: Diagram) -> list[Diagram]:

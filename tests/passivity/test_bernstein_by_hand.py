@@ -9,6 +9,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.derive.polynomials import X
 from teleopdesign.passivity.checker import Refused, box_signs
 from teleopdesign.passivity.intervals import bernstein
 from teleopdesign.passivity.intervals.bernstein import (
@@ -16,7 +17,6 @@ from teleopdesign.passivity.intervals.bernstein import (
     excludes_zero_over,
     is_non_negative_over,
 )
-from teleopdesign.passivity.linear.polynomials import X
 
 Y, V = sp.symbols("y v")
 SMALL = st.fractions(-4, 4, max_denominator=5)

@@ -12,6 +12,7 @@ from passivity.interval_boxes import DIAGRAMS, HAND, failure, random_case
 import teleopdesign as td
 from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, from_control
+from teleopdesign.derive.polynomials import X
 from teleopdesign.diagrams import (
     Control,
     Diagram,
@@ -30,7 +31,6 @@ from teleopdesign.passivity.intervals.box import box_of
 from teleopdesign.passivity.intervals.conditions import Conditions
 from teleopdesign.passivity.intervals.family import family_of
 from teleopdesign.passivity.intervals.friction import _rest_is_passive
-from teleopdesign.passivity.linear.polynomials import X
 from teleopdesign.passivity.ports import impedance_matrix, ports
 from teleopdesign.realise.lti import S
 

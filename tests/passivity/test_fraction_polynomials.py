@@ -7,6 +7,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from teleopdesign.derive import polynomials as by_sympy
 from teleopdesign.passivity.checker.polynomials import (
     add,
     derivative,
@@ -25,7 +26,6 @@ from teleopdesign.passivity.checker.polynomials import (
     value,
 )
 from teleopdesign.passivity.checker.positive_roots import are_surely_coprime, has_positive_root
-from teleopdesign.passivity.linear import polynomials as by_sympy
 from teleopdesign.passivity.linear.impedance import impedance
 from teleopdesign.passivity.linear.positive_real import (
     is_positive_real as is_positive_real_by_sympy,

@@ -21,7 +21,7 @@ from typing import Any, Literal
 import numpy as np
 import sympy as sp
 
-from ..linear.polynomials import fraction
+from ...derive.polynomials import fraction
 
 Ends = Sequence[tuple[Fraction, Fraction]]
 #: most coefficients that all halvings may compute: some 5 s on one core. More would prove more

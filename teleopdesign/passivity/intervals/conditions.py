@@ -25,8 +25,8 @@ from fractions import Fraction
 import numpy as np
 import sympy as sp
 
+from ...derive.polynomials import X, is_hurwitz
 from ...realise.lti import S
-from ..linear.polynomials import X, is_hurwitz
 from .bernstein import Ends, ProofEffort, excludes_zero_over, is_non_negative_over
 from .box import ValueBox
 

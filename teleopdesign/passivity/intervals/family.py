@@ -7,18 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import sympy as sp
-from sympy.polys.matrices import DomainMatrix
 
 from ...blocks import Body
-from ...controllers import Controller, Stage, exact_decimal, make_exact, parameter_symbol
-from ...derive import symbol_values
-from ...derive.elimination import rows
+from ...controllers import Controller, exact_decimal, make_exact, parameter_symbol
+from ...derive.all_states import all_states
 from ...diagrams import Control, Diagram
 from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.simulated import without_absent
 from ...realise.tips import with_tips
-from ..linear.hidden_modes import cancelled_poles
-from ..linear.in_full import effect_modes, stage_rows
 from ..ports import impedance_matrix, ports
 from .box import ValueBox
 
@@ -50,58 +46,9 @@ class Family:
         return impedance_matrix(self.diagram, ports(self.diagram), linear=self.linear)
 
     def characteristic(self) -> sp.Expr:
-        """Determinant of all equations, times the denominators of the blocks, in S and the symbols.
-
-        Its zeros are all poles. Poles that no port shows are included, and poles that a zero of the
-        same block cancels, also in blocks whose values are symbols.
-        """
-        free = set(self.diagram.outside)
-        unknown = [s for s in self.diagram.signals if s not in free]
-        values = symbol_values(self.linear)
-        equations = []
-        for row in rows(self.diagram):
-            placed = {s: make_exact(sp.sympify(c).subs(values)) for s, c in row.items()}
-            terms = {s: sp.cancel(c) for s, c in placed.items()}
-            below = sp.lcm_list([sp.fraction(c)[1] for c in terms.values()])
-            equations.append([sp.cancel(terms.get(s, sp.S(0)) * below) for s in unknown])
-        matrix = DomainMatrix.from_Matrix(sp.Matrix(equations)).to_field()
-        whole = matrix.domain.to_sympy(matrix.det())
-        varied = {n.partition(".")[0] for n in self.symbols}
-        for part in self.diagram.controls:
-            if part.name in varied:
-                whole *= self._cancelled_within(part)
-            elif part.dead_time is None:
-                whole *= cancelled_poles(part, self.linear).as_expr()
-        return whole * self._cancelled_by_effects()
-
-    def _cancelled_by_effects(self) -> sp.Expr:
-        """Modes of effects that the form of their body does not show: a polynomial in S."""
-        hidden = sp.S(1)
-        for part in self.diagram.bodies:
-            if not isinstance(part.body, Body):
-                continue
-            values = {n: exact_decimal(v.value) for n, v in part.body.parameters.items()}
-            placed = {
-                s: self.symbols.get(f"{part.name}.{n}", values[n])
-                for n, s in part.body.symbols().items()
-            }
-            modes = effect_modes(part.body, placed)
-            forms = self.linear.blocks, self.linear.actuation
-            for whole, shown in zip(modes, forms, strict=True):
-                below = sp.fraction(sp.cancel(shown.get(part.name, sp.S(1))))[1]
-                hidden *= sp.cancel(whole / below)
-        return hidden
-
-    def _cancelled_within(self, part: Control) -> sp.Expr:
-        """Poles of a controller's stages that the form of the whole controller lacks."""
-        assert isinstance(part.controller, Controller)
-        symbols = {n.partition(".")[2]: s for n, s in self.symbols.items()
-                   if n.startswith(f"{part.name}.")}  # fmt: skip
-        product = sp.S(1)
-        for stage in part.controller.stages:
-            product *= _stage_denominator(stage, symbols)
-        below = sp.fraction(sp.cancel(self.linear.blocks[part.name]))[1]
-        return sp.cancel(product / below)
+        """Determinant of all equations, in S and the symbols: its zeros are all poles."""
+        whole = all_states(self.diagram, values=self.symbols).determinant()
+        return (whole / max(map(abs, whole.values()), default=1)).as_expr()
 
 
 def family_of(diagram: Diagram, box: ValueBox) -> Family | None:
@@ -157,26 +104,6 @@ def _forms(
     placed = {x: symbols.get(n, exact_decimal(v)) for x, (n, v) in numbers.items()}
     first, second = (make_exact(sp.sympify(f).subs(placed)) for f in forms)
     return first, second
-
-
-def _stage_denominator(stage: Stage, symbols: Mapping[str, sp.Symbol]) -> sp.Expr:
-    """Denominator of one stage without cancellation, with some of its parameters as symbols."""
-
-    def placed(name: str, value: float) -> sp.Expr:
-        return symbols.get(f"{stage.name}.{name}", exact_decimal(value))
-
-    if "denominator_0" in stage.values:
-        return sp.Add(
-            *(
-                placed(name, value) * S ** int(name.rpartition("_")[2])
-                for name, value in stage.values.items()
-                if name.startswith("denominator_")
-            )
-        )
-    known = {f"{stage.name}.{n}": placed(n, v) for n, v in stage.values.items()}
-    rates, _ = stage_rows(stage, known)
-    n = len(rates)
-    return (S * sp.eye(n) - sp.Matrix(n, n, lambda i, j: rates[i][j])).det(method="berkowitz")
 
 
 def _separate_structures(diagram: Diagram) -> Diagram:

@@ -14,6 +14,7 @@ from fractions import Fraction
 import numpy as np
 import sympy as sp
 
+from ...frequency.late_loop import count_growing
 from ...realise.enclosure import enclosure_of
 from .late_terms import ExactTerms
 
@@ -21,8 +22,61 @@ Terms = Mapping[float, np.ndarray]
 
 #: steps in which the dead times grow from 0 to their values, and Newton steps in each of them
 _STEPS, _NEWTON = 20, 3
+#: of the distance of a zero from the axis: no other zero is nearer than this
+_SHARE = 0.999
 #: most minima of abs(f) along the axis from which a search for zeros starts
 _LOWEST = 12
+
+
+def chain_rate(terms: Terms) -> float:
+    """Largest real part, 1/s, to which chains of zeros far out tend; -inf: there is none.
+
+    Late terms of the highest power of s have such chains (neutral systems): at the real part r at
+    which the sum of their sizes, times e^(-r T), is that of the term without dead time. It is that
+    limit at this dead times or at ones that differ as little as one likes.
+    """
+    from scipy.optimize import brentq
+
+    degree = max(map(len, terms.values()))
+    leads = {t: abs(p[0]) for t, p in terms.items() if len(p) == degree and t > 0}
+    first = terms.get(0.0, np.zeros(0))
+    if not leads or len(first) < degree:
+        return np.inf if leads else -np.inf
+    size = abs(first[0])
+
+    def excess(rate: float) -> float:
+        return float(sum(c * np.exp(-rate * t) for t, c in leads.items()) / size - 1)
+
+    times = max(leads) if excess(0.0) > 0 else min(leads)
+    reach = np.log(max(sum(leads.values()) / size, 1e-300)) / times
+    ends = sorted((2 * reach, 0.0)) if reach else (-1.0, 1.0)
+    return float(brentq(excess, *ends)) if excess(ends[0]) * excess(ends[1]) < 0 else reach
+
+
+def slowest_decay(terms: Terms) -> float:
+    """Distance of the rightmost zero from the axis, 1/s; < 0: it grows, -inf: by an unknown rate.
+
+    The zeros that a search reaches and the limits of chains far out are a candidate. A count of all
+    zeros to the right of it then confirms it, or finds by halving how far zeros come.
+    """
+    rate = -max(rightmost_root(terms).real, chain_rate(terms))
+    if rate <= 0 or np.isinf(rate):
+        return rate if rate <= 0 or not count_growing(terms) else -np.inf
+    if not count_growing(_moved(terms, _SHARE * rate)):
+        return rate
+    low, high = 0.0, rate
+    if count_growing(terms):
+        return -np.inf
+    while high - low > (1 - _SHARE) * rate:
+        middle = (low + high) / 2
+        low, high = (low, middle) if count_growing(_moved(terms, middle)) else (middle, high)
+    return low
+
+
+def _moved(terms: Terms, right: float) -> Terms:
+    """The sum with all its zeros moved to the right, 1/s."""
+    step = np.poly1d([1.0, -right])
+    return {t: np.exp(right * t) * np.poly1d(p)(step).coeffs for t, p in terms.items()}
 
 
 def rightmost_root(terms: Terms) -> complex:

@@ -28,16 +28,15 @@ import numpy as np
 import sympy as sp
 
 from ...controllers import Controller, Stage, controller, exact_decimal
+from ...derive.polynomials import is_hurwitz
 from ...diagrams import Control, Diagram
-from ...frequency.late_loop import count_growing
 from ...realise.lti import S
-from ..linear.polynomials import is_hurwitz
 from .box import ValueBox
 from .conditions import Conditions
 from .family import family_of
 from .interval_claim import Parts, Status, parts_of
 from .late_cells import is_zero_free
-from .late_roots import holds_root, rightmost_root
+from .late_roots import holds_root, rightmost_root, slowest_decay
 from .late_terms import LateTerms
 from .worst import search_worst
 
@@ -57,9 +56,7 @@ def judge_late_stability(middle: Diagram, box: ValueBox, points: int, seed: int)
     terms, start = made
 
     def margin(point: np.ndarray) -> float:
-        there = terms.at(point)
-        root = rightmost_root(there)
-        return -root.real if root.real >= 0 or not count_growing(there) else -np.inf
+        return slowest_decay(terms.at(point))
 
     worst = search_worst(margin, box, points=points, seed=seed)
     if worst.margin <= 0:

@@ -12,11 +12,12 @@ import sympy as sp
 
 from ...base.errors import ModelError
 from ...controllers import exact_decimal
+from ...derive.all_states import all_states, is_well_posed
+from ...derive.polynomials import is_hurwitz
 from ...diagrams import Diagram
 from ...realise.lti import S
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim, Unknown
-from ..linear.polynomials import is_hurwitz
 from ..linear_diagrams import linear_claims
 from ..ports import drop_absent_effects, ports
 from .at_points import judge_at_points
@@ -26,10 +27,12 @@ from .conditions import Conditions, one_port_is_passive, two_port_is_passive, tw
 from .family import Family, family_of
 from .interval_claim import Parts, Status, parts_of
 from .late_stability import judge_late_stability
-from .worst import MarginFunction, pole_margin, port_margin, search_worst
+from .worst import MarginFunction, Worst, pole_margin, port_margin, search_worst
 
 #: names of claims -> units of their margins
 CLAIMS = {"passive": "N s/m", "absolutely stable": "1", "stable": "1/s"}
+#: why a claim about a diagram with such a loop is unknown
+ILL_POSED = "a loop has the gain -1 at high frequency: the least change makes a mode grow at once"
 #: shares of the worst margin that are tested as proved bounds of the margin, the best first
 _SHARES = (0.999, 0.9, 0.5)
 
@@ -54,6 +57,9 @@ def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> P
         )
     ask = Conditions.over(box, family.symbols)
     polynomial = ask.poly(family.characteristic())
+    if not is_well_posed(middle, all_states(middle)):
+        worst = Worst(box.centre, float("nan"), 1)
+        return parts_of(statement, "unknown", worst, box, "1/s", ILL_POSED)
     worst = search_worst(pole_margin(polynomial, ask.symbols), box, points=points, seed=seed)
     if worst.margin <= 0 and not is_hurwitz(_polynomial_at(polynomial, ask, worst.point)):
         how = (

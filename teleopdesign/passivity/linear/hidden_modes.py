@@ -30,6 +30,7 @@ from sympy.polys.matrices import DomainMatrix
 from ...controllers import Controller, Stage, controller
 from ...derive import symbol_values
 from ...derive.elimination import rows
+from ...derive.polynomials import fraction, is_hurwitz
 from ...diagrams import Block, Control, Diagram, Moving, with_shared_states
 from ...realise.lti import LinearBlocks, S, linear_blocks
 from ...realise.tips import with_tips
@@ -48,7 +49,6 @@ from .in_full import (
     stages_of,
     unshown_by_effects,
 )
-from .polynomials import fraction, is_hurwitz
 
 #: the reason of an unknown claim about a system for which `has_hidden_growth` holds
 HIDDEN_GROWTH = (

@@ -17,8 +17,8 @@ import sympy as sp
 from ...base.arguments import describe_value
 from ...base.errors import ModelError
 from ...controllers import resolvent
+from ...derive.polynomials import fraction
 from ...realise.lti import S
-from .polynomials import fraction
 
 MotionKind = Literal["velocity", "position"]
 _LONGEST = 9  # most characters of a fraction that a text contains as a fraction

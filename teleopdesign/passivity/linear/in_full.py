@@ -21,6 +21,7 @@ from ...controllers import (
     parameter_symbol,
     resolvent,
 )
+from ...derive.polynomials import fraction
 from ...diagrams import (
     Attached,
     Control,
@@ -33,7 +34,6 @@ from ...diagrams import (
 )
 from ...effects import Effect
 from ...realise.lti import S
-from .polynomials import fraction
 
 #: an equation: unknown -> its polynomial in `S`; the sum of polynomial times unknown is zero
 Equation = dict[str, sp.Poly]

@@ -15,12 +15,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ..claims.certificate import positive_real_certificate
-from ..claims.claim import Claim, Refutation, Unknown, prove_by_certificate
-from ..search.growing_wave import GrowingWave, growing_wave
-from .hidden_modes import HIDDEN_GROWTH, has_hidden_growth
-from .impedance import Impedance, MotionKind, exact, gaussian, impedance
-from .polynomials import (
+from ...derive.polynomials import (
     X,
     even_part,
     has_positive_root,
@@ -29,6 +24,11 @@ from .polynomials import (
     positive_roots,
     value,
 )
+from ..claims.certificate import positive_real_certificate
+from ..claims.claim import Claim, Refutation, Unknown, prove_by_certificate
+from ..search.growing_wave import GrowingWave, growing_wave
+from .family import explain_unseen, unseen_modes
+from .impedance import Impedance, MotionKind, exact, gaussian, impedance
 
 #: relative change of a coefficient that may be rounding: some operations on floats, 2^-53 each
 NEARBY = 2.0**-50
@@ -52,9 +52,9 @@ def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
     system, motion: see `impedance`
     returns: proved, with the excess of damping as margin (N s/m: the damping that could be taken
         away); exact evidence where a certificate would ask for more work than its checker does
-        (from degree 25 on); or refuted by a growing wave. Unknown where a python-control system has
-        a growing mode that its port does not show, where the sign of the wave rests on the last
-        digits of floats, or where the wave releases so little energy that a replay in double
+        (from degree 25 on); or refuted by a growing wave. Unknown where a mode of a python-control
+        system that its port does not show does not decay, where the sign of the wave rests on the
+        last digits of floats, or where the wave releases so little energy that a replay in double
         precision does not show it
     raises ModelError: not a rational function of s with known coefficients
     """
@@ -74,8 +74,8 @@ def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
             f"Re Z = {wave.value[0, 0].real:.4g} N s/m at s = {a:.4g} + {w:.4g} j, a growing wave"
         )
         return Claim(statement, Refutation(method, wave))
-    if has_hidden_growth(system):
-        return Claim(statement, Unknown(HIDDEN_GROWTH))
+    if modes := unseen_modes(system):
+        return Claim(statement, Unknown(explain_unseen(modes)))
     margin = damping_excess(z)
     verdict = prove_by_certificate(
         "the positive-real test",

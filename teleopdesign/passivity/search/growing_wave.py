@@ -21,9 +21,9 @@ import numpy as np
 import sympy as sp
 from mpmath.libmp import NoConvergence
 
+from ...derive.polynomials import even_part, fraction, where_negative
 from ...realise.lti import S
 from ..linear.impedance import Impedance
-from ..linear.polynomials import even_part, fraction, where_negative
 
 LONGEST = 500  # most periods of a wave that are sampled; each of them releases energy
 _DIGITS = 40  # decimal digits of a first numerical value

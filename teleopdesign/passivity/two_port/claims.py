@@ -15,6 +15,7 @@ import numpy as np
 import sympy as sp
 
 from ...base.errors import ModelError
+from ...derive.polynomials import halves, where_negative
 from ...realise.lti import S
 from ..checker.absolute_stability import conditions
 from ..claims.certificate import absolute_stability_certificate, positive_real_certificate
@@ -27,8 +28,8 @@ from ..claims.claim import (
     Verdict,
     prove_by_certificate,
 )
+from ..linear.family import explain_unseen
 from ..linear.impedance import readable
-from ..linear.polynomials import halves, where_negative
 from .delayed_two_port import obstacles
 from .growing_mode import entries_of, growing_mode
 from .resonances import resonances
@@ -48,14 +49,26 @@ _METHOD = (
 )
 
 
+def _beside_unseen(system: TwoPort, claim: Claim) -> Claim:
+    """The claim; unknown if it holds while modes that no port shows do not decay."""
+    if claim.holds and system.unseen:
+        return Claim(claim.statement, Unknown(explain_unseen(system.unseen)))
+    return claim
+
+
 def passive(system: TwoPort) -> Claim:
     """Is the two-port passive: does no motion of its two ports take energy out (Raisbeck)?
 
     The positive-real test of the matrix decides, poles on the axis included.
 
     returns: proved; or refuted by a growing wave; or, with dead times, evidence over frequency;
-        unknown where no proof and no wave is available
+        unknown where no proof and no wave is available, or where a mode of a system of
+        python-control that no port shows does not decay
     """
+    return _beside_unseen(system, _judge_passivity(system))
+
+
+def _judge_passivity(system: TwoPort) -> Claim:
     statement = f"the two-port {_write_matrix(system)} is passive"
     if not system.has_delay:
         certificate = positive_real_certificate(statement, system.z.tolist())
@@ -94,10 +107,8 @@ def absolutely_stable(system: TwoPort) -> Claim:
         names; else unknown
     """
     statement = f"the two-port {_write_matrix(system)} is absolutely stable"
-    return Claim(
-        statement,
-        _judge_late_stability(system) if system.has_delay else _judge_stability(system, statement),
-    )
+    judge = _judge_late_stability if system.has_delay else _judge_stability
+    return _beside_unseen(system, Claim(statement, judge(system, statement)))
 
 
 def _judge_stability(system: TwoPort, statement: str) -> Verdict:
@@ -117,7 +128,7 @@ def _judge_stability(system: TwoPort, statement: str) -> Verdict:
     return Refutation(method, mode)
 
 
-def _judge_late_stability(system: TwoPort) -> Verdict:
+def _judge_late_stability(system: TwoPort, statement: str) -> Verdict:
     frequencies, margin = _find_lowest(system, stable_margin)
     hidden = obstacles(system, "absolutely stable")
     if margin >= 0 and not hidden:

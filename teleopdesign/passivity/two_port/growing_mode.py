@@ -18,6 +18,7 @@ from fractions import Fraction
 import numpy as np
 import sympy as sp
 
+from ...derive.polynomials import X, positive_roots, where_negative
 from ...realise.lti import S
 from ..checker.absolute_stability import (
     Entries,
@@ -33,7 +34,6 @@ from ..checker.polynomials import (
     polynomial,
 )
 from ..checker.polynomials import real_part as real_part_of
-from ..linear.polynomials import X, positive_roots, where_negative
 from ..search.growing_wave import LONGEST, square_root
 from .closed_loop import grows_between, hidden_poles
 from .exact_complex import (

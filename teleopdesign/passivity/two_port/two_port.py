@@ -26,7 +26,9 @@ from ...base.arguments import describe_value
 from ...base.by_value import ByValue
 from ...base.errors import ModelError
 from ...base.finding import Graph, Series
+from ...diagrams.control_parts import entry_of
 from ...realise.lti import S
+from ..linear.family import unseen_modes
 from ..linear.impedance import Impedance, exact, impedance
 
 
@@ -35,9 +37,11 @@ class TwoPort:
     """A two-port by its impedance matrix.
 
     z: 2x2, N s/m, in `realise.lti.S`, with exact numbers
+    unseen: modes of its systems that no port shows and that do not decay, 1/s
     """
 
     z: sp.ImmutableMatrix
+    unseen: tuple[complex, ...] = ()
 
     @property
     def has_delay(self) -> bool:
@@ -85,7 +89,11 @@ def two_port(entries: Any) -> TwoPort:
                 "two_port: expected two inputs and two outputs, found "
                 f"{entries.ninputs} and {entries.noutputs}"
             )
-        entries = [[entries[i, j] for j in range(2)] for i in range(2)]
+        unseen = unseen_modes(entries)
+        rows = [
+            [impedance(entry_of(entries, i, j, "two_port")) for j in range(2)] for i in range(2)
+        ]
+        return TwoPort(_matrix(rows), unseen)
     if isinstance(entries, sp.MatrixBase):
         entries = entries.tolist()
     if isinstance(entries, str) or not (_is_pair(entries) and all(map(_is_pair, entries))):
@@ -93,7 +101,12 @@ def two_port(entries: Any) -> TwoPort:
             "two_port: expected [[z11, z12], [z21, z22]] or a system of python-control, found "
             f"{describe_value(entries)}"
         )
-    return TwoPort(sp.ImmutableMatrix([[_entry(e) for e in row] for row in entries]))
+    modes = (mode for row in entries for entry in row for mode in unseen_modes(entry))
+    return TwoPort(_matrix(entries), tuple(modes))
+
+
+def _matrix(entries: Any) -> sp.ImmutableMatrix:
+    return sp.ImmutableMatrix([[_entry(e) for e in row] for row in entries])
 
 
 def _is_pair(value: Any) -> bool:

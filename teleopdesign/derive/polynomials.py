@@ -31,6 +31,22 @@ def is_hurwitz(polynomial: sp.Poly) -> bool:
     return True
 
 
+def is_free_of_growth(polynomial: sp.Poly) -> bool:
+    """Whether no root has a positive real part; roots on the axis are allowed.
+
+    Roots on the axis are among those that the polynomial shares with its mirror image, r and -r.
+    """
+    plain = polynomial.sqf_part()
+    shared = sp.gcd(plain, plain.compose(sp.Poly(-plain.gen, plain.gen)))
+    if shared.degree() > 0:
+        even, odd = halves(shared)
+        x = sp.gcd(even, odd) if not odd.is_zero else even
+        on_axis = 2 * len([r for r in positive_roots(x)]) + int(shared.eval(0) == 0)
+        if on_axis < shared.degree():
+            return False
+    return is_hurwitz(plain.quo(shared))
+
+
 def is_non_negative(polynomial: sp.Poly) -> bool:
     """Whether p(x) >= 0 for all x >= 0: no root of odd multiplicity at x > 0.
 
