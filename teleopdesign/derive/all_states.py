@@ -11,23 +11,14 @@ of one block that another block cancels.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from dataclasses import dataclass, field
 from typing import Any
 
 import sympy as sp
 
 from ..base.errors import ModelError
 from ..blocks import Body
-from ..controllers import (
-    SIGNALS,
-    ControlLaw,
-    Controller,
-    Stage,
-    exact_decimal,
-    make_exact,
-    parameter_symbol,
-)
+from ..controllers import Controller, exact_decimal, make_exact, parameter_symbol
 from ..diagrams import (
     Attached,
     Control,
@@ -40,15 +31,20 @@ from ..diagrams import (
     with_shared_states,
 )
 from ..diagrams.second_input import acts_along_another
-from ..effects import Effect, delayed, sort_by_action
+from ..effects import Effect, sort_by_action
 from ..realise.lti import S
 from ..realise.tips import with_tips
-
-#: an equation: unknown -> coefficient; the sum of coefficient times unknown is zero
-Row = dict[str, Any]
-#: e^(-s T) of a dead time T, before the dead times are known as numbers
-_LATE = sp.Function("late")
-_DRIVE, _MOVED, _SPEED = sp.symbols("drive moved frozen_speed")
+from .cramer import Row, solve
+from .linear_rows import (
+    DRIVE,
+    LATE,
+    MOVED,
+    SPEED,
+    OfLaw,
+    late_symbols,
+    rows_of_effect,
+    rows_of_law,
+)
 
 
 @dataclass(frozen=True)
@@ -80,7 +76,7 @@ class AllStates:
         """
         known = set(self.outside) - {n for row in more for n in row}
         rows = [{n: c for n, c in row.items() if n not in known} for row in (*self.rows, *more)]
-        return _solve(rows, (), (), self.ring)[0]
+        return solve(rows, (), (), self.ring)[0]
 
     def solve(
         self, wanted: Sequence[str], given: Sequence[str], more: Sequence[Row] = ()
@@ -93,7 +89,7 @@ class AllStates:
         new = {n for row in more for n in row}
         zero = set(self.outside) - {*wanted, *given} - new
         rows = [{n: c for n, c in row.items() if n not in zero} for row in (*self.rows, *more)]
-        return _solve(rows, wanted, given, self.ring)
+        return solve(rows, wanted, given, self.ring)
 
 
 def all_states(
@@ -160,7 +156,7 @@ class _Writer:
         e = sp.sympify(coefficient)
         if not e.is_Rational:
             e = make_exact(e.xreplace(numbers))
-        return e.replace(_LATE, self._mark) if e.has(_LATE) else e
+        return e.replace(LATE, self._mark) if e.has(LATE) else e
 
     def _mark(self, time: sp.Expr) -> sp.Expr:
         if time == 0:
@@ -210,16 +206,16 @@ class _Writer:
         terms = [(part.motion, body.symbols()["inertia"] * S**2)]
         for effect in body.effects:
             if effect.linear and effect.role != "actuation":
-                terms += self._effect(part.name, effect, {_MOVED: part.motion}, numbers)
+                terms += self._effect(part.name, effect, {MOVED: part.motion}, numbers)
         return terms
 
     def _effect(
         self, block: str, effect: Effect, signals: Mapping[Any, str], numbers: Mapping[Any, Any]
     ) -> list[tuple[str, sp.Expr]]:
         """Terms of the output of an effect;  signals: symbol of an input -> its name."""
-        names, rates, output = _rows_of_effect(effect)
+        names, rates, output = rows_of_effect(effect)
         states = [f"{block}.{effect.name}.{n}" for n in names]
-        inputs = [*states, *(signals.get(x, "") for x in (_DRIVE, _MOVED))]
+        inputs = [*states, *(signals.get(x, "") for x in (DRIVE, MOVED))]
         self._states(states, rates, inputs, numbers)
         return [(n, c) for n, c in zip(inputs, output, strict=True) if c != 0]
 
@@ -239,7 +235,7 @@ class _Writer:
         for effect in sort_by_action(part.body.effects, "actuation"):
             if effect.linear:
                 acting = f"{part.name}.{effect.name}"
-                terms = self._effect(part.name, effect, {_DRIVE: signal}, numbers)
+                terms = self._effect(part.name, effect, {DRIVE: signal}, numbers)
                 self.add([(acting, sp.S(1)), *((n, -c) for n, c in terms)], numbers)
                 signal = acting
         loads = [(n, -self.diagram.here(w)) for n, w in part.loads.items()]
@@ -259,8 +255,8 @@ class _Writer:
         moved = part.motion if acts_along_another(self.diagram, part) else part.input
         for k, stage in enumerate(law.stages):
             is_last = k == len(law.stages) - 1
-            names, rates, output = _rows_of_law(_OfLaw(stage.law, stage))
-            numbers: dict[sp.Expr, sp.Expr] = {_SPEED: self.speed}
+            names, rates, output = rows_of_law(OfLaw(stage.law, stage))
+            numbers: dict[sp.Expr, sp.Expr] = {SPEED: self.speed}
             for n, x in stage.values.items():
                 value = self._value(f"{part.name}.{stage.name}.{n}", x)
                 numbers[parameter_symbol("law", f"law.{n}")] = value
@@ -279,10 +275,12 @@ class _Writer:
         if lost := [n for n in self.values if n not in self.placed]:
             raise ModelError(f"{self.diagram.name}: {lost[0]} is in no coefficient as such")
         free = {x for gain in self.gains.values() for x in gain.free_symbols}
-        symbols = (S, *self.values.values(), *sorted(free, key=str), *self.marks.values())
+        times, powers = late_symbols(self.marks)
+        placed = {mark: powers[time] for time, mark in self.marks.items()}
+        symbols = (S, *self.values.values(), *sorted(free, key=str), *times)
         ring, *_ = sp.ring(symbols, sp.QQ)
-        rows = tuple(_as_polynomials(row, ring) for row in self.rows)
-        times = {mark: time for time, mark in self.marks.items()}
+        late = ({n: c.xreplace(placed) for n, c in row.items()} for row in self.rows)
+        rows = tuple(_as_polynomials(row, ring) for row in (late if placed else self.rows))
         return AllStates(ring, rows, times, tuple(self.diagram.outside), self.diagram.name)
 
 
@@ -298,129 +296,3 @@ def _as_polynomials(row: Mapping[str, sp.Expr], ring: Any) -> Row:
     below = sp.lcm_list([q for _, q in sides.values()])
     made = {n: ring.from_expr(sp.expand(p * sp.cancel(below / q))) for n, (p, q) in sides.items()}
     return {n: p for n, p in made.items() if p}
-
-
-@dataclass(frozen=True)
-class _OfLaw:
-    """A stage, equal to every stage of the same law: its values are symbols in the rows."""
-
-    law: ControlLaw
-    stage: Stage = field(compare=False)
-
-
-_Rows = tuple[tuple[str, ...], tuple[tuple[sp.Expr, ...], ...], tuple[sp.Expr, ...]]
-
-
-@lru_cache(maxsize=512)
-def _rows_of_law(of: _OfLaw) -> _Rows:
-    """States of a law; for the rate of each, and for the output, coefficients in continuous time.
-
-    Coefficients are those of the states, of the input and of the motion.
-    """
-    velocity = S * _MOVED
-    signals = {"input": _DRIVE, "velocity": velocity, "speed": _SPEED, "travel_rate": velocity}
-    alone = Controller((replace(of.stage, name="law"),))
-    made = alone.equation("law", {**SIGNALS, **signals, "period": sp.S(0)})
-    unknown = (*made.rates, _DRIVE, _MOVED)
-    names = tuple(x.name.removeprefix("law_law_") for x in made.rates)
-    return names, tuple(_row(e, unknown) for e in made.rates.values()), _row(made.output, unknown)
-
-
-@lru_cache(maxsize=512)
-def _rows_of_effect(effect: Effect) -> _Rows:
-    """As `_rows_of_law`, for an effect: its input is the command, or the position of the body."""
-    motion = {"position": _MOVED, "velocity": S * _MOVED, "acceleration": S**2 * _MOVED}
-    signals = {**motion, "command": _DRIVE, "interaction_force": sp.S(0)}
-    rates, output = effect.rates(signals, {}), effect.expression(signals, {})
-    states = effect.state_symbols()
-    unknown = (*(states[n] for n in rates), _DRIVE, _MOVED)
-    return tuple(rates), tuple(_row(e, unknown) for e in rates.values()), _row(output, unknown)
-
-
-def _row(expression: sp.Expr, unknown: Sequence[sp.Symbol]) -> tuple[sp.Expr, ...]:
-    """Coefficients of the unknowns in an expression that is linear in them."""
-    placed = expression.replace(delayed, lambda signal, time: signal * _LATE(time))
-    return tuple(sp.diff(placed, x) for x in unknown)
-
-
-def _solve(
-    rows: list[Row], wanted: Sequence[str], given: Sequence[str], ring: Any
-) -> tuple[Any, list[list[Any]]]:
-    """Determinant d of the unknowns, and N with wanted = N given/d, by elimination (Cramer).
-
-    Unknowns that have a number as a coefficient go first; then Bareiss' scheme without fractions.
-    """
-    names = [n for n in dict.fromkeys(n for row in rows for n in row) if n not in given]
-    if len(names) != len(rows) or not {*wanted} <= {*names}:
-        return ring.zero, []
-    scale, rows = _eliminate_numbers([dict(row) for row in rows], {*wanted, *given})
-    left = [n for n in dict.fromkeys(n for row in rows for n in row) if n not in {*wanted, *given}]
-    columns = [*left, *wanted]
-    if len(columns) != len(rows):
-        return ring.zero, []
-    matrix = [[row.get(n, ring.zero) for n in (*columns, *given)] for row in rows]
-    determinant = _bareiss(matrix, len(columns), len(wanted), ring)
-    if not determinant:
-        return ring.zero, []
-    answers = [[e * -scale for e in row[len(columns) :]] for row in matrix[len(left) :]]
-    return determinant * scale, answers
-
-
-def _eliminate_numbers(rows: list[Row], kept: set[str]) -> tuple[Any, list[Row]]:
-    """The rows without unknowns that have a number as a coefficient, and the product of these."""
-    scale = sp.QQ(1)
-    while True:
-        uses: dict[str, int] = {}
-        for row in rows:
-            for n in row:
-                uses[n] = uses.get(n, 0) + 1
-        choices = [
-            ((len(row) - 1) * (uses[n] - 1), i, n)
-            for i, row in enumerate(rows)
-            for n, c in row.items()
-            if n not in kept and c.is_ground
-        ]
-        if not choices:
-            return scale, rows
-        _, i, name = min(choices)
-        pivot = rows.pop(i)
-        number = pivot.pop(name).LC
-        scale *= number
-        for row in rows:
-            if name in row:
-                factor = row.pop(name) * (-1 / number)
-                for n, c in pivot.items():
-                    total = row[n] + factor * c if n in row else factor * c
-                    if total:
-                        row[n] = total
-                    else:
-                        row.pop(n, None)
-
-
-def _bareiss(matrix: list[list[Any]], size: int, last: int, ring: Any) -> Any:
-    """Eliminate in place: the last rows become diagonal; returns the determinant but for its sign.
-
-    size: number of unknowns, in the first columns;  last: number of rows at the end to make
-        diagonal; further columns are transformed alike
-    """
-    before = ring.one
-    for k in range(size):
-        usable = [(len(matrix[i][k]), i) for i in range(k, size) if matrix[i][k]]
-        if not usable:
-            return ring.zero
-        i = min(usable)[1]
-        matrix[i], matrix[k] = matrix[k], matrix[i]
-        pivot, pivots = matrix[k][k], matrix[k]
-        for i in range(min(k + 1, size - last), size):
-            row = matrix[i]
-            if i == k:
-                continue
-            factor, row[k] = row[k], ring.zero
-            for j in range(k + 1, len(row)):
-                if row[j] or (factor and pivots[j]):
-                    product = pivot * row[j] - factor * pivots[j]
-                    row[j] = product if before == 1 else product.exquo(before)
-            if i < k:
-                row[i] = pivot
-        before = pivot
-    return before

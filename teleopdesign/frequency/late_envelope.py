@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.errors import ModelError
-from .late_loop import LateRatio, Terms
+from .late_loop import LateRatio
+from .late_zeros import Terms
 
 #: longest step of a phase (rad) or of the logarithm of a size; a longer step is halved. A shorter
 #: step that may reach the searched value on its way is also halved, down to FINEST: a value that is

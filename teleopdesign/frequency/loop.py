@@ -18,7 +18,8 @@ from ..realise.lti import S, as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
 from . import sampled_margins
 from .late_envelope import unity_grid
-from .late_loop import CountedLoop, LateRatio, count_growing, count_loop, crossings, loop_as_written
+from .late_loop import CountedLoop, LateRatio, count_loop, crossings, loop_as_written
+from .late_zeros import count_growing
 from .measured_loop import measured_crossings
 from .sampled_loop import SampledLoop, sampled_loop
 

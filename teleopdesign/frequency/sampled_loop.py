@@ -31,7 +31,8 @@ from ..derive.polynomials import is_free_of_growth
 from ..diagrams import Control, Diagram
 from ..realise.lti import LinearBlocks
 from .held_plant import HeldPlant, add, as_mpf, multiply
-from .late_loop import LateRatio, describe_growth
+from .late_loop import LateRatio
+from .late_zeros import describe_growth
 
 #: rational numbers, highest power first
 Coefficients = tuple[Fraction, ...]

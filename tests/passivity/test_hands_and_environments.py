@@ -1,5 +1,8 @@
 """Hands and environments are roles that a diagram states, at ports; names tell nothing."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from devices import body
 
@@ -19,8 +22,16 @@ from teleopdesign.diagrams import (
     teleoperator,
     write_diagram,
 )
-from teleopdesign.passivity import claim_over_intervals, diagram_claims, margin_map
+from teleopdesign.passivity import (
+    claim_over_intervals,
+    diagram_claims,
+    margin_map,
+    ports,
+    sweep_margins,
+    two_port,
+)
 from teleopdesign.passivity.holders import holders
+from teleopdesign.passivity.linear.family import family_at
 
 SPRING = controller("spring_damper", {"stiffness": 300.0, "damping": 1.0})
 NAMES = ("wall", "Z_E", "Z_H")
@@ -112,6 +123,18 @@ def test_a_map_of_margins_leaves_out_what_holds_the_ports_alone():
     made = teleoperator(plain, plain, coupling=SPRING, hand=held, environment=held)
     expected = margin_map(free, values).data
     assert margin_map(made, values).data.equals(expected)
+    parts = [replace(b, role="part") if isinstance(b, Attached) else b for b in made.blocks]
+    whole = replace(made, blocks=tuple(parts))
+    f = np.geomspace(0.01, 1000.0, 201)
+    for damping in values["Z_m.viscous.damping"]:
+        there = whole.with_values({"Z_m.viscous.damping": damping})
+        there = there.with_values({"P.spring_damper.stiffness": 100.0})
+        margins = sweep_margins(two_port(family_at(there, ports(there)).z), f)
+        found = margin_map(whole, values, frequency=f).data.sel(
+            {"Z_m.viscous.damping": damping, "P.spring_damper.stiffness": 100.0}
+        )
+        assert float(found["llewellyn"]) == pytest.approx(margins.llewellyn.min(), rel=1e-9)
+        assert float(found["passive"]) == pytest.approx(margins.passive.min(), rel=1e-9)
 
 
 def test_a_file_states_the_role_and_an_older_file_is_read_by_its_names(tmp_path):

@@ -1,189 +1,327 @@
 """The linear form of a device at its ports, with all its states.
 
-    force = Z velocity,   Z = N/(s d)
+    force = Z velocity,   Z = N/d
 
-N and d are polynomials in s, in values that stay symbols, and in one symbol for e^(-s T) of each
-dead time. d has a root for each mode of the device with its ports clamped, also where N cancels it.
-`held` has a root for each mode of the device with its ports held by dampers and springs. Where Z is
-passive, those of its roots that are not in the open left half plane are modes that no port shows:
-what the ports show decays there.
+N and d are polynomials in s, in values that vary over a box, and in one symbol for e^(-s T) of each
+dead time. A point is a box without values, an impedance of one port is 1 x 1.
+
+`held` has a root for each mode of the device with a damper at each port, but for free motions of
+the ports themselves. Where Z is passive, what the ports show decays there. So if Z is passive,
+roots of `held` that are not in the open left half plane are modes that no port shows.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property, reduce
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import sympy as sp
+from sympy.polys.matrices import DomainMatrix
 
 from ...base.errors import ModelError
-from ...controllers import resolvent
-from ...derive.all_states import Row, all_states, is_well_posed
-from ...derive.polynomials import fraction, is_hurwitz
-from ...diagrams import Diagram
-from ...frequency.late_loop import count_growing, terms_of
+from ...controllers import make_exact, resolvent
+from ...derive.all_states import AllStates, all_states, is_well_posed
+from ...derive.cramer import Row
+from ...derive.linear_rows import late_symbols
+from ...derive.polynomials import as_poly, element, fraction, is_hurwitz, roots_of
+from ...diagrams import Block, Diagram
+from ...frequency.late_zeros import count_growing, terms_of, zeros_at_origin
 from ...realise.lti import S
-from .impedance import exact
+from .impedance import Impedance, exact
+from .signs import Ends
 
 if TYPE_CHECKING:
     from ..ports import Port
 
+Matrix = Sequence[Sequence[Any]]
+#: share of its size by which a root may lie on the left by rounding alone
+_NEAR = 1e-9
+#: values of Z, (m, n, n), from points s, (m,), and a point of the box, (values,)
+Evaluation = Callable[..., np.ndarray]
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class Family:
-    """The linear form of a device at its ports; N, d and `held` are polynomials in `ring`.
+    """The linear form of a device at its ports.
 
-    values: symbols of values;  times: symbol of e^(-s T) -> dead time T
+    n: numerators of Z (N s/m);  d: their common denominator, coprime as a whole
+    held: determinant of all states, with a damper at each port
+    names, ends: values of the box, generators of the ring after s, and their intervals
+    times: symbol of e^(-s T) -> T: a number, or the symbol of a value
+    written: Z as it was written, for texts; default: `z`
+    resting: zeros of `held` at s = 0 that are free motions of the ports, with dead times
     """
 
-    ring: Any
-    numerators: tuple[tuple[Any, ...], ...]
-    denominator: Any
+    n: Matrix
+    d: Any
     held: Any
-    times: Mapping[sp.Symbol, sp.Expr]
-    values: Mapping[str, sp.Symbol]
+    names: tuple[str, ...] = ()
+    ends: Ends = ()
+    times: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    written: sp.ImmutableMatrix | None = None
+    resting: int = 0
 
     @property
-    def impedance(self) -> sp.Matrix:
-        """Z in N s/m, in `S`, the symbols and exp(-S T), each entry coprime."""
+    def size(self) -> int:
+        """Number of ports."""
+        return len(self.n)
+
+    @property
+    def values(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of the values."""
+        symbols: tuple[sp.Symbol, ...] = self.d.ring.symbols
+        return symbols[1 : 1 + len(self.names)]
+
+    @cached_property
+    def z(self) -> sp.ImmutableMatrix:
+        """Z in `S`, the symbols of values and exp(-S T), each entry coprime."""
         late = {mark: sp.exp(-S * time) for mark, time in self.times.items()}
 
         def entry(above: Any) -> sp.Expr:
-            p, q = above.cancel(self.denominator * self.ring.gens[0])
+            p, q = above.cancel(self.d)
+            p, q = (side.mul_ground(1 / q.LC) for side in (p, q))
             return (p.as_expr() / q.as_expr()).xreplace(late)
 
-        return sp.Matrix([[entry(e) for e in row] for row in self.numerators])
+        return sp.ImmutableMatrix([[entry(e) for e in row] for row in self.n])
 
+    @cached_property
+    def at(self) -> Evaluation:
+        """Values of Z in floats, compiled once."""
+        entries = [_in_floats(e) for e in self.z]
+        call, size = sp.lambdify([S, *self.values], entries, "numpy"), self.size
+
+        def values(s: np.ndarray, point: Sequence[float] = ()) -> np.ndarray:
+            with np.errstate(all="ignore"):  # a pole is infinite, a late term far out is 0
+                made = call(np.asarray(s, dtype=complex), *point)
+            flat = [np.broadcast_to(np.asarray(e, dtype=complex), np.shape(s)) for e in made]
+            return np.stack(flat, axis=-1).reshape(-1, size, size)
+
+        return values
+
+    @property
+    def impedance(self) -> Impedance:
+        """The impedance of one port, without dead times and values."""
+        p, q = self.n[0][0].cancel(self.d)
+        return Impedance(*(as_poly(side.mul_ground(1 / q.LC), S) for side in (p, q)))
+
+    @cached_property
     def undecayed(self) -> tuple[complex, ...]:
-        """Modes that do not decay with the ports held, 1/s; without values as symbols.
+        """Modes that do not decay with the ports held, 1/s; without values.
 
-        With dead times one mode stands for all: NaN.
+        With dead times one NaN stands for all of them.
+        raises ModelError: dead times are too long against the fastest mode
         """
         if self.times:
-            return (complex(np.nan),) * bool(count_growing(terms_of(self.held, self.times)))
-        return _not_decaying(sp.Poly(self.held.as_expr(), S, domain="QQ"))
+            at_rest = zeros_at_origin(self.held, self.times) if self.held else 0
+            stays = at_rest > self.resting
+            grows = stays or count_growing(terms_of(self.held, self.times), at_rest)
+            return (complex(np.nan),) * bool(grows)
+        return not_decaying(as_poly(self.held, S))
+
+    @property
+    def hides(self) -> bool:
+        """Whether the device has modes that no port shows; without values."""
+        shown = close(self.n, self.d, dampers(self.n, self.d))
+        return _order(shown) < _order(self.held)
 
 
-def _not_decaying(p: sp.Poly) -> tuple[complex, ...]:
+def _in_floats(e: sp.Expr) -> sp.Expr:
+    long = (x for x in e.atoms(sp.Rational) if not x.is_Integer or abs(x) >= 2**31)
+    return e.xreplace({x: sp.Float(x, 17) for x in long})
+
+
+def _order(p: Any) -> int:
+    return max((k[0] for k in p), default=-1)
+
+
+def not_decaying(p: sp.Poly) -> tuple[complex, ...]:
     """Roots that are not in the open left half plane, one of each pair; none, decided exactly."""
     if is_hurwitz(p):
         return ()
-    roots = np.array([complex(r) for r in p.sqf_part().nroots(n=20, maxsteps=200)])
-    limit = 1e-12 * np.abs(roots)
-    return tuple(complex(r) for r in roots[(roots.real >= -limit) & (roots.imag >= 0)])
+    s = roots_of(element(p.sqf_part()))
+    near = s[(s.real >= -_NEAR * np.abs(s)) & (s.imag >= 0)]
+    return tuple(map(complex, near if len(near) else s[[s.real.argmax()]]))
 
 
-def unseen_modes(system: Any) -> tuple[complex, ...]:
-    """Modes of a system of python-control that its ports do not show and that do not decay, 1/s.
-
-    From rest such a mode stays at rest, so the impedance does not contain it. What ports of a state
-    space do not show is the same whatever holds them. Empty for any other kind of system.
-    """
-    if hasattr(system, "num"):
-        above, below = ([side for row in m for side in row] for m in (system.num, system.den))
-        sides = ([_polynomial(p), _polynomial(q)] for p, q in zip(above, below, strict=True))
-        shared = (sp.gcd(*pair) for pair in sides)
-        return tuple(mode for p in shared for mode in _not_decaying(p))
-    if not hasattr(system, "A") or not len(system.A):
-        return ()
-    ring, s = sp.ring("s", sp.QQ)
-    matrices = [[[fraction(exact(x)) for x in row] for row in m]
-                for m in (system.A, system.B, system.C, system.D)]  # fmt: skip
-    a, b, c, straight = matrices
-    places = range(len(c))
-    made = [[resolvent(a, [row[j] for row in b], c[i]) for j in places] for i in places]
-    d = _in_ring(ring, made[0][0][0])
-    n = [[s * (_in_ring(ring, made[i][j][1]) + straight[i][j] * d) for j in places] for i in places]
-    loose, tight = (_hold(n, d, ring, factor) for factor in (1, 3))
-    return _not_decaying(sp.Poly(loose.gcd(tight).as_expr(), S, domain="QQ"))
-
-
-def _polynomial(falling: Sequence[float]) -> sp.Poly:
-    return sp.Poly([exact(c) for c in falling], S, domain="QQ")
-
-
-def _in_ring(ring: Any, falling: Sequence[Fraction]) -> Any:
-    top = len(falling) - 1
-    return ring({(top - k,): sp.QQ(c.numerator, c.denominator) for k, c in enumerate(falling) if c})
-
-
-def explain_unseen(modes: Sequence[complex]) -> str:
-    """The reason of an unknown claim beside modes that no port shows and that do not decay."""
-    return f"from rest its impedance is that of a passive port, but {describe_modes(modes)}"
-
-
-def describe_modes(modes: Sequence[complex]) -> str:
-    """Words for modes that no port shows, from `Family.undecayed`."""
-    if any(np.isnan(m) for m in modes):
-        return "with its dead times a mode that no port shows is not shown to decay"
-    shown = ", ".join(
-        f"{m.real:.4g}" if not m.imag else f"{m.real:.4g} +- {m.imag:.4g}j" for m in modes
-    )
-    number = "a mode that no port shows does" if len(modes) == 1 else "modes that no port shows do"
-    return f"{number} not decay, at s = {shown} 1/s"
-
-
-def family_at(
-    diagram: Diagram, at: Sequence[Port], values: Mapping[str, sp.Symbol] | None = None
-) -> Family:
-    """The linear form of a diagram at ports; all other outside signals are zero.
+def family_at(diagram: Diagram, at: Sequence[Port]) -> Family:
+    """The linear form of a diagram at ports, at its values; other outside signals are zero.
 
     raises ModelError: a loop determines nothing, or its gain is -1 at high frequency, or the ports
         do not move apart; as `all_states`
     """
-    states = all_states(diagram, values=values)
-    names = [f"port {k}" for k in range(len(at))]
+    states = all_states(diagram)
+    if not is_well_posed(diagram, states):
+        raise ModelError(f"{diagram.name}: a loop has the gain -1 at high frequency")
+    return family_of_states(states, at)
+
+
+def family_of_states(
+    states: AllStates, at: Sequence[Port], names: Sequence[str] = (), ends: Ends = ()
+) -> Family:
+    """The linear form at ports from the equations of all states.
+
+    names, ends: values that the equations hold as symbols, and their intervals
+    raises ModelError: the ports do not move apart, or the equations do not determine them
+    """
+    ports = [f"port {k}" for k in range(len(at))]
+    d, above = states.solve([p.force for p in at], ports, port_rows(states, at, ports))
+    if not d:
+        raise ModelError(f"{states.name}: its ports do not move apart: they have no impedance")
+    # above/d is force over position
+    s, size = states.ring.gens[0], len(at)
+    held_by = dampers(above, d * s)
+    rows = [
+        [e + s * d * held_by[i] if i == j else e for j, e in enumerate(row)]
+        for i, row in enumerate(above)
+    ]
+    held = determinant(rows)
+    for _ in range(1, size):
+        held = held.exquo(d)
+    resting = _count_resting(states, at)
+    while resting and held and not any(k[0] == 0 for k in held):
+        held, resting = held.exquo(s), resting - 1
+    n, below = _coprime(above, d * s)
+    return Family(n, below, held, tuple(names), ends, states.times, resting=resting)
+
+
+def _count_resting(states: AllStates, at: Sequence[Port]) -> int:
+    """Number of independent displacements of the ports after which all stands still again.
+
+    They are no states of Z, which has velocities. For values in general
+    """
+    symbols = states.ring.symbols[1:]
+    point = [1 if x in states.times else sp.prime(20 + k) for k, x in enumerate(symbols)]
+
+    def still(p: Any) -> Any:
+        kept = ((k[1:], c) for k, c in p.items() if k[0] == 0)
+        factors = (c * prod(x**e for x, e in zip(point, k, strict=True)) for k, c in kept)
+        return sum(factors, sp.QQ(0))
+
+    names = states.unknown
+    rows = [[still(row[n]) if n in row else sp.QQ(0) for n in names] for row in states.rows]
+    shapes = DomainMatrix(rows, (len(rows), len(names)), sp.QQ).nullspace()
+    weights = [[sp.QQ.convert(exact(p.weights.get(n, 0))) for p in at] for n in names]
+    moved = shapes * DomainMatrix(weights, (len(names), len(at)), sp.QQ)
+    return len(moved.rref()[1])
+
+
+def port_rows(states: AllStates, at: Sequence[Port], names: Sequence[str]) -> list[Row]:
+    """The motion of each port as a sum of motions of bodies."""
     rows: list[Row] = []
     for name, port in zip(names, at, strict=True):
-        weights = ((m, states.ring(-_rational(exact(w)))) for m, w in port.weights.items())
-        rows.append({name: states.ring.one, **dict(weights)})
-    d, n = states.solve([port.force for port in at], names, rows)
-    if not d:
-        raise ModelError(f"{diagram.name}: its ports do not move apart: they have no impedance")
-    if not values and not is_well_posed(diagram, states):
-        raise ModelError(f"{diagram.name}: a loop has the gain -1 at high frequency")
-    return _family(states.ring, n, d, states.times, values or {})
+        weights = ((m, exact(w)) for m, w in port.weights.items())
+        terms = {m: states.ring(-sp.QQ(int(w.p), int(w.q))) for m, w in weights}
+        rows.append({name: states.ring.one, **terms})
+    return rows
 
 
-def _family(
-    ring: Any,
-    n: Sequence[Sequence[Any]],
-    d: Any,
-    times: Mapping[sp.Symbol, sp.Expr],
-    values: Mapping[str, sp.Symbol],
-) -> Family:
-    return Family(ring, tuple(map(tuple, n)), d, _hold(n, d, ring), times, values)
+def family_of_matrix(z: Sequence[Sequence[sp.Expr]]) -> Family:
+    """The family of functions of s, with exp(-s T) for dead times; they have no further states.
+
+    z: N s/m, square, in `S` with exact numbers
+    raises ModelError: an entry is no ratio of polynomials in s and dead times
+    """
+    powers = {x for row in z for e in row for x in sp.sympify(e).atoms(sp.exp)}
+    delays = {power: -power.args[0].coeff(S) for power in powers}
+    times, marks = late_symbols(delays.values())
+    placed = {power: marks[time] for power, time in delays.items()}
+    ring, *_ = sp.ring((S, *times), sp.QQ)
+    pairs = [[_ratio(sp.sympify(e).xreplace(placed), ring) for e in row] for row in z]
+    d = reduce(_lcm, (q for row in pairs for _, q in row))
+    n = [[p * d.exquo(q) for p, q in row] for row in pairs]
+    written, held = sp.ImmutableMatrix(z), close(n, d, dampers(n, d))
+    resting = _count_lost(n, d, times) if times else 0
+    return Family(n, d, held, times=times, written=written, resting=resting)
 
 
-def _hold(n: Sequence[Sequence[Any]], d: Any, ring: Any, factor: int = 1) -> Any:
-    """Determinant of the device with a damper and a spring at each port, `factor` times each."""
-    rows, s = [list(row) for row in n], ring.gens[0]
-    for k, row in enumerate(rows):
-        damper, spring = _termination(row[k], d)
-        row[k] = row[k] + d * factor * (damper * s + spring)
-    held = determinant(rows, ring)
-    for _ in rows[1:]:
-        held = held.exquo(d)
-    return held
+def _count_lost(n: Matrix, d: Any, times: Mapping[sp.Symbol, sp.Expr]) -> int:
+    """Zeros at s = 0 of the denominator of (N/d + dampers)^-1 that all entries above it share.
+
+    No polynomial divides by them, because at s = 0 the dead times make them.
+    """
+    held = dampers(n, d)
+    rows = [[e + d * held[i] if i == j else e for j, e in enumerate(row)]
+            for i, row in enumerate(n)]  # fmt: skip
+    whole, above = _cofactors(rows, d)
+    shared = reduce(lambda a, b: a.gcd(b), above, whole)
+    return min((zeros_at_origin(p.exquo(shared), times) for p in (whole, *above) if p), default=0)
 
 
-def determinant(rows: list[list[Any]], ring: Any) -> Any:
+def family_of_impedance(z: Impedance) -> Family:
+    """The family of an impedance of one port without further states."""
+    n, d = element(z.p), element(z.q)
+    return Family([[n]], d, n + d * _damper(n, d))
+
+
+def _ratio(e: sp.Expr, ring: Any) -> tuple[Any, Any]:
+    above, below = sp.fraction(sp.together(make_exact(e)))
+    if not all(side.is_polynomial(*ring.symbols) for side in (above, below)):
+        raise ModelError(f"impedance: not a ratio of polynomials in s and dead times: {e}")
+    p, q = (ring.from_expr(sp.expand(side)) for side in (above, below))
+    made: tuple[Any, Any] = p.cancel(q)
+    return made
+
+
+def _lcm(p: Any, q: Any) -> Any:
+    return p * q.exquo(p.gcd(q))
+
+
+def _coprime(n: Matrix, d: Any) -> tuple[Matrix, Any]:
+    """N and d without the factors that all of them share."""
+    shared = reduce(lambda a, b: a.gcd(b), (e for row in n for e in row), d)
+    return [[e.exquo(shared) for e in row] for row in n], d.exquo(shared)
+
+
+def close(n: Matrix, d: Any, held: Sequence[Any]) -> Any:
+    """Denominator of (N/d + diag(held))^-1: its roots are the modes that the ports show."""
+    rows = [[e + d * held[i] if i == j else e for j, e in enumerate(row)]
+            for i, row in enumerate(n)]  # fmt: skip
+    return inverse_denominator(rows, d)
+
+
+def inverse_denominator(rows: Matrix, below: Any) -> Any:
+    """Denominator of the inverse of rows/below, coprime with it as a whole; 0: there is none."""
+    whole, above = _cofactors(rows, below)
+    shared = reduce(lambda a, b: a.gcd(b), above, whole)
+    return whole.exquo(shared) if whole else whole
+
+
+def _cofactors(rows: Matrix, below: Any) -> tuple[Any, list[Any]]:
+    """Determinant of rows, and the entries of its inverse times this, times `below`."""
+    size = range(len(rows))
+    minors = [
+        below
+        * determinant([[rows[a][b] for b in size if b != j] for a in size if a != i], below.ring)
+        for i in size
+        for j in size
+    ]
+    return determinant(rows), minors
+
+
+def determinant(rows: Matrix, ring: Any = None) -> Any:
     """Determinant of a small matrix of polynomials, along its first row."""
     if not rows:
         return ring.one
-    total = ring.zero
+    total = rows[0][0].ring.zero
     for k, entry in enumerate(rows[0]):
         if entry:
-            rest = [row[:k] + row[k + 1 :] for row in rows[1:]]
-            total += (-1) ** k * entry * determinant(rest, ring)
+            rest = [[*row[:k], *row[k + 1 :]] for row in rows[1:]]
+            total += (-1) ** k * entry * determinant(rest, total.ring)
     return total
 
 
-def _termination(n: Any, d: Any) -> tuple[Any, Any]:
-    """A damper and a spring about as strong as a port: any numbers > 0 would be correct."""
+def dampers(n: Matrix, d: Any) -> list[Any]:
+    """A damper about as strong as each port of N/d: any numbers > 0 would be correct."""
+    return [_damper(row[k], d) for k, row in enumerate(n)]
+
+
+def _damper(n: Any, d: Any) -> Any:
+    """A power of 2 near abs(n/d) where the powers of s have about one size."""
     unit = max(abs(c) for p in (n, d) for c in p.values())
 
     def sizes(p: Any) -> dict[int, float]:
@@ -196,16 +334,71 @@ def _termination(n: Any, d: Any) -> tuple[Any, Any]:
 
     above, below = sizes(n), sizes(d)
     if not above:
-        return sp.QQ(1), sp.QQ(1)
+        return sp.QQ(1)
     both = {k: above.get(k, 0.0) + below.get(k, 0.0) for k in {*above, *below}}
     low, high = min(both), max(both)
     rate = (both[low] / both[high]) ** (1 / (high - low)) if high > low else 1.0
-    stiffness = sum(c * rate**k for k, c in above.items()) / sum(
-        c * rate**k for k, c in below.items()
-    )
-    damper, spring = (Fraction(2.0 ** round(np.log2(x))) for x in (stiffness / rate, stiffness))
-    return sp.QQ(damper.numerator, damper.denominator), sp.QQ(spring.numerator, spring.denominator)
+    first, second = (sum(c * rate**k for k, c in side.items()) for side in (above, below))
+    near = Fraction(2.0 ** round(np.log2(first / second)))
+    return sp.QQ(near.numerator, near.denominator)
 
 
-def _rational(number: sp.Rational) -> Any:
-    return sp.QQ(int(number.p), int(number.q))
+def unseen_modes(system: Any) -> tuple[complex, ...]:
+    """Modes of a system of python-control that its ports do not show and that do not decay, 1/s.
+
+    From rest such a mode stays at rest, so the impedance does not contain it. What ports of a state
+    space do not show is the same whatever holds them. Empty for any other kind of system.
+    """
+    if hasattr(system, "num"):
+        above, below = ([side for row in m for side in row] for m in (system.num, system.den))
+        pairs = ([_polynomial(p), _polynomial(q)] for p, q in zip(above, below, strict=True))
+        return tuple(mode for pair in pairs for mode in not_decaying(sp.gcd(*pair)))
+    if not hasattr(system, "A") or not len(system.A):
+        return ()
+    matrices = (system.A, system.B, system.C, system.D)
+    a, b, c, straight = ([[fraction(exact(x)) for x in row] for row in m] for m in matrices)
+    places = range(len(c))
+    made = [[resolvent(a, [row[j] for row in b], c[i]) for j in places] for i in places]
+    d = _in_ring(made[0][0][0])
+    n = [[_in_ring(made[i][j][1]) + _in_ring([straight[i][j]]) * d for j in places] for i in places]
+    loose, tight = (
+        determinant([[e + (i == j) * factor * d for j, e in enumerate(row)]
+                     for i, row in enumerate(n)])
+        for factor in (sp.QQ(1), sp.QQ(3))
+    )  # fmt: skip
+    shared = loose.gcd(tight)
+    for _ in places[1:]:
+        shared = shared.exquo(d)
+    return not_decaying(as_poly(shared, S))
+
+
+def unseen_within(part: Block) -> tuple[complex, ...]:
+    """Modes of a block with values that it does not show and that do not decay, 1/s."""
+    driver = getattr(part, "driver", "")
+    outside = dict.fromkeys((*part.inputs, *([driver] if driver else ())), "force")
+    states = all_states(Diagram(part.name, (part,), (), outside, ()))
+    d, n = states.solve(part.outputs, tuple(dict.fromkeys(part.inputs)))
+    shared = reduce(lambda a, b: a.gcd(b), (e for row in n for e in row), d)
+    return not_decaying(as_poly(shared, S)) if d and not any(map(any, _late(shared))) else ()
+
+
+def _late(p: Any) -> list[tuple[int, ...]]:
+    return [k[1:] for k in p]
+
+
+def _polynomial(falling: Sequence[float]) -> sp.Poly:
+    return sp.Poly([exact(c) for c in falling], S, domain="QQ")
+
+
+def _in_ring(falling: Sequence[Fraction]) -> Any:
+    return element(sp.Poly([sp.Rational(c) for c in falling] or [0], S, domain="QQ"))
+
+
+def explain_unseen(modes: Sequence[complex]) -> str:
+    """The reason of an unknown claim beside modes that no port shows and that do not decay, 1/s."""
+    start = "from rest its impedance is that of a passive port, but"
+    if any(np.isnan(m) for m in modes):
+        return f"{start} with its dead times a mode that no port shows is not shown to decay"
+    shown = ", ".join(f"{m.real:.4g}{f' +- {m.imag:.4g}j' * bool(m.imag)}" for m in modes)
+    number = "a mode that no port shows does" if len(modes) == 1 else "modes that no port shows do"
+    return f"{start} {number} not decay, at s = {shown} 1/s"
