@@ -238,7 +238,7 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
 
     returns: the body, and the range that its records reached; None without records
     """
-    from ..design.reach import reach_of
+    from ..design.stated_motion import reach_of
 
     if source.suffix == ".json" and not source.is_dir():
         if options.answer is not None:
