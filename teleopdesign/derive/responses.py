@@ -13,7 +13,7 @@ from .all_states import AllStates
 from .cramer import Row, eliminate_numbers
 
 #: symbols of a ring -> their numbers
-Numbers = Mapping[sp.Symbol, float]
+SymbolNumbers = Mapping[sp.Symbol, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ class Responses:
         starts = np.cumsum([0, *map(len, terms[:-1])])
         return np.array([e[:2] for e in entries]).T, starts, np.array(sizes), np.array(powers)
 
-    def at(self, s: np.ndarray, numbers: Numbers | None = None) -> np.ndarray:
+    def at(self, s: np.ndarray, numbers: SymbolNumbers | None = None) -> np.ndarray:
         """Values at each s (1/s, (n,)), (n, wanted, given); NaN where there is no single one.
 
         numbers: values that the equations hold as symbols

@@ -157,7 +157,7 @@ def two_port_cases(diagram: Diagram) -> dict[str, Case]:
     for name in _SIGNALS:
         if name not in diagram.signals:
             raise ModelError(f'{diagram.name}: no teleoperator: it has no signal "{name}"')
-    hands, environments = (_held(diagram, role) for role in ("hand", "environment"))
+    hands, environments = (_find_roles(diagram, role) for role in ("hand", "environment"))
     ports = diagram.without(*hands, *environments)
     both = ("X_m", "X_s")
     of: dict[str, tuple[str, str, tuple[str, ...]]]
@@ -171,7 +171,7 @@ def two_port_cases(diagram: Diagram) -> dict[str, Case]:
     return cases
 
 
-def _held(diagram: Diagram, role: PortRole) -> list[str]:
+def _find_roles(diagram: Diagram, role: PortRole) -> list[str]:
     """Names of the blocks of that role at the master or at the slave."""
     resisting = (b for b in diagram.blocks if isinstance(b, Attached))
     return [b.name for b in resisting if b.role == role and b.motion in ("X_m", "X_s")]
@@ -189,7 +189,7 @@ def two_port_functions(
     check_convention(convention)
     expressions = {name: case.derive() for name, case in two_port_cases(diagram).items()}
     if "Z_t" in expressions:
-        touched = sum((block_symbol(n) for n in _held(diagram, "environment")), sp.S(0))
+        touched = sum((block_symbol(n) for n in _find_roles(diagram, "environment")), sp.S(0))
         expressions["Z_t - Z_E"] = expressions["Z_t"] - touched
     texts = {name: _TEXTS[name] for name in expressions}
     if convention == "velocity":

@@ -78,7 +78,7 @@ def count_loop(diagram: Diagram, controller: str, *, speed: float) -> CountedLoo
     below, above = sides[0], sides[1].exquo(states.ring.gens[place]) if sides[1] else sides[1]
     if not below:
         raise ModelError(f"{diagram.name}: the wiring does not determine the loop of {controller}")
-    return _counted(above, below, states.times)
+    return _count_modes(above, below, states.times)
 
 
 def loop_as_written(gain: sp.Expr) -> CountedLoop:
@@ -94,10 +94,10 @@ def loop_as_written(gain: sp.Expr) -> CountedLoop:
     if not is_ratio or not all(p.is_polynomial(S, *times) for p in sides):
         raise ModelError("loop: expected a ratio of polynomials in s and dead times")
     above, below = (ring.from_expr(make_exact(sp.expand(p))) for p in sides)
-    return _counted(above, below, times)
+    return _count_modes(above, below, times)
 
 
-def _counted(above: Any, below: Any, times: Mapping[sp.Symbol, sp.Expr]) -> CountedLoop:
+def _count_modes(above: Any, below: Any, times: Mapping[sp.Symbol, sp.Expr]) -> CountedLoop:
     unseen, above, below = above.cofactors(below)
     closed, order = above + below, _order(above, below)
     fault = ""

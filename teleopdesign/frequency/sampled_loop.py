@@ -162,14 +162,14 @@ def sampled_loop(diagram: Diagram, part: Control, linear: LinearBlocks) -> Sampl
         return None
     law_in_z = _rationals(above.quo(unseen)), _rationals(below.quo(unseen))
     fault = plant.fault
-    if not is_free_of_growth(_inside_out(unseen)):
+    if not is_free_of_growth(_reverse(unseen)):
         modes = ", ".join(f"z = {r:.4g}" for r in np.roots(_floats(_rationals(unseen))))
         fault = f"a mode that it does not see grows, among {modes}"
     whole = Fraction(int(period.p), int(period.q))
     return SampledLoop(whole, law_in_z, plant.below, plant.above, fault)
 
 
-def _inside_out(p: sp.Poly) -> sp.Poly:
+def _reverse(p: sp.Poly) -> sp.Poly:
     """A polynomial in z as one in w, z = (1 + w)/(1 - w): its roots outside the circle grow."""
     n, w = p.degree(), sp.Poly(p.gen, p.gen, domain="QQ")
     terms = (((1 + w) ** k * (1 - w) ** (n - k)).mul_ground(c) for (k,), c in p.terms())

@@ -149,7 +149,7 @@ def test_what_no_output_shows_is_there_all_the_same():
     rod = Moving("Z", body(0.1, viscous__damping=2.0), "x", "u", {"f": 1.0}, "f")
     late = Control("D", controller("low_pass", {"bandwidth": 9.0}), "x", "v", "x", True)
     diagram = Diagram("hidden", (rod, late, *controls), sums, {"f": "force"}, ("x",))
-    assert family_at(diagram, ports(diagram)).undecayed() == pytest.approx([2.0])
+    assert family_at(diagram, ports(diagram)).undecayed == pytest.approx([2.0])
 
 
 @pytest.mark.parametrize(

@@ -130,11 +130,11 @@ def test_a_map_of_margins_leaves_out_what_holds_the_ports_alone():
         there = whole.with_values({"Z_m.viscous.damping": damping})
         there = there.with_values({"P.spring_damper.stiffness": 100.0})
         margins = sweep_margins(two_port(family_at(there, ports(there)).z), f)
-        found = margin_map(whole, values, frequency=f).data.sel(
+        margin = margin_map(whole, values, frequency=f).data.sel(
             {"Z_m.viscous.damping": damping, "P.spring_damper.stiffness": 100.0}
         )
-        assert float(found["llewellyn"]) == pytest.approx(margins.llewellyn.min(), rel=1e-9)
-        assert float(found["passive"]) == pytest.approx(margins.passive.min(), rel=1e-9)
+        assert float(margin["llewellyn"]) == pytest.approx(margins.llewellyn.min(), rel=1e-9)
+        assert float(margin["passive"]) == pytest.approx(margins.passive.min(), rel=1e-9)
 
 
 def test_a_file_states_the_role_and_an_older_file_is_read_by_its_names(tmp_path):

@@ -104,7 +104,7 @@ def test_no_point_of_the_right_half_plane_is_active_where_there_is_evidence(seed
         (2.0, 0.01, "refuted"),
     ],
 )
-def test_a_dead_time_in_a_loop_of_laws_counts_with_its_own_poles(gain, delay, status):
+def test_a_dead_time_in_a_loop_of_laws_counts_with_its_poles(gain, delay, status):
     """y = g (x + y(t - T)): a chain of poles, and a spring that takes T N s/m away for g = 1/2."""
     mass = Moving("M", body(0.1, viscous__damping=1.0), "x", "u", {"f": 1}, "f")
     parts = (
@@ -189,15 +189,15 @@ def test_late_dampers_stay_within_those_of_the_ports_far_out(r1, r2, rest):
 
 
 @pytest.mark.parametrize("claim", [passive, absolutely_stable])
-@pytest.mark.parametrize(("own", "across"), [(5.5, 6), (6.5, 6), (1.1, 1), (0.9, 1), (3, 0)])
+@pytest.mark.parametrize(("here", "across"), [(5.5, 6), (6.5, 6), (1.1, 1), (0.9, 1), (3, 0)])
 @pytest.mark.parametrize("pole", [S, S**2 + 4, S**2 + sp.Rational(7, 3)])
-def test_what_two_ports_share_without_loss_is_held_against_their_product(claim, own, across, pole):
+def test_what_two_ports_share_without_loss_is_held_against_their_product(claim, here, across, pole):
     """Springs, or oscillators, of a network that acts alike both ways, beside a dead time."""
     shape = (1 if pole == S else S) / pole
     rest = 5 + sp.exp(-S / 10) / (1 + S) / 10
-    own, across = sp.Rational(str(own)) * shape, across * shape
-    made = claim(two_port([[own + rest, across], [across, own + 5]]))
-    assert bool(made.holds) == (own / shape >= across / shape), made
+    here, across = sp.Rational(str(here)) * shape, across * shape
+    made = claim(two_port([[here + rest, across], [across, here + 5]]))
+    assert bool(made.holds) == (here / shape >= across / shape), made
 
 
 def test_three_ports_with_dead_times_are_judged_as_one_and_two():

@@ -52,16 +52,16 @@ from typing import Any
 from .algebra import Poly
 from .effort import bound_effort, need
 from .fields import expect_fields, read_matrix
-from .over_a_box import Matrix, SignsOverBox, degree, read_impedance, times_x
+from .over_a_box import PolyMatrix, SignsOverBox, degree, read_impedance, times_x
 from .polynomials import coefficient_list, derivative, greatest_common_divisor, is_hurwitz
-from .positive_real import over_one_denominator, with_damper
+from .positive_real import with_damper, with_one_denominator
 
 
 def state_absolute_stability(c: dict[str, Any]) -> str:
     """The statement that a certificate at a point proves; raises Refused where Z is not so."""
     expect_fields(c, "kind", "title", "digest", "impedance")
     algebra, rows, text = read_matrix(c["impedance"], (2,))
-    n, d = over_one_denominator(algebra, rows)
+    n, d = with_one_denominator(algebra, rows)
     _check(SignsOverBox({}, algebra), n, d)
     return (
         f"Z(s) = [{text}] is absolutely stable: no positive-real Z1 and Z2 for which the inverse "
@@ -80,7 +80,7 @@ def state_over_a_box(c: dict[str, Any]) -> str:
     )
 
 
-def _check(box: SignsOverBox, n: Matrix, d: Poly) -> None:
+def _check(box: SignsOverBox, n: PolyMatrix, d: Poly) -> None:
     """Raise Refused unless conditions 1 to 3 are shown."""
     m = with_damper(box, n, d, Fraction(1))
     below = box.inverse_denominator(m, d)
@@ -100,16 +100,16 @@ def _check(box: SignsOverBox, n: Matrix, d: Poly) -> None:
         need(shown, f"not shown to be absolutely stable: {name} on the axis")
 
 
-def _check_poles(box: SignsOverBox, m: Matrix, d: Poly) -> None:
+def _check_poles(box: SignsOverBox, m: PolyMatrix, d: Poly) -> None:
     """Conditions 1 and 2, entry by entry, at a point; m: N + d."""
     times = box.algebra.times
     det = box.minor(m, (0, 1), (0, 1))
     first, second, through, back = (times(d, e) for e in (m[1][1], m[0][0], m[0][1], m[1][0]))
-    loop = box.reduced([times(through, back)], times(det, det))
-    for p in (box.reduced([first], det), box.reduced([second], det), loop):
+    loop = box.reduce([times(through, back)], times(det, det))
+    for p in (box.reduce([first], det), box.reduce([second], det), loop):
         need(box.is_stable(p), "not absolutely stable: a mode between dampers")
     for above in (through, back):
-        p = box.reduced([above], det)
+        p = box.reduce([above], det)
         need(box.is_free_of_growth(p), "not absolutely stable: z12 or z21 has a pole that grows")
         with bound_effort(box.left):
             q = coefficient_list(p)
@@ -118,7 +118,7 @@ def _check_poles(box: SignsOverBox, m: Matrix, d: Poly) -> None:
         need(simple, "not shown to be absolutely stable: a multiple pole of z12 or z21")
 
 
-def _inequalities(box: SignsOverBox, n: Matrix, d: Poly) -> tuple[Poly, ...]:
+def _inequalities(box: SignsOverBox, n: PolyMatrix, d: Poly) -> tuple[Poly, ...]:
     """Re z11, Re z22, A and A^2 - abs(z12 z21)^2 on the axis, times powers of abs(d)^2."""
     plus, times, number = box.algebra.plus, box.algebra.times, box.algebra.number
     first, second = (box.cross(n[k][k], d)[0] for k in (0, 1))

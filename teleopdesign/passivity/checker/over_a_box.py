@@ -40,7 +40,7 @@ from .polynomials import (
 
 #: most names in a box: the effort grows with a power of their number
 _MOST_VALUES = 8
-Matrix = list[list[Poly]]
+PolyMatrix = list[list[Poly]]
 
 
 class SignsOverBox:
@@ -133,7 +133,7 @@ class SignsOverBox:
         times, plus = self.algebra.times, self.algebra.plus
         return plus(times(a, c), times_x(times(b, d))), plus(times(b, c), times(a, d), -1)
 
-    def minor(self, matrix: Matrix, rows: Sequence[int], columns: Sequence[int]) -> Poly:
+    def minor(self, matrix: PolyMatrix, rows: Sequence[int], columns: Sequence[int]) -> Poly:
         """Determinant of the submatrix of these rows and columns; 1 if empty."""
         known: dict[tuple[int, ...], Poly] = {(): self.algebra.number(1)}
         for number in range(1, len(rows) + 1):
@@ -150,7 +150,7 @@ class SignsOverBox:
                 known[chosen] = total
         return known[tuple(columns)]
 
-    def reduced(self, above: Sequence[Poly], below: Poly) -> Poly:
+    def reduce(self, above: Sequence[Poly], below: Poly) -> Poly:
         """`below` without factors that it shares with all of `above`; over a box powers of s."""
         if not self.names:
             with bound_effort(self.left):
@@ -162,7 +162,7 @@ class SignsOverBox:
         shared = min(k[0] for p in (below, *above) for k in p)
         return {(k[0] - shared, *k[1:]): c for k, c in below.items()}
 
-    def inverse_denominator(self, m: Matrix, d: Poly) -> Poly:
+    def inverse_denominator(self, m: PolyMatrix, d: Poly) -> Poly:
         """A polynomial of which all poles of the inverse of m/d are roots; {}: there is none."""
         every = range(len(m))
         det = self.minor(m, every, every)
@@ -172,10 +172,10 @@ class SignsOverBox:
             return {}
         quotient, rest = self.algebra.divided(det, d) if degree(d) else (det, d)
         if not rest:
-            return self.reduced(cofactors, quotient)
-        return self.reduced([self.algebra.times(d, p) for p in cofactors], det)
+            return self.reduce(cofactors, quotient)
+        return self.reduce([self.algebra.times(d, p) for p in cofactors], det)
 
-    def has_passive_residues(self, n: Matrix, d: Poly, *, symmetric: bool) -> bool:
+    def has_passive_residues(self, n: PolyMatrix, d: Poly, *, symmetric: bool) -> bool:
         """Whether poles of N/d, of one port or two, are at s = 0 and infinity, and passive there.
 
         Shown are: d = r or d = s r, where all roots of r have Re s < 0; no entry grows faster than
@@ -214,7 +214,7 @@ def state_stability(c: dict[str, Any]) -> str:
     return f"no root of {flat(c['polynomial'])} has Re s >= 0, {box.where()}"
 
 
-def read_impedance(c: dict[str, Any], *more: str) -> tuple[SignsOverBox, Matrix, Poly, str]:
+def read_impedance(c: dict[str, Any], *more: str) -> tuple[SignsOverBox, PolyMatrix, Poly, str]:
     """The box, the numerators, the denominator, and the text of Z of a certificate over a box.
 
     more: fields of the kind besides those of every impedance

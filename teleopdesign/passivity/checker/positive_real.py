@@ -27,7 +27,7 @@ from typing import Any
 from .algebra import Algebra, Poly, Quotient
 from .effort import need
 from .fields import expect_fields, read_matrix, read_number
-from .over_a_box import Matrix, SignsOverBox, halves, read_impedance
+from .over_a_box import PolyMatrix, SignsOverBox, halves, read_impedance
 
 #: numbers of rows that are allowed: each further row doubles the number of principal minors
 SIZES = (1, 2, 3, 4, 5, 6)
@@ -37,7 +37,7 @@ def state_positive_real(c: dict[str, Any]) -> str:
     """The statement that a certificate at a point proves; raises Refused where Z is not so."""
     expect_fields(c, "kind", "title", "digest", "impedance")
     algebra, rows, text = read_matrix(c["impedance"], SIZES)
-    n, d = over_one_denominator(algebra, rows)
+    n, d = with_one_denominator(algebra, rows)
     _check(SignsOverBox({}, algebra), n, d, Fraction(1))
     return f"Z(s) = [{text}] is positive real: analytic with Z + Z^H >= 0 for Re s > 0"
 
@@ -51,14 +51,14 @@ def state_over_a_box(c: dict[str, Any]) -> str:
     return f"{text} is positive real: analytic with Z + Z^H >= 0 for Re s > 0, {box.where()}"
 
 
-def over_one_denominator(algebra: Algebra, rows: list[list[Quotient]]) -> tuple[Matrix, Poly]:
+def with_one_denominator(algebra: Algebra, rows: list[list[Quotient]]) -> tuple[PolyMatrix, Poly]:
     """The matrix as numerators over one denominator."""
     below = {n: max(e.below.get(n, 0) for row in rows for e in row) for n in algebra.bases}
     d = algebra.over(Quotient(algebra.number(1), {}), below, {})
     return [[algebra.over(e, below, e.below) for e in row] for row in rows], d
 
 
-def _check(box: SignsOverBox, n: Matrix, d: Poly, scale: Fraction) -> None:
+def _check(box: SignsOverBox, n: PolyMatrix, d: Poly, scale: Fraction) -> None:
     """Raise Refused unless steps 1 and 2 are shown."""
     below = box.inverse_denominator(with_damper(box, n, d, scale), d)
     need(below, "not positive real: Z + c is singular")
@@ -70,7 +70,7 @@ def _check(box: SignsOverBox, n: Matrix, d: Poly, scale: Fraction) -> None:
         need(shown, "not positive real: Z + Z^H is not shown to be >= 0 on the axis")
 
 
-def with_damper(box: SignsOverBox, n: Matrix, d: Poly, scale: Fraction) -> Matrix:
+def with_damper(box: SignsOverBox, n: PolyMatrix, d: Poly, scale: Fraction) -> PolyMatrix:
     """N + c d, with c on the diagonal."""
     return [
         [box.algebra.plus(e, d, scale) if i == j else e for j, e in enumerate(row)]
@@ -78,7 +78,7 @@ def with_damper(box: SignsOverBox, n: Matrix, d: Poly, scale: Fraction) -> Matri
     ]
 
 
-def _hermitian_minors(box: SignsOverBox, n: Matrix, d: Poly) -> Iterator[Poly]:
+def _hermitian_minors(box: SignsOverBox, n: PolyMatrix, d: Poly) -> Iterator[Poly]:
     """Principal minors of N conj(d) + N^H d on the axis, in x = w^2."""
     times, plus, size = box.algebra.times, box.algebra.plus, len(n)
     late = _mirror(d)

@@ -82,7 +82,7 @@ class LateSum:
         values = np.array([[box.low[k - 1], box.high[k - 1]] for k in used]).reshape(-1, 2)
         return cls(groups, max(k[0] for k in p), values, np.array(longest))
 
-    def outside(self) -> tuple[_Group, ...]:
+    def groups_outside(self) -> tuple[_Group, ...]:
         """The groups of f/w^n over 1/w."""
         made = []
         for group in self.groups:
@@ -108,7 +108,9 @@ def is_zero_free(f: LateSum, *, most: int = _MOST_PARTS) -> int | None:
         high = np.concatenate([[end * (1 + 1e-12)], f.values[:, 1], times])
         # beyond the range of floats nothing is shown
         with np.errstate(all="ignore"):
-            parts = _show(f.outside() if outside else f.groups, low, high, outside, most - total)
+            parts = _show(
+                f.groups_outside() if outside else f.groups, low, high, outside, most - total
+            )
         if parts is None:
             return None
         total += parts

@@ -59,18 +59,18 @@ def slowest_decay(terms: Terms) -> float:
     rate = -max(rightmost_root(terms).real, chain_rate(terms))
     if rate <= 0 or np.isinf(rate):
         return rate if rate <= 0 or not count_growing(terms) else -np.inf
-    if not count_growing(_moved(terms, _SHARE * rate)):
+    if not count_growing(_move_axis(terms, _SHARE * rate)):
         return rate
     low, high = 0.0, rate
     if count_growing(terms):
         return -np.inf
     while high - low > (1 - _SHARE) * rate:
         middle = (low + high) / 2
-        low, high = (low, middle) if count_growing(_moved(terms, middle)) else (middle, high)
+        low, high = (low, middle) if count_growing(_move_axis(terms, middle)) else (middle, high)
     return low
 
 
-def _moved(terms: Terms, right: float) -> Terms:
+def _move_axis(terms: Terms, right: float) -> Terms:
     """The sum with all its zeros moved to the right, 1/s."""
     step = np.poly1d([1.0, -right])
     return {t: np.exp(right * t) * np.poly1d(p)(step).coeffs for t, p in terms.items()}

@@ -19,7 +19,7 @@ from ...diagrams import Diagram
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim
 from ..linear.box_certificates import impedance_certificate, stability_certificate
-from ..linear.conditions import is_shown, without
+from ..linear.conditions import is_shown, take_damping
 from ..linear.family import Family, family_of_states
 from ..linear.signs import Ends, Signs
 from ..linear_diagrams import linear_claims
@@ -77,13 +77,13 @@ def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> P
     if not is_well_posed(middle, all_states(middle)):
         worst = Worst(box.centre, float("nan"), 1)
         return parts_of(_STABLE, "unknown", worst, box, "1/s", _ILL_POSED)
-    p = normalised(states.determinant())
+    p = normalise(states.determinant())
     if states.times:
         return judge_late(p, states.times, box, points, seed)
     return _judge_polynomial(p, middle.name, box, points, seed)
 
 
-def normalised(p: Any) -> Any:
+def normalise(p: Any) -> Any:
     """The polynomial divided by its largest number: floats of it then exist."""
     return p.mul_ground(1 / max(map(abs, p.values()))) if p else p
 
@@ -91,7 +91,7 @@ def normalised(p: Any) -> Any:
 def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) -> Parts:
     signs = Signs(box.exact)
     worst = search_worst(pole_margin(p), box, points=points, seed=seed)
-    if worst.margin <= 0 and not is_hurwitz(Signs(_at(box, worst.point)).middle(p)):
+    if worst.margin <= 0 and not is_hurwitz(Signs(_as_box(box, worst.point)).middle(p)):
         how = (
             f"a pole with real part {-worst.margin:.4g} 1/s; not Hurwitz by Routh's scheme, exactly"
         )
@@ -101,24 +101,24 @@ def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) 
     how = _describe_effort(signs, "its characteristic polynomial is nowhere zero on the axis")
     shares = (Fraction(str(round(share, 6))) for share in _SHARES)
     shifts = (Fraction(worst.margin).limit_denominator(10**6) * share for share in shares)
-    bound = next((c for c in shifts if c > 0 and signs.is_hurwitz(_moved(p, c))), Fraction(0))
+    bound = next((c for c in shifts if c > 0 and signs.is_hurwitz(_move_axis(p, c))), Fraction(0))
 
     def certificates() -> tuple[Certificate, ...]:
         title = f"{name}: every pole has a real part below -{bound} 1/s, s counted from there"
-        moved = _moved(p, bound)
+        moved = _move_axis(p, bound)
         return (stability_certificate(title, moved, names=box.names, ends=box.exact, signs=signs),)
 
     made = parts_of(_STABLE, "proved", worst, box, "1/s", how, proved_margin=float(bound))
     return _proof(made, certificates)
 
 
-def _moved(p: Any, left: Fraction) -> Any:
+def _move_axis(p: Any, left: Fraction) -> Any:
     """The polynomial with all roots moved to the right by `left` (1/s)."""
     s = p.ring.gens[0]
     return p.compose(s, s - sp.QQ(left.numerator, left.denominator))
 
 
-def _at(box: ValueBox, point: np.ndarray) -> Ends:
+def _as_box(box: ValueBox, point: np.ndarray) -> Ends:
     """A point as a box without width."""
     return ValueBox(box.names, tuple(map(float, point)), tuple(map(float, point))).exact
 
@@ -163,7 +163,7 @@ def _certificates(
     signs: Signs, family: Family, claim: str, bound: Fraction, title: str
 ) -> tuple[Certificate, ...]:
     """One for the ports, and one for all modes, where the ports do not show all of them."""
-    kept = without(family, bound)
+    kept = take_damping(family, bound)
     first = impedance_certificate(title, family, kept, claim, signs)
     if not family.hides:
         return (first,)
@@ -183,7 +183,7 @@ def margin_over(diagram: Diagram, box: ValueBox, claim: str) -> MarginFunction |
     if states is None or (claim == "stable" and states.times):
         return None
     if claim == "stable":
-        return pole_margin(normalised(states.determinant()))
+        return pole_margin(normalise(states.determinant()))
     return port_margin(family_of_states(states, ports(diagram), box.names, box.exact), claim)
 
 

@@ -9,7 +9,8 @@ from typing import Any
 import sympy as sp
 
 from ..claims.certificate import Certificate, checker_text, seal
-from .family import Family, Matrix, dampers
+from .family import Family
+from .matrices import Matrix, dampers
 from .signs import Ends, Signs
 
 #: claim -> kind of its certificate
@@ -46,12 +47,12 @@ def impedance_certificate(
         "denominator": _text(family.d, plain),
     }
     if claim == "passive":
-        middle = [[_at_middle(signs, e) for e in row] for row in n]
-        fields["scale"] = str(max(dampers(middle, _at_middle(signs, family.d))))
+        middle = [[_middle_of(signs, e) for e in row] for row in n]
+        fields["scale"] = str(max(dampers(middle, _middle_of(signs, family.d))))
     return _certify(KINDS[claim], title, fields, plain, family.ends, signs)
 
 
-def _at_middle(signs: Signs, p: Any) -> Any:
+def _middle_of(signs: Signs, p: Any) -> Any:
     return p.ring.from_expr(signs.middle(p).as_expr())
 
 

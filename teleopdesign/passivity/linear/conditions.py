@@ -22,7 +22,8 @@ from typing import Any
 import sympy as sp
 
 from ...derive.polynomials import cross
-from .family import Family, Matrix, close, dampers, determinant
+from .family import Family
+from .matrices import Matrix, close, dampers, determinant
 from .signs import Signs, axis_unit, coefficient, degree
 
 
@@ -31,7 +32,7 @@ def is_shown(signs: Signs, family: Family, claim: str, margin: Fraction = Fracti
 
     claim: "passive" or "absolutely stable";  margin: damping that Z may lose at each port, N s/m
     """
-    n = without(family, margin)
+    n = take_damping(family, margin)
     if not _modes_decay(signs, family, n, claim):
         return False
     unit = axis_unit(signs.middle(family.held))
@@ -84,7 +85,7 @@ def _has_passive_residues(signs: Signs, n: Matrix, d: Any, *, symmetric: bool) -
     return True
 
 
-def without(family: Family, margin: Fraction) -> Matrix:
+def take_damping(family: Family, margin: Fraction) -> Matrix:
     """Numerators of Z less a damper at each port, N s/m."""
     if not margin:
         return family.n

@@ -41,7 +41,7 @@ def fails_at_ends(family: Family, claim: str) -> tuple[str, float] | None:
             w = mpmath.mpf(float(fast)) * 10**decade
             for _ in range(_DRAWN):
                 late = [mpmath.expj(float(x)) for x in rng.uniform(0, 2 * np.pi, len(times))]
-                if not _holds(_at(family, w, late), claim):
+                if not _holds(_value_at(family, w, late), claim):
                     return "in the limit of high frequency", float(w) / (2 * np.pi)
     return None
 
@@ -52,13 +52,13 @@ def holds_at(family: Family, frequency: float, claim: str) -> bool:
         w = 2 * mpmath.pi * mpmath.mpf(frequency)
         times = (mpmath.mpf(int(t.p)) / int(t.q) for t in family.times.values())
         try:
-            z = _at(family, w, [mpmath.expj(-w * t) for t in times])
+            z = _value_at(family, w, [mpmath.expj(-w * t) for t in times])
         except ZeroDivisionError:
             return True
         return _holds(z, claim)
 
 
-def _at(family: Family, w: mpmath.mpf, late: Sequence[mpmath.mpc]) -> list[list[mpmath.mpc]]:
+def _value_at(family: Family, w: mpmath.mpf, late: Sequence[mpmath.mpc]) -> list[list[mpmath.mpc]]:
     """Z at s = j w with these values of e^(-s T)."""
 
     def value(p: Any) -> mpmath.mpc:

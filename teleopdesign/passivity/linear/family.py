@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from functools import cached_property, reduce
 from math import prod
 from typing import TYPE_CHECKING, Any
@@ -24,23 +23,22 @@ import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
 from ...base.errors import ModelError
-from ...controllers import make_exact, resolvent
+from ...controllers import make_exact
 from ...derive.all_states import AllStates, all_states, is_well_posed
 from ...derive.cramer import Row
 from ...derive.linear_rows import late_symbols
-from ...derive.polynomials import as_poly, element, fraction, is_hurwitz, roots_of
-from ...diagrams import Block, Diagram
+from ...derive.polynomials import as_poly, element
+from ...diagrams import Diagram
 from ...frequency.late_zeros import count_growing, terms_of, zeros_at_origin
 from ...realise.lti import S
 from .impedance import Impedance, exact
+from .matrices import Matrix, close, cofactors, damper, dampers, determinant, divide_out
 from .signs import Ends
+from .unseen import not_decaying
 
 if TYPE_CHECKING:
     from ..ports import Port
 
-Matrix = Sequence[Sequence[Any]]
-#: share of its size by which a root may lie on the left by rounding alone
-_NEAR = 1e-9
 #: values of Z, (m, n, n), from points s, (m,), and a point of the box, (values,)
 Evaluation = Callable[..., np.ndarray]
 
@@ -139,15 +137,6 @@ def _order(p: Any) -> int:
     return max((k[0] for k in p), default=-1)
 
 
-def not_decaying(p: sp.Poly) -> tuple[complex, ...]:
-    """Roots that are not in the open left half plane, one of each pair; none, decided exactly."""
-    if is_hurwitz(p):
-        return ()
-    s = roots_of(element(p.sqf_part()))
-    near = s[(s.real >= -_NEAR * np.abs(s)) & (s.imag >= 0)]
-    return tuple(map(complex, near if len(near) else s[[s.real.argmax()]]))
-
-
 def family_at(diagram: Diagram, at: Sequence[Port]) -> Family:
     """The linear form of a diagram at ports, at its values; other outside signals are zero.
 
@@ -185,7 +174,7 @@ def family_of_states(
     resting = _count_resting(states, at)
     while resting and held and not any(k[0] == 0 for k in held):
         held, resting = held.exquo(s), resting - 1
-    n, below = _coprime(above, d * s)
+    n, below = divide_out(above, d * s)
     return Family(n, below, held, tuple(names), ends, states.times, resting=resting)
 
 
@@ -247,7 +236,7 @@ def _count_lost(n: Matrix, d: Any, times: Mapping[sp.Symbol, sp.Expr]) -> int:
     held = dampers(n, d)
     rows = [[e + d * held[i] if i == j else e for j, e in enumerate(row)]
             for i, row in enumerate(n)]  # fmt: skip
-    whole, above = _cofactors(rows, d)
+    whole, above = cofactors(rows, d)
     shared = reduce(lambda a, b: a.gcd(b), above, whole)
     return min((zeros_at_origin(p.exquo(shared), times) for p in (whole, *above) if p), default=0)
 
@@ -255,7 +244,7 @@ def _count_lost(n: Matrix, d: Any, times: Mapping[sp.Symbol, sp.Expr]) -> int:
 def family_of_impedance(z: Impedance) -> Family:
     """The family of an impedance of one port without further states."""
     n, d = element(z.p), element(z.q)
-    return Family([[n]], d, n + d * _damper(n, d))
+    return Family([[n]], d, n + d * damper(n, d))
 
 
 def _ratio(e: sp.Expr, ring: Any) -> tuple[Any, Any]:
@@ -269,136 +258,3 @@ def _ratio(e: sp.Expr, ring: Any) -> tuple[Any, Any]:
 
 def _lcm(p: Any, q: Any) -> Any:
     return p * q.exquo(p.gcd(q))
-
-
-def _coprime(n: Matrix, d: Any) -> tuple[Matrix, Any]:
-    """N and d without the factors that all of them share."""
-    shared = reduce(lambda a, b: a.gcd(b), (e for row in n for e in row), d)
-    return [[e.exquo(shared) for e in row] for row in n], d.exquo(shared)
-
-
-def close(n: Matrix, d: Any, held: Sequence[Any]) -> Any:
-    """Denominator of (N/d + diag(held))^-1: its roots are the modes that the ports show."""
-    rows = [[e + d * held[i] if i == j else e for j, e in enumerate(row)]
-            for i, row in enumerate(n)]  # fmt: skip
-    return inverse_denominator(rows, d)
-
-
-def inverse_denominator(rows: Matrix, below: Any) -> Any:
-    """Denominator of the inverse of rows/below, coprime with it as a whole; 0: there is none."""
-    whole, above = _cofactors(rows, below)
-    shared = reduce(lambda a, b: a.gcd(b), above, whole)
-    return whole.exquo(shared) if whole else whole
-
-
-def _cofactors(rows: Matrix, below: Any) -> tuple[Any, list[Any]]:
-    """Determinant of rows, and the entries of its inverse times this, times `below`."""
-    size = range(len(rows))
-    minors = [
-        below
-        * determinant([[rows[a][b] for b in size if b != j] for a in size if a != i], below.ring)
-        for i in size
-        for j in size
-    ]
-    return determinant(rows), minors
-
-
-def determinant(rows: Matrix, ring: Any = None) -> Any:
-    """Determinant of a small matrix of polynomials, along its first row."""
-    if not rows:
-        return ring.one
-    total = rows[0][0].ring.zero
-    for k, entry in enumerate(rows[0]):
-        if entry:
-            rest = [[*row[:k], *row[k + 1 :]] for row in rows[1:]]
-            total += (-1) ** k * entry * determinant(rest, total.ring)
-    return total
-
-
-def dampers(n: Matrix, d: Any) -> list[Any]:
-    """A damper about as strong as each port of N/d: any numbers > 0 would be correct."""
-    return [_damper(row[k], d) for k, row in enumerate(n)]
-
-
-def _damper(n: Any, d: Any) -> Any:
-    """A power of 2 near abs(n/d) where the powers of s have about one size."""
-    unit = max(abs(c) for p in (n, d) for c in p.values())
-
-    def sizes(p: Any) -> dict[int, float]:
-        total: dict[int, float] = {}
-        for powers, c in p.items():
-            share = abs(c) / unit
-            size = float(Fraction(share.numerator, share.denominator))
-            total[powers[0]] = total.get(powers[0], 0.0) + size
-        return total
-
-    above, below = sizes(n), sizes(d)
-    if not above:
-        return sp.QQ(1)
-    both = {k: above.get(k, 0.0) + below.get(k, 0.0) for k in {*above, *below}}
-    low, high = min(both), max(both)
-    rate = (both[low] / both[high]) ** (1 / (high - low)) if high > low else 1.0
-    first, second = (sum(c * rate**k for k, c in side.items()) for side in (above, below))
-    near = Fraction(2.0 ** round(np.log2(first / second)))
-    return sp.QQ(near.numerator, near.denominator)
-
-
-def unseen_modes(system: Any) -> tuple[complex, ...]:
-    """Modes of a system of python-control that its ports do not show and that do not decay, 1/s.
-
-    From rest such a mode stays at rest, so the impedance does not contain it. What ports of a state
-    space do not show is the same whatever holds them. Empty for any other kind of system.
-    """
-    if hasattr(system, "num"):
-        above, below = ([side for row in m for side in row] for m in (system.num, system.den))
-        pairs = ([_polynomial(p), _polynomial(q)] for p, q in zip(above, below, strict=True))
-        return tuple(mode for pair in pairs for mode in not_decaying(sp.gcd(*pair)))
-    if not hasattr(system, "A") or not len(system.A):
-        return ()
-    matrices = (system.A, system.B, system.C, system.D)
-    a, b, c, straight = ([[fraction(exact(x)) for x in row] for row in m] for m in matrices)
-    places = range(len(c))
-    made = [[resolvent(a, [row[j] for row in b], c[i]) for j in places] for i in places]
-    d = _in_ring(made[0][0][0])
-    n = [[_in_ring(made[i][j][1]) + _in_ring([straight[i][j]]) * d for j in places] for i in places]
-    loose, tight = (
-        determinant([[e + (i == j) * factor * d for j, e in enumerate(row)]
-                     for i, row in enumerate(n)])
-        for factor in (sp.QQ(1), sp.QQ(3))
-    )  # fmt: skip
-    shared = loose.gcd(tight)
-    for _ in places[1:]:
-        shared = shared.exquo(d)
-    return not_decaying(as_poly(shared, S))
-
-
-def unseen_within(part: Block) -> tuple[complex, ...]:
-    """Modes of a block with values that it does not show and that do not decay, 1/s."""
-    driver = getattr(part, "driver", "")
-    outside = dict.fromkeys((*part.inputs, *([driver] if driver else ())), "force")
-    states = all_states(Diagram(part.name, (part,), (), outside, ()))
-    d, n = states.solve(part.outputs, tuple(dict.fromkeys(part.inputs)))
-    shared = reduce(lambda a, b: a.gcd(b), (e for row in n for e in row), d)
-    return not_decaying(as_poly(shared, S)) if d and not any(map(any, _late(shared))) else ()
-
-
-def _late(p: Any) -> list[tuple[int, ...]]:
-    return [k[1:] for k in p]
-
-
-def _polynomial(falling: Sequence[float]) -> sp.Poly:
-    return sp.Poly([exact(c) for c in falling], S, domain="QQ")
-
-
-def _in_ring(falling: Sequence[Fraction]) -> Any:
-    return element(sp.Poly([sp.Rational(c) for c in falling] or [0], S, domain="QQ"))
-
-
-def explain_unseen(modes: Sequence[complex]) -> str:
-    """The reason of an unknown claim beside modes that no port shows and that do not decay, 1/s."""
-    start = "from rest its impedance is that of a passive port, but"
-    if any(np.isnan(m) for m in modes):
-        return f"{start} with its dead times a mode that no port shows is not shown to decay"
-    shown = ", ".join(f"{m.real:.4g}{f' +- {m.imag:.4g}j' * bool(m.imag)}" for m in modes)
-    number = "a mode that no port shows does" if len(modes) == 1 else "modes that no port shows do"
-    return f"{start} {number} not decay, at s = {shown} 1/s"

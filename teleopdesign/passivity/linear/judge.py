@@ -22,7 +22,7 @@ from ..claims.certificate import (
 )
 from ..claims.claim import TOO_MUCH, Claim, Evidence, Proof, Refutation, Unknown, Verdict
 from ..search.growing_wave import GrowingWave, wave_of
-from ..search.points import beside_axis, candidates, near_poles, resonances
+from ..search.points import candidates, near_axis, near_poles, resonances
 from ..search.wave_search import select_fastest, wave_out_of
 from ..two_port.growing_mode import growing_mode
 from ..two_port.termination import far_termination
@@ -30,11 +30,12 @@ from .box_certificates import stability_certificate
 from .conditions import axis_conditions, is_shown
 from .ends import fails_at_ends, holds_at
 from .excess import damping_excess, describe_equality
-from .family import Family, explain_unseen
+from .family import Family
 from .gaussian import round_point
 from .impedance import readable
 from .signs import Signs
 from .sweep import least_over, margin_of
+from .unseen import explain_unseen
 
 _METHODS = {
     "passive": "the positive-real test of the matrix",
@@ -58,7 +59,7 @@ def passive_claim(family: Family) -> Claim:
 
     returns: proved, refuted by a growing wave, unknown, or evidence over frequency (dead times)
     """
-    shown = _written(family)
+    shown = _write_out(family)
     statement = {
         1: f"Z(s) = {shown} is passive at its port (force, velocity)",
         2: f"the two-port [{shown}] is passive",
@@ -73,11 +74,11 @@ def stable_claim(family: Family) -> Claim:
         or, with dead times, by a wave with which one port releases energy while the other has the
         termination that the verdict names; evidence over frequency (with dead times); or unknown
     """
-    statement = f"the two-port [{_written(family)}] is absolutely stable"
+    statement = f"the two-port [{_write_out(family)}] is absolutely stable"
     return _judge(family, "absolutely stable", statement)
 
 
-def _written(family: Family) -> str:
+def _write_out(family: Family) -> str:
     rows = (family.z if family.written is None else family.written).tolist()
     return "; ".join(", ".join(map(readable, row)) for row in rows)
 
@@ -200,7 +201,7 @@ def _terminated_waves(
 
     Port 2 "moved": port 1 has the termination. Three waves at most.
     """
-    points = np.concatenate([near_poles(family), beside_axis(frequencies, range(1, 34))])
+    points = np.concatenate([near_poles(family), near_axis(frequencies, range(1, 34))])
     z, count = family.at(points), 0
     values = [z[:, 0, 0], z[:, 0, 1], z[:, 1, 0], z[:, 1, 1]]
     for s, second, turned in candidates(values, points)[:_CANDIDATES]:

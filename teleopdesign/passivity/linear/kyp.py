@@ -24,9 +24,9 @@ from ...base.frozen import ByValue
 from ...derive.polynomials import fraction
 from ..claims.certificate import Term, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
-from .family import explain_unseen, unseen_modes
 from .impedance import Impedance, MotionKind, impedance
 from .squares import sum_of_squares
+from .unseen import explain_unseen, unseen_modes
 
 FractionRows = list[list[Fraction]]
 #: a double pole on the axis makes the inequality infeasible, but by so little that the solver does

@@ -10,10 +10,11 @@ from ...derive.polynomials import element
 from ..claims.claim import Claim, Unknown
 from ..search.growing_wave import GrowingWave
 from .excess import Excess, damping_excess, is_positive_real, mobility_excess
-from .family import explain_unseen, family_of_impedance, unseen_modes
+from .family import family_of_impedance
 from .gaussian import value
 from .impedance import Impedance, MotionKind, impedance
 from .judge import NO_WAVE, passive_claim
+from .unseen import explain_unseen, unseen_modes
 
 __all__ = [
     "NEARBY",

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 #: margins of matrices Z, (m, n, n) -> (m,)
-Margin = Callable[[np.ndarray], np.ndarray]
+SweptMargin = Callable[[np.ndarray], np.ndarray]
 
 
 def passive_margin(z: np.ndarray) -> np.ndarray:
@@ -37,7 +37,7 @@ def stable_margin(z: np.ndarray) -> np.ndarray:
     return np.where((r1 < 0) | (r2 < 0), -np.inf, margin)
 
 
-def margin_of(claim: str) -> Margin:
+def margin_of(claim: str) -> SweptMargin:
     """The margin that a claim asks for: "passive" in N s/m, "absolutely stable" without unit."""
     return stable_margin if claim == "absolutely stable" else passive_margin
 

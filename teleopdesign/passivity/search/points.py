@@ -73,7 +73,7 @@ def _growing(points: Sequence[complex]) -> Iterator[complex]:
             yield complex(s.real, imaginary)
 
 
-def beside_axis(frequencies: Sequence[float], closer: Sequence[int]) -> np.ndarray:
+def near_axis(frequencies: Sequence[float], closer: Sequence[int]) -> np.ndarray:
     """Points beside the axis at frequencies (Hz), at these powers of 1/2 of their frequency."""
     w = 2 * np.pi * np.asarray(frequencies, dtype=float)
     return np.asarray((w[:, None] * (2.0 ** -np.array(closer, dtype=float) + 1j)).ravel())

@@ -14,11 +14,12 @@ import sympy as sp
 
 from ...derive.polynomials import X, as_poly, roots_of, where_negative
 from ..linear.conditions import hermitian_minors
-from ..linear.family import Family, close, dampers
+from ..linear.family import Family
 from ..linear.gaussian import ZERO, add, multiply, value_at
+from ..linear.matrices import close, dampers
 from ..linear.sweep import passive_margin
 from .growing_wave import GrowingWave, growing_wave, halvings, wave_of
-from .points import beside_axis, near_poles
+from .points import near_axis, near_poles
 
 #: of the plainest and of the strongest points: so many are tested exactly
 _TESTED = 20
@@ -31,9 +32,12 @@ def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWav
     """
     if family.size == 1 and not family.times:
         return growing_wave(family.impedance)
-    parts = [near_poles(family), beside_axis(frequencies, range(33))]
+    parts = [near_poles(family), near_axis(frequencies, range(33))]
     if not family.times:
-        parts += [beside_axis(_exact_frequencies(family), range(33)), _between_dampers(family)]
+        parts += [
+            near_axis(_exact_frequencies(family), range(33)),
+            _modes_between_dampers(family),
+        ]
     points = np.concatenate(parts)
     z = family.at(points)
     finite = np.isfinite(z).all(axis=(1, 2))
@@ -77,15 +81,15 @@ def _exact_frequencies(family: Family) -> list[float]:
     return [float(x) ** 0.5 / (2 * np.pi) for x in places]
 
 
-def _between_dampers(family: Family) -> np.ndarray:
+def _modes_between_dampers(family: Family) -> np.ndarray:
     """Modes that grow between dampers of several strengths: there Z + Z^H is negative, 1/s."""
-    found = [np.zeros(0, dtype=complex)]
+    made = [np.zeros(0, dtype=complex)]
     for factor in (1, 64, Fraction(1, 64)):
         held = [
             c * sp.QQ(*Fraction(factor).as_integer_ratio()) for c in dampers(family.n, family.d)
         ]
-        found.append(roots_of(close(family.n, family.d, held)))
-    s = np.concatenate(found)
+        made.append(roots_of(close(family.n, family.d, held)))
+    s = np.concatenate(made)
     s = np.where(np.abs(s.imag) < 1e-12 * np.abs(s), s.real, s)
     return s[(s.real > 0) & (s.imag >= 0)]
 

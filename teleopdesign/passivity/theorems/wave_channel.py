@@ -29,9 +29,9 @@ from ..claims.certificate import Certificate, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
 from ..declarations import falsely_linear, is_shipped
 from ..holders import without_holders
-from ..linear.family import unseen_within
 from ..linear.impedance import decimal, exact
 from ..linear.positive_real import positive_real
+from ..linear.unseen import unseen_within
 from ..ports import drop_absent_effects
 from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, require_hypotheses
 from ._theorem import Theorem

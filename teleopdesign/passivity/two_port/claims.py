@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..claims.claim import Claim, Unknown
-from ..linear.family import explain_unseen
 from ..linear.judge import passive_claim, stable_claim
+from ..linear.unseen import explain_unseen
 from .two_port import TwoPort
 
 
@@ -17,7 +17,7 @@ def passive(system: TwoPort) -> Claim:
         unknown where no proof and no wave is available, or where a mode of a system of
         python-control that no port shows does not decay
     """
-    return _beside_unseen(system, passive_claim(system.family))
+    return _with_unseen(system, passive_claim(system.family))
 
 
 def absolutely_stable(system: TwoPort) -> Claim:
@@ -30,10 +30,10 @@ def absolutely_stable(system: TwoPort) -> Claim:
         a wave with which port 1 releases energy while port 2 has the termination that the verdict
         names; else unknown
     """
-    return _beside_unseen(system, stable_claim(system.family))
+    return _with_unseen(system, stable_claim(system.family))
 
 
-def _beside_unseen(system: TwoPort, claim: Claim) -> Claim:
+def _with_unseen(system: TwoPort, claim: Claim) -> Claim:
     """The claim; unknown if it holds while modes that no port shows do not decay."""
     if claim.holds and system.unseen:
         return Claim(claim.statement, Unknown(explain_unseen(system.unseen)))

@@ -30,7 +30,7 @@ from ...derive.polynomials import (
 )
 from ...realise.lti import S
 from ..linear.conditions import axis_conditions
-from ..linear.family import Family, close, family_of_matrix, inverse_denominator
+from ..linear.family import Family, family_of_matrix
 from ..linear.gaussian import (
     ZERO,
     Gaussian,
@@ -43,8 +43,9 @@ from ..linear.gaussian import (
     square_root,
     value_at,
 )
+from ..linear.matrices import close, inverse_denominator
 from ..search.growing_wave import LONGEST
-from ..search.points import beside_axis, candidates, near_poles
+from ..search.points import candidates, near_axis, near_poles
 from .termination import (
     CLAMPED,
     Termination,
@@ -168,7 +169,7 @@ class _Search:
         """A mode at one of the points of the right half plane at which growth is most likely."""
         negative = [float(x) ** 0.5 / (2 * np.pi) for x in self._negative_places()]
         steps = (*range(1, 34, 2), *range(35, 68, 4))
-        points = np.concatenate([beside_axis(negative, steps), near_poles(self.family)])
+        points = np.concatenate([near_axis(negative, steps), near_poles(self.family)])
         z = self.family.at(points)
         values = [z[:, 0, 0], z[:, 0, 1], z[:, 1, 0], z[:, 1, 1]]
         for s, second, turned in candidates(values, points)[:_MOST_CANDIDATES]:

@@ -28,9 +28,10 @@ from ...base.finding import Graph, Series
 from ...base.frozen import ByValue
 from ...diagrams.control_parts import entry_of
 from ...realise.lti import S
-from ..linear.family import Family, family_of_matrix, unseen_modes
+from ..linear.family import Family, family_of_matrix
 from ..linear.impedance import Impedance, exact, impedance
 from ..linear.sweep import passive_margin, stable_margin
+from ..linear.unseen import unseen_modes
 
 
 @dataclass(frozen=True)

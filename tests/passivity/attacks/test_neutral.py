@@ -46,8 +46,8 @@ def rightmost(p, q, time):
     w = np.geomspace(1e-2, 1e4, 200)
     starts += list(1j * w) + list(-0.3 * w + 1j * w)
     with np.errstate(all="ignore"):
-        found = newton(np.array(starts, dtype=complex))
-    real = found.real.max(initial=-np.inf)
+        zeros = newton(np.array(starts, dtype=complex))
+    real = zeros.real.max(initial=-np.inf)
     return max(real, np.log(abs(lead)) / time) if lead else real
 
 
