@@ -9,17 +9,21 @@ or halve boxes spend from the effort of the claim that asks them; without a clai
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from time import monotonic
+from time import thread_time
+from typing import TypeVar
 
 from ..base.errors import ModelError
 
-#: products of terms, and coefficients of boxes, that a claim may compute: some 20 s on one core
-MOST = 6_000_000
-#: s of wall time: the last guard, where single operations take longer than they should
-_LONGEST = 60.0
+#: products of terms, and coefficients of boxes, that a claim may compute: some 20 s of one core
+MOST = 2_000_000
+#: s of one core: the last guard, where single operations take longer than they should
+_LONGEST = 40.0
+
+
+_Answer = TypeVar("_Answer")
 
 
 class TooMuchEffort(ModelError):
@@ -28,7 +32,7 @@ class TooMuchEffort(ModelError):
 
 class _Left:
     def __init__(self, most: int) -> None:
-        self.most, self.spent, self.until = most, 0, monotonic() + _LONGEST
+        self.most, self.spent, self.until = most, 0, thread_time() + _LONGEST
 
 
 _LEFT: ContextVar[_Left | None] = ContextVar("_LEFT", default=None)
@@ -47,13 +51,21 @@ def bounded_effort(most: int = MOST) -> Iterator[None]:
         _LEFT.reset(token)
 
 
+def within_effort(compute: Callable[[], _Answer], otherwise: _Answer) -> _Answer:
+    """What is computed, or `otherwise` where this takes too much effort."""
+    try:
+        return compute()
+    except TooMuchEffort:
+        return otherwise
+
+
 def spend(number: int) -> None:
     """Count products of terms or coefficients of boxes; raises TooMuchEffort beyond the bound."""
     left = _LEFT.get()
     if left is None:
         return
     left.spent += number
-    if left.spent > left.most or monotonic() > left.until:
+    if left.spent > left.most or thread_time() > left.until:
         raise TooMuchEffort(
             f"exact arithmetic of more than {left.most / 1e6:g} million terms and boxes"
         )

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from ..base.errors import ModelError
+from ..derive.effort import bounded_effort
 from ..diagrams import Diagram
 from .claims.axis_units import use_units_of
 from .claims.claim import Claim, Unknown
@@ -35,6 +36,11 @@ def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClai
     """
     if bent := nonlinear_parts(diagram):
         return _open(diagram, f"not linear: {', '.join(bent)}")
+    with bounded_effort():
+        return _judge(diagram, all_ports)
+
+
+def _judge(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
     try:
         family = family_at(diagram, all_ports)
     except ModelError as problem:

@@ -13,7 +13,7 @@ from sympy.polys.polyerrors import PolynomialError
 
 from ...base.errors import ModelError
 from ...derive.all_states import AllStates, all_states, is_well_posed
-from ...derive.effort import TooMuchEffort
+from ...derive.effort import TooMuchEffort, within_effort
 from ...derive.polynomials import is_hurwitz
 from ...diagrams import Diagram
 from ..claims.certificate import Certificate
@@ -96,12 +96,12 @@ def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) 
             f"a pole with real part {-worst.margin:.4g} 1/s; not Hurwitz by Routh's scheme, exactly"
         )
         return parts_of(_STABLE, "refuted", worst, box, "1/s", how)
-    if not signs.is_hurwitz(p):
+    if not _is_hurwitz(signs, p):
         return parts_of(_STABLE, "evidence", worst, box, "1/s", _explain_no_proof(signs))
     how = _describe_effort(signs, "its characteristic polynomial is nowhere zero on the axis")
     shares = (Fraction(str(round(share, 6))) for share in _SHARES)
     shifts = (Fraction(worst.margin).limit_denominator(10**6) * share for share in shares)
-    bound = next((c for c in shifts if c > 0 and signs.is_hurwitz(_move_axis(p, c))), Fraction(0))
+    bound = next((c for c in shifts if c > 0 and _is_hurwitz(signs, _move_axis(p, c))), Fraction(0))
 
     def certificates() -> tuple[Certificate, ...]:
         title = f"{name}: every pole has a real part below -{bound} 1/s, s counted from there"
@@ -141,7 +141,7 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
         worst = worst if worst.margin < 0 else replace(worst, margin=-np.inf)
         how = str(exact.verdict)
         return parts_of(statement, "refuted", worst, box, unit, how, at_worst=exact)
-    if exact.holds and not family.times and is_shown(signs, family, claim):
+    if exact.holds and not family.times and _is_shown(signs, family, claim):
         bound = Fraction(0) if claim != "passive" else _bound(signs, family, worst.margin)
         how = _describe_effort(signs, "its conditions are polynomials of one sign")
         worst = replace(worst, margin=max(worst.margin, float(bound)))
@@ -157,6 +157,16 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
     elif not family.times:
         how = _explain_no_proof(signs)
     return parts_of(statement, status, worst, box, unit, how, at_worst=exact)
+
+
+def _is_shown(signs: Signs, family: Family, claim: str, margin: Fraction = Fraction(0)) -> bool:
+    """Whether the claim is shown for the whole box within the effort of a claim."""
+    return within_effort(lambda: is_shown(signs, family, claim, margin), False)
+
+
+def _is_hurwitz(signs: Signs, p: Any) -> bool:
+    """Whether all roots are shown to be on the left within the effort of a claim."""
+    return within_effort(lambda: signs.is_hurwitz(p), False)
 
 
 def _certificates(
@@ -203,7 +213,7 @@ def _bound(signs: Signs, family: Family, margin: float) -> Fraction:
     if 0 < margin < np.inf:
         for share in _SHARES:
             excess = Fraction(margin * share).limit_denominator(10**6)
-            if 0 < excess <= margin and is_shown(signs, family, "passive", excess):
+            if 0 < excess <= margin and _is_shown(signs, family, "passive", excess):
                 return excess
     return Fraction(0)
 

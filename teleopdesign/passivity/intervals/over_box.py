@@ -8,16 +8,18 @@ from typing import Any
 from ...base.arguments import check_types
 from ...base.errors import ModelError
 from ...base.expectations import describe_value
+from ...derive.effort import TooMuchEffort, bounded_effort
 from ...diagrams import Diagram
 from ...diagrams.units import first_axis, unit_of_value
 from ..claims.axis_units import use_rotary_units
 from ..holders import without_holders
 from ..ports import drop_absent_effects, ports
 from .at_points import judge_at_points
-from .box import box_of, nonlinear_within
+from .box import ValueBox, box_of, nonlinear_within
 from .friction import judge_friction
-from .interval_claim import IntervalClaim, Parts
+from .interval_claim import IntervalClaim, Parts, parts_of
 from .linear import CLAIMS, judge_linear, judge_stability
+from .worst import Worst
 
 
 @check_types
@@ -49,8 +51,22 @@ def claim_over_intervals(
         return _finish(diagram, intervals, judge_at_points(middle, box, claim, points, seed))
     if claim not in CLAIMS:
         raise ModelError(f"claim: found {describe_value(claim)}, expected {', '.join(CLAIMS)}")
+    try:
+        with bounded_effort():
+            made = _judge(diagram, middle, box, claim, points, seed)
+    except TooMuchEffort as problem:
+        worst = Worst(box.centre, float("nan"), 0)
+        what = f'it is "{claim}"'
+        made = parts_of(what, "unknown", worst, box, CLAIMS[claim], f"no linear form: {problem}")
+    return _finish(diagram, intervals, made)
+
+
+def _judge(
+    diagram: Diagram, middle: Diagram, box: ValueBox, claim: str, points: int, seed: int
+) -> Parts:
+    """Judge a claim by its name; middle: the diagram with values in the middle of the box."""
     if claim == "stable":
-        return _finish(diagram, intervals, judge_stability(middle, box, points, seed))
+        return judge_stability(middle, box, points, seed)
     alone = without_holders(drop_absent_effects(middle))
     away = [n for n in box.names if not without_holders(middle).has(n.partition(".")[0])]
     if away:
@@ -59,10 +75,8 @@ def claim_over_intervals(
     if len(at) > 2 or (claim == "absolutely stable" and len(at) != 2):
         raise ModelError(f'{diagram.name}: "{claim}" is for two ports at most, found {len(at)}')
     if nonlinear_within(without_holders(middle), box):
-        return _finish(diagram, intervals, judge_friction(without_holders(middle), box, claim))
-    return _finish(
-        diagram, intervals, judge_linear(without_holders(middle), box, claim, points, seed)
-    )
+        return judge_friction(without_holders(middle), box, claim)
+    return judge_linear(without_holders(middle), box, claim, points, seed)
 
 
 def _finish(

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ...derive.effort import spend
+
 Matrix = Sequence[Sequence[Any]]
 
 
@@ -53,7 +55,9 @@ def determinant(rows: Matrix, ring: Any = None) -> Any:
     for k, entry in enumerate(rows[0]):
         if entry:
             rest = [[*row[:k], *row[k + 1 :]] for row in rows[1:]]
-            total += (-1) ** k * entry * determinant(rest, total.ring)
+            minor = determinant(rest, total.ring)
+            spend(len(entry) * len(minor))
+            total += (-1) ** k * entry * minor
     return total
 
 

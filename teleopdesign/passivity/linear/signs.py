@@ -110,8 +110,10 @@ class Signs:
     def _holds(self, polys: Sequence[Any], unit: Fraction, test: _Test) -> bool:
         self.polynomials += 1
         degrees = [max(ds) for ds in zip(*(p.degrees() for p in polys), strict=True)]
-        if prod(d + 1 for d in degrees) > MOST_COEFFICIENTS:
+        size = prod(d + 1 for d in degrees)
+        if size > MOST_COEFFICIENTS:
             return False
+        spend(len(polys) * size * sum(d + 1 for d in degrees))
         cells = [[_coefficients(p, degrees, self.ends, unit) for p in polys]]
         while cells:
             cell = cells.pop()
