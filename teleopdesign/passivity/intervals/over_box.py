@@ -42,7 +42,7 @@ def claim_over_intervals(
     points: number of points that are evaluated besides the vertices and the middle;  seed: of these
     returns: proved over the whole box, refuted at a point, or checked numerically. Proofs exist for
         linear diagrams, for friction with its cancellation (by theorems), and, with dead times, for
-        "stable" alone: for all dead times from 0 on, in floats that are rounded outward.
+        "stable" alone: for all dead times from 0 on, in floats with all rounding bounded.
         Controllers act in continuous time
     raises ModelError: an unknown value or claim, no valid interval, no port
     """
