@@ -51,7 +51,7 @@ def bounded_effort(most: int = MOST) -> Iterator[None]:
         _LEFT.reset(token)
 
 
-def within_effort(compute: Callable[[], _Answer], otherwise: _Answer) -> _Answer:
+def try_within_effort(compute: Callable[[], _Answer], otherwise: _Answer) -> _Answer:
     """What is computed, or `otherwise` where this takes too much effort."""
     try:
         return compute()

@@ -28,7 +28,7 @@ import numpy as np
 import sympy as sp
 
 from ...controllers import exact_decimal
-from ...derive.effort import within_effort
+from ...derive.effort import try_within_effort
 from ...derive.polynomials import is_hurwitz
 from ...frequency.late_zeros import exact_terms, terms_of
 from ...realise.lti import S
@@ -73,7 +73,7 @@ def judge_late(
         return parts_of(_STATEMENT, "unknown", worst, box, "1/s", how)
     cells = None
     if _starts_stable(p, times, box):
-        cells = within_effort(lambda: is_zero_free(LateSum.of(p, times, box)), None)
+        cells = try_within_effort(lambda: is_zero_free(LateSum.of(p, times, box)), None)
     status: Status = "evidence" if cells is None else "proved"
     how = "no proof over the whole box: not stable from no dead time on, or not shown part by part"
     if cells is not None:

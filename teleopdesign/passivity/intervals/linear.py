@@ -13,7 +13,7 @@ from sympy.polys.polyerrors import PolynomialError
 
 from ...base.errors import ModelError
 from ...derive.all_states import AllStates, all_states, is_well_posed
-from ...derive.effort import TooMuchEffort, within_effort
+from ...derive.effort import TooMuchEffort, try_within_effort
 from ...derive.polynomials import is_hurwitz
 from ...diagrams import Diagram
 from ..claims.certificate import Certificate
@@ -161,12 +161,12 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
 
 def _is_shown(signs: Signs, family: Family, claim: str, margin: Fraction = Fraction(0)) -> bool:
     """Whether the claim is shown for the whole box within the effort of a claim."""
-    return within_effort(lambda: is_shown(signs, family, claim, margin), False)
+    return try_within_effort(lambda: is_shown(signs, family, claim, margin), False)
 
 
 def _is_hurwitz(signs: Signs, p: Any) -> bool:
     """Whether all roots are shown to be on the left within the effort of a claim."""
-    return within_effort(lambda: signs.is_hurwitz(p), False)
+    return try_within_effort(lambda: signs.is_hurwitz(p), False)
 
 
 def _certificates(
