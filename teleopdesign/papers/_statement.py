@@ -159,7 +159,8 @@ def shows(
     def made(function: Callable[[], StatementEvidence]) -> Statement:
         words, *parts = map(_one_line, _PART.split(inspect.getdoc(function) or ""))
         named = dict(zip(parts[::2], parts[1::2], strict=True))
-        return Statement(number, paper, place, words, how, function, numbers=numbers, **named)
+        texts = named.get("formula", ""), named.get("printed", ""), named.get("assumes", "")
+        return Statement(number, paper, place, words, how, function, *texts, numbers)
 
     return made
 

@@ -56,6 +56,29 @@ def least_damping(block: sp.Expr) -> sp.Expr:
     return T / 2 / (1 - c) * sp.re(sp.expand((1 - BACK) * block))
 
 
+def late_springs(inside: sp.Symbol) -> list[ProofStep]:
+    """Damping for a Dahl compensator near rest, prompt and late;  inside: 1 + cos(theta)."""
+    v = sp.Symbol("v", positive=True)
+    one, two = -sigma * BACK, -sigma * BACK**2
+    return [
+        Equal("Dahl near rest is a spring", dahl_rate(sp.S(0), v, r, sigma), sigma * v),
+        Equal("cancelled: no damping needed", least_damping(-sigma), -sigma * T / 2),
+        Equal("one sample late", least_damping(one), -sigma * T / 2 * (1 + 2 * c)),
+        NotNegative(
+            "at most sigma_D T/2, at theta = pi",
+            sigma * T / 2 - least_damping(one),
+            sigma * T * inside,
+            {inside: 1 + c},
+        ),
+        Equal("two samples late", least_damping(two), -sigma * T / 2 * (4 * c**2 + 2 * c - 1)),
+        NotNegative(
+            "at most (5/8) sigma_D T, at cos = -1/4",
+            sp.Rational(5, 8) * sigma * T - least_damping(two),
+            sigma * T / 2 * (2 * c + sp.Rational(1, 2)) ** 2,
+        ),
+    ]
+
+
 @shows(50, COLGATE, "passivity condition")
 def held_blocks() -> ProofSteps:
     """Damping with which no steady oscillation at any frequency takes energy out of a sampled block
@@ -72,10 +95,8 @@ def held_blocks() -> ProofSteps:
     h, g = sp.symbols("h_re h_im", real=True)
     block = h + sp.I * g
     spring, damper = K, B * (1 - BACK) / T
-    one, two = -sigma * BACK, -sigma * BACK**2
     inside = sp.Symbol("inside", nonnegative=True)  # 1 + cos
     short = sp.Symbol("short", nonnegative=True)  # 1 - cos
-    v = sp.Symbol("v", positive=True)
     return proof(
         damper_takes_most(),
         Equal(
@@ -104,21 +125,7 @@ def held_blocks() -> ProofSteps:
             B * short,
             {short: 1 - c},
         ),
-        Equal("Dahl near rest is a spring", dahl_rate(sp.S(0), v, r, sigma), sigma * v),
-        Equal("cancelled: no damping needed", least_damping(-sigma), -sigma * T / 2),
-        Equal("one sample late", least_damping(one), -sigma * T / 2 * (1 + 2 * c)),
-        NotNegative(
-            "at most sigma_D T/2, at theta = pi",
-            sigma * T / 2 - least_damping(one),
-            sigma * T * inside,
-            {inside: 1 + c},
-        ),
-        Equal("two samples late", least_damping(two), -sigma * T / 2 * (4 * c**2 + 2 * c - 1)),
-        NotNegative(
-            "at most (5/8) sigma_D T, at cos = -1/4",
-            sp.Rational(5, 8) * sigma * T - least_damping(two),
-            sigma * T / 2 * (2 * c + sp.Rational(1, 2)) ** 2,
-        ),
+        late_springs(inside),
         assuming=[1 + c, 1 - c],
     )
 
