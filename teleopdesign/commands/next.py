@@ -6,17 +6,20 @@ import argparse
 import math
 import textwrap
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import ExperimentError, did_you_mean
+from ..base.errors import ExperimentError, unknown
 from ..base.files import write_beside, write_json
 from ._arms import add_body
-from ._diagnosis import arm_diagnosis_of, diagnosis_of, experiment_and_answer, print_diagnosis
-from ._options import add_experiment, check_output, say, value_from
+from ._diagnosis import (
+    diagnosis_of,
+    diagnosis_of_part,
+    experiment_and_answer,
+    print_diagnosis,
+)
+from ._options import add_experiment, add_output, say, value_from
 
 if TYPE_CHECKING:
-    from ..diagnose import ArmDiagnosis
     from ..measurement import Experiment
     from ..next_experiment import Limits, SimulatedDiagnosis
 
@@ -43,13 +46,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser)
     add_body(parser)
-    parser.add_argument(
-        "--output", type=Path, metavar="F", help="write the position reference (.csv)"
-    )
-    parser.add_argument("--json", type=Path, metavar="F", help="write the proposal (.json)")
-    parser.add_argument(
-        "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
-    )
+    add_output(parser, "--output", "write the position reference", ".csv")
+    add_output(parser, "--json", "write the proposal", ".json")
+    add_output(parser, "--figure", "write the figure", ".png", ".pdf", ".svg")
     parser.add_argument(
         "--limit",
         action="append",
@@ -79,13 +78,6 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the proposed experiment and what it will show; write the requested files."""
-    for path, endings in (
-        (options.output, (".csv",)),
-        (options.json, (".json",)),
-        (options.figure, (".png", ".pdf", ".svg")),
-    ):
-        if path is not None:
-            check_output(path, endings)
     if not (math.isfinite(options.duration) and options.duration > 0):
         raise ExperimentError(f"--duration: found {options.duration:g}, expected more than 0 s")
     from ..next_experiment import propose, show_in_simulation, write_reference
@@ -94,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
     if experiment.arm is not None and options.body is None:
         return _run_arm(experiment, options)
     limits = _limits(_read_limits(options.limit, experiment), experiment)
-    diagnosis = diagnosis_of(experiment, options)
+    diagnosis = diagnosis_of_part(experiment, options)
     proposal = propose(diagnosis, duration=options.duration, limits=limits, progress=say)
     say("")
     print_diagnosis(diagnosis)
@@ -123,7 +115,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
     """Propose paths of all joints of an arm; with --body, `run` plans one joint instead."""
-    from ..next_experiment import propose_paths, write_reference
+    from ..next_experiment import propose_paths, shown_limits, write_reference
 
     for value, option in ((options.figure, "--figure"), (options.simulate, "--simulate")):
         if value is not None:
@@ -131,9 +123,11 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
                 f"{option}: not available for an arm: use --output, or --body JOINT"
             )
     stated = _read_limits(options.limit, experiment)
-    diagnosis = arm_diagnosis_of(experiment, options)
-    shown = {j: _shown_limits(diagnosis, j) for j in stated}
-    limits = {j: shown[j].with_values(**values) for j, values in stated.items()}
+    diagnosis = diagnosis_of(experiment, options)
+    limits = {
+        j: shown_limits(diagnosis.joints[j].prepared)[j].with_values(**values)
+        for j, values in stated.items()
+    }
     paths = propose_paths(diagnosis, duration=options.duration, limits=limits, progress=say)
     say("")
     print_diagnosis(diagnosis)
@@ -148,13 +142,6 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
         content = {**numbers, "period": paths.period, "standard_errors": dict(paths.errors)}
         write_json(options.json, content)
     return 0
-
-
-def _shown_limits(diagnosis: ArmDiagnosis, joint: str) -> Limits:
-    """The limits that the records of an arm have reached at one joint."""
-    from ..next_experiment import shown_limits
-
-    return shown_limits(diagnosis.prepared.joints[joint])[joint]
 
 
 def _wrap(text: str) -> str:
@@ -189,15 +176,9 @@ def _read_limits(texts: Sequence[str], experiment: Experiment) -> dict[str, dict
         body, _, name_of_limit = name.rpartition(".")
         body = body or bodies[0]
         if body not in bodies:
-            raise ExperimentError(
-                f'--limit {text}: no body "{body}", has {", ".join(bodies)}'
-                f"{did_you_mean(body, bodies)}"
-            )
+            raise ExperimentError(f"--limit {text}: {unknown('body', body, bodies)}")
         if name_of_limit not in QUANTITY:
-            raise ExperimentError(
-                f'--limit {text}: no limit "{name_of_limit}", has {", ".join(QUANTITY)}'
-                f"{did_you_mean(name_of_limit, QUANTITY)}"
-            )
+            raise ExperimentError(f"--limit {text}: {unknown('limit', name_of_limit, QUANTITY)}")
         size = value_from(
             value,
             quantity=QUANTITY[name_of_limit],

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ._diagnosis import arm_diagnosis_of, diagnosis_of, experiment_and_answer
-from ._options import add_experiment, add_search, check_output
-from ._report import write_arm_page, write_page
+from ._diagnosis import diagnosis_of, experiment_and_answer
+from ._options import add_experiment, add_output, add_search, check_output
+from ._report import write_page
 
 EXAMPLES = """
   teleopdesign report answer.json
@@ -19,19 +19,14 @@ EXAMPLES = """
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser)
-    parser.add_argument(
-        "--output",
-        type=Path,
-        metavar="F",
-        help="write this page (default: beside the answer, or report.html)",
+    add_output(
+        parser, "--output", "write this page, by default beside the answer or report.html", ".html"
     )
     add_search(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the page; with an answer, print that nothing is searched or estimated again."""
-    if options.output is not None:
-        check_output(options.output, (".html",))
     experiment = experiment_and_answer(options)
     answer: Path | None = options.answer
     if options.output is not None:
@@ -39,16 +34,12 @@ def run(options: argparse.Namespace) -> int:
     else:
         path = Path("report.html") if answer is None else answer.with_suffix(".html")
         check_output(path, (".html",))
-    whole = None if experiment.arm is None else arm_diagnosis_of(experiment, options)
-    diagnosis = diagnosis_of(experiment, options) if whole is None else None
+    diagnosis = diagnosis_of(experiment, options)
     if answer is not None:
         print(
             f"{answer}: its models are computed along the records of {experiment.folder.name}; "
             "nothing is searched or estimated again"
         )
-    if whole is not None:
-        write_arm_page(whole, path)
-    elif diagnosis is not None:
-        write_page(diagnosis, path)
+    write_page(diagnosis, path)
     print(f"written: {path}")
     return 0

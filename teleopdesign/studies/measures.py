@@ -113,8 +113,6 @@ def _growth(point: Point, *, signal: str) -> Amount:
 
     -1 where the motion has died out, infinite where signals grow beyond all bounds
     """
-    from .measures import growth_of
-
     text = f"range of {signal} in the last third over the middle third, less 1"
     return Amount(growth_of(lambda: point.signal(signal).values), "1", text)
 
@@ -127,8 +125,6 @@ def _onset(
     by bisection of the logarithm: the least one only where growth, once begun, goes on up to high;
     NaN where the motion grows at low already, or not at high
     """
-    from .measures import find_onset, growth
-
     case = point.case
     case.check_names([parameter])
     if not 0 < low < high:
@@ -190,16 +186,15 @@ def _verdict(point: Point) -> Any:
 
     of an experiment, its folder, or a diagnosis that the model's function returns
     """
-    from ..diagnose import ArmDiagnosis, Diagnosis, find_missing, find_missing_in_arm
+    from ..diagnose import Diagnosis, find_missing
     from ..measurement import Experiment, load_experiment
 
     diagnosis = point.content
-    if not isinstance(diagnosis, Diagnosis | ArmDiagnosis):
+    if not isinstance(diagnosis, Diagnosis):
         experiment = diagnosis
         if not isinstance(experiment, Experiment):
             experiment = load_experiment(experiment)
-        find = find_missing if experiment.arm is None else find_missing_in_arm
-        diagnosis = find(experiment)
+        diagnosis = find_missing(experiment)
     return {
         "verdict": Amount(diagnosis.verdict, text="what the diagnosis ends with"),
         "missing": Amount(", ".join(map(str, diagnosis.missing)), text="effects that are named"),
@@ -219,12 +214,7 @@ MEASURES: Catalogue[Kind] = Catalogue(
             Kind("peak", _peak, {"signal": ..., **_AFTER}, ("signal",)),
             Kind("force_error", _force_error, _AFTER, ("E",)),
             Kind("tracking_error", _tracking_error, _AFTER, ("X_e",)),
-            Kind(
-                "transparency_error",
-                _transparency_error,
-                _AFTER,
-                ("X_m", "F_m", "X_s", "F_s"),
-            ),
+            Kind("transparency_error", _transparency_error, _AFTER, ("X_m", "F_m", "X_s", "F_s")),
             Kind(
                 "impedance",
                 _impedance,
