@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -85,23 +85,27 @@ def stamps_in_texts(cells: Sequence[object]) -> Array | None:
     return out
 
 
-def column_of(blocks: Sequence[Sequence[str]], *, comma: bool = False) -> NDArray[Any]:
-    """A column from blocks of its cells: numbers (n,), dates in s, else the cells that are texts.
-
-    comma: the decimal sign is a comma
-    """
-    if is_column_of_texts(blocks[0] if blocks else (), comma=comma):
-        return np.array([cell for cells in blocks for cell in cells], dtype=object)
-    parts = [_numbers_or_cells(cells, comma) for cells in blocks]
+def column_of(parts: Sequence[NDArray[Any]], *, comma: bool = False) -> NDArray[Any]:
+    """A column from its parts (`part_of_column`): numbers (n,), dates in s, or cells with texts."""
     column = np.concatenate(parts) if parts else np.empty(0)
-    if column.dtype.kind == "f":
+    if column.dtype.kind == "f" or is_column_of_texts(column, comma=comma):
         return column
     texts = [cell.replace(",", ".") if comma and isinstance(cell, str) else cell for cell in column]
     stamps = stamps_in_texts([None if cell != cell else cell for cell in texts])
     return column if stamps is None else stamps
 
 
-def is_column_of_texts(cells: Sequence[Any], *, comma: bool = False) -> bool:
+def part_of_column(cells: Sequence[str], *, comma: bool = False) -> NDArray[Any]:
+    """Some cells of a column as numbers, which need less memory, or as texts.
+
+    comma: the decimal sign is a comma
+    """
+    if is_column_of_texts(cells, comma=comma):
+        return np.array([cell.strip() for cell in cells], dtype=object)
+    return _numbers_or_cells(cells, comma)
+
+
+def is_column_of_texts(cells: Iterable[Any], *, comma: bool = False) -> bool:
     """Whether a column begins with a text that is neither a number nor a date."""
     first = next((c for c in cells if c is not None and not is_empty(str(c))), 0.0)
     return isinstance(first, str) and not is_number(first, comma) and seconds_of(first) is None

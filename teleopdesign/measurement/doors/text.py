@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.errors import ExperimentError, quote
-from ._cells import column_of, is_empty, parts_thousands
+from ._cells import column_of, is_empty, part_of_column, parts_thousands
 from ._dialect import (
     COMMENTS,
     LOOKED_AT,
@@ -145,12 +145,13 @@ def _log_of(text: _Text, sample: Mapping[str, Any]) -> Log:
 
 def _sample(lines: Sequence[str], dialect: Dialect) -> dict[str, NDArray[Any]]:
     """The columns of some lines: the first rows, and where there are more, the last ones."""
-    rows = [cells_of(line, dialect.separator) for line in lines if line.strip()]
-    rows = [row for row in rows if len(row) == len(dialect.header)]
-    if len(rows) > MOST_ROWS:
-        rows = rows[:MOST_ROWS] + rows[MOST_ROWS:][-MOST_ROWS:]
+    some = [*lines[:MOST_ROWS], *lines[MOST_ROWS:][-MOST_ROWS:]]
+    cut = (cells_of(line, dialect.separator) for line in some if line.strip())
+    rows = [row for row in cut if len(row) == len(dialect.header)]
     cells = zip(*rows, strict=True) if rows else ([] for _ in dialect.header)
-    columns = (column_of([column], comma=dialect.comma) for column in cells)
+    columns = (
+        column_of([part_of_column(c, comma=dialect.comma)], comma=dialect.comma) for c in cells
+    )
     return dict(zip(dialect.header, columns, strict=True))
 
 
@@ -222,13 +223,16 @@ def _read_cell_by_cell(text: _Text, names: Sequence[str], strays: list[int]) -> 
     """
     separator, comma = text.dialect.separator, text.dialect.comma
     places = [text.dialect.header.index(name) for name in names]
-    blocks: list[list[Sequence[str]]] = [[] for _ in places]
+    blocks: list[list[NDArray[Any]]] = [[] for _ in places]
     with text.lines() as stream:
         lines = _rows(stream, text, strays)
-        while rows := [cells_of(line, separator) for line in islice(lines, _ROWS)]:
+        while block := list(islice(lines, _ROWS)):
+            plain = separator != " " and not any('"' in line for line in block)
+            rows = [line.split(separator) if plain else cells_of(line, separator) for line in block]
             wide = min(map(len, rows)) > max(places, default=-1)
             for column, place in zip(blocks, places, strict=True):
-                column.append([r[place] if wide or place < len(r) else "" for r in rows])
+                cells = [r[place] if wide or place < len(r) else "" for r in rows]
+                column.append(part_of_column(cells, comma=comma))
     columns = {}
     for name, column in zip(names, blocks, strict=True):
         columns[name] = column_of(column, comma=comma)
