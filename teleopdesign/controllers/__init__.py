@@ -24,7 +24,7 @@ from ._controller import (
     Stage,
     parameter_symbol,
 )
-from ._declarations import broken_declarations
+from ._declarations import broken_declarations, equation_of, has_shape, symbols_of
 from ._exact import exact_decimal, make_exact, resolvent
 from ._from_control import from_control, invert_plant, matrices_of, unit_state
 from ._from_file import load_controller
@@ -45,7 +45,9 @@ __all__ = [
     "calls_in",
     "catalogue",
     "controller",
+    "equation_of",
     "from_control",
+    "has_shape",
     "make_exact",
     "invert_plant",
     "is_call",
@@ -58,6 +60,7 @@ __all__ = [
     "parameter_symbol",
     "resolvent",
     "scheduled_force_feedback",
+    "symbols_of",
     "unit_state",
 ]
 

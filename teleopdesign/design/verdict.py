@@ -84,7 +84,7 @@ def cancellation_claims(
     # what actuation makes of a command is in its gain and in how late it is
     actuation = [e.name for e in body.effects if e.role == "actuation"]
     open_ones = effects_left_open(body, reach, errors=errors)
-    left = [name for name in open_ones if name not in actuation]
+    left = {name: why for name, why in open_ones.items() if name not in actuation}
     claims = _friction_claims(body, chosen, friction, reach, gain=gain, late=late, errors=errors)
     return [extend_to_device(c, over=friction.over, left=left) for c in claims]
 

@@ -142,13 +142,13 @@ def sampled_loop(diagram: Diagram, part: Control, linear: LinearBlocks) -> Sampl
     law = part.controller
     if linear.held != (part.name,) or not isinstance(law, Controller):
         return None
-    if any(stage.law.shift is None for stage in law.stages):
+    if any(stage.law.in_z is None for stage in law.stages):
         return None
     periods = {exact_decimal(stage.values["period"]) for stage in law.stages}
     if len(periods) != 1 or 0 in periods:
         return None
     z = sp.Symbol("z")
-    whole = sp.Mul(*(stage.law.shift(stage.values, z) for stage in law.stages if stage.law.shift))
+    whole = sp.Mul(*(stage.law.in_z(stage.values, z) for stage in law.stages if stage.law.in_z))
     sides = sp.fraction(sp.cancel(sp.together(whole)))
     opened = diagram.open_at(part.name)
     if part.input not in opened.signals:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from ..base.errors import ModelError
+from ..base.frozen import Frozen
 from ..base.quantity import unit_of
 from ..blocks import NINETY_FIVE, Body
-from ..effects import EFFECTS, Effect
+from ..effects import Effect
 from ..realise.acting_bound import largest_acting_force
 from ..realise.damping_interval import damping_interval
 from ..realise.friction_interval import (
@@ -26,9 +27,8 @@ from ..realise.reach import ANY_MOTION, Reach
 from ..realise.simulated import without_absent
 from .claims.axis_units import use_units_of
 from .claims.claim import Claim, Unknown
-from .declarations import unchecked_energy
+from .declarations import is_shipped, underived_energy
 
-_PRESLIDING = EFFECTS["presliding"]
 #: digits of a measured number in a claim. A standard error is rarely known to more than two digits,
 #: and an estimate to more than three or four. Rounding outward to four digits costs a thousandth of
 #: a level at most
@@ -46,7 +46,8 @@ class IdentifiedDevice:
     least_resistance: least force of friction level and viscous damping together at any speed, N
     damping: damping that is present at every speed, N s/m; 0 where the model has none
     bristle_damping: damping of friction before it slides, N s/m; 0 where the model has none
-    set_aside: names of effects that may supply energy, or that no theorem covers
+    left_open: effects that may supply energy, or that no theorem covers -> what could not be
+        derived of them, "" where they declare nothing
     unknown: names of parameters without a standard error
     """
 
@@ -56,8 +57,13 @@ class IdentifiedDevice:
     least_resistance: Interval
     damping: Interval
     bristle_damping: Interval
-    set_aside: tuple[str, ...]
+    left_open: Mapping[str, str]
     unknown: tuple[str, ...]
+
+    @property
+    def set_aside(self) -> tuple[str, ...]:
+        """Names of effects that may supply energy, or that no theorem covers."""
+        return tuple(self.left_open)
 
     @property
     def lowest(self) -> Interval:
@@ -163,32 +169,30 @@ def _resistance(body: Body, damping: Interval, reach: Reach | None) -> Interval:
     return Interval(at_estimate.estimate, at_low.low, at_estimate.high)
 
 
-def effects_left_open(body: Body, reach: Reach | None = None, *, errors: float) -> tuple[str, ...]:
-    """Names of effects that may supply energy, or that no theorem on friction covers.
+def effects_left_open(
+    body: Body, reach: Reach | None = None, *, errors: float
+) -> Mapping[str, str]:
+    """Effects that may supply energy, or that no theorem on friction covers -> why, or "".
 
-    They include a user's effects that declare to supply no energy, if nothing has checked this.
+    They include a user's effects that declare to supply no energy, where this could not be derived.
 
     reach: range of the motions in the claims; None: every motion
     errors: standard errors of the parameters to either side
     """
     body = without_absent(body, surely=True)
     supplying = damping_interval(body, reach, errors=errors).supplying
-    unchecked = unchecked_energy(body, reach, errors=errors)
-    left = (*(e.name for e in body.effects if _is_open(e)), *supplying, *unchecked)
-    return tuple(dict.fromkeys(left))
+    left = (*(e.name for e in body.effects if _is_open(e)), *supplying)
+    return Frozen(dict.fromkeys(left, "") | underived_energy(body, reach, errors=errors))
 
 
-def extend_to_device(
-    claim: Claim, *, over: str, left: Sequence[str], declared: Sequence[str] = ()
-) -> Claim:
+def extend_to_device(claim: Claim, *, over: str, left: Mapping[str, str]) -> Claim:
     """A claim about friction, restated for the whole device.
 
     If the device has an effect that may supply energy, a claim that holds for friction alone
     becomes unknown.
 
     over: reach of the motions, `FrictionInterval.over`
-    left: names of effects that the claim does not cover
-    declared: names of effects that declare to supply no energy
+    left: effects that the claim does not cover -> what could not be derived of them, or ""
     """
     if over != ANY_MOTION:
         claim = replace(claim, statement=f"{claim.statement} (levels over {over})")
@@ -196,8 +200,8 @@ def extend_to_device(
         return claim
     why = f"holds for friction alone, {claim.verdict}; but {', '.join(left)} may supply energy, or "
     why += "are in no theorem"
-    if stated := [n for n in left if n in declared]:
-        why += f"; as declared by {', '.join(stated)} it takes energy, which nothing has checked"
+    for name, step in left.items():
+        why += f"; {name} declares to supply none, which does not follow: {step}" if step else ""
     return Claim(claim.statement, Unknown(why))
 
 
@@ -208,21 +212,15 @@ def restate_for_device(
 
     besides: names of further effects that the theorem of this claim covers
     """
-    left = [name for name in device.set_aside if name not in besides]
+    left = {name: why for name, why in device.left_open.items() if name not in besides}
     claim = use_units_of(device.body.axis, claim)
-    declared = [e.name for e in device.body.effects if e.energy != "supplies"]
-    return extend_to_device(claim, over=device.friction.over, left=left, declared=declared)
+    return extend_to_device(claim, over=device.friction.over, left=left)
 
 
 def _is_open(effect: Effect) -> bool:
     """Whether no theorem covers an effect; `damping_interval` judges forces."""
     if effect.role == "friction_shape":
-        dahl = _PRESLIDING.without("bristle_damping")
-        return not any(_is_same(effect, shape) for shape in (_PRESLIDING, dahl))
+        return effect.name != "presliding" or not is_shipped(effect)
     if effect.role in (*_LEVEL, "force"):
         return False
     return effect.energy == "supplies"
-
-
-def _is_same(one: Effect, other: Effect) -> bool:
-    return one.expression() == other.expression() and one.rates() == other.rates()

@@ -15,8 +15,11 @@ from ...controllers import Stage
 from ...simulate import Sampling
 from ..claims.claim import Claim, Counterexample
 from ..identified import IdentifiedDevice
+from ..law_facts import ANY_TIME, LawFacts, law_facts
 from ..search.by_simulation import SimulatedMotion
 from ._hypotheses import hypotheses_of
+
+Time = Literal["continuous", "sampled", "any"]
 
 
 @dataclass(frozen=True)
@@ -47,19 +50,29 @@ class Question:
     estimates: bool = True
 
     @property
-    def bound(self) -> float | None:
-        """Largest force that the cancellation commands, N; None where it declares no bound."""
-        return self.cancellation.value_of("bound") if self.cancellation else None
+    def law(self) -> LawFacts:
+        """What follows from the equations of the cancellation, in the time of the question."""
+        if self.cancellation is None:
+            return LawFacts()
+        period = self.computer.period if self.computer else 0.0
+        return law_facts(self.cancellation, (period, period))
 
     @property
-    def bristle_stiffness(self) -> float | None:
-        """Bristle stiffness of a cancellation that is a Dahl bristle, N/m; None for other laws."""
-        return self.cancellation.value_of("bristle_stiffness") if self.cancellation else None
+    def time_of_bound(self) -> Time:
+        """In which time the bound of the cancellation holds: "any", or that of the question."""
+        if self.cancellation is None or law_facts(self.cancellation, ANY_TIME).bound is not None:
+            return "any"
+        return "sampled" if self.computer else "continuous"
+
+    @property
+    def bound(self) -> float | None:
+        """Largest force that the cancellation commands, N; None where no bound follows."""
+        return self.law.bound
 
     @property
     def bristle(self) -> tuple[float, float] | None:
         """(level, stiffness) of a cancellation that is a Dahl bristle, N and N/m; else None."""
-        level, stiffness = self.bound, self.bristle_stiffness
+        level, stiffness = self.law.bound, self.law.bristle_stiffness
         return None if level is None or stiffness is None else (level, stiffness)
 
     @property
@@ -73,9 +86,6 @@ class Question:
         samples = self.computer.delay / self.computer.period
         # 1e-9: a delay written as a multiple of the period, rounded
         return round(samples) if abs(samples - round(samples)) <= 1e-9 * max(samples, 1) else None
-
-
-Time = Literal["continuous", "sampled", "any"]
 
 
 @dataclass(frozen=True, eq=False)

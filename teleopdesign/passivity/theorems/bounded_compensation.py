@@ -97,8 +97,8 @@ def _applies(question: Question) -> bool:
 def _claims(question: Question) -> list[TopicClaim]:
     device, bound = question.device, question.bound
     assert bound is not None
-    acting = device.acting_force(bound)
-    claims = [TopicClaim("any law within the level", _compare_level(device, acting), time="any")]
+    acting, time = device.acting_force(bound), question.time_of_bound
+    claims = [TopicClaim("any law within the level", _compare_level(device, acting), time=time)]
     if question.estimates:
         claims.append(TopicClaim("the same, with damping", _compare_at_every_speed(device, acting)))
     return claims

@@ -273,7 +273,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     sampled = question.computer is not None and device.presliding is not None
     when = ", continuous time" if sampled else ""
     # beside ideal friction it rests on the bound alone, which a computer keeps too
-    time: Time = "any" if device.presliding is None else "continuous"
+    time: Time = question.time_of_bound if device.presliding is None else "continuous"
     topic = f"95 % interval{when}"
     certain = TopicClaim(topic, dahl_claim(device, level, stiffness), time=time)
     if not question.estimates:

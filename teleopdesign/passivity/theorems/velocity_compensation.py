@@ -231,8 +231,8 @@ def _applies(question: Question) -> bool:
 
     In a computer its velocity must be the plain difference of readings without steps.
     """
-    computer, law = question.computer, question.cancellation
-    if law is None or law.value_of("smoothing") is None or question.bound is None:
+    computer = question.computer
+    if question.law.smoothing is None:
         return False
     if computer is None:
         return True
@@ -242,8 +242,8 @@ def _applies(question: Question) -> bool:
 
 def _claims(question: Question) -> list[TopicClaim]:
     """The claim for all values within the intervals, with the damping present at every speed."""
-    device, law, computer = question.device, question.cancellation, question.computer
-    assert law is not None and question.late is not None
+    device, law, computer = question.device, question.law, question.computer
+    assert question.late is not None
     topic = "law of velocity, with damping"
     if device.bristle_damping.high > 0:
         why = "no theorem covers bristle damping beside a law of velocity"
@@ -252,7 +252,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     claim = velocity_compensation(
         coulomb_level=device.lowest.low,
         compensator_level=question.bound,
-        smoothing_velocity=law.value_of("smoothing"),
+        smoothing_velocity=law.smoothing,
         viscous_damping=device.damping.low,
         presliding_stiffness=device.presliding and device.presliding.low,
         sample_time=computer and computer.period,
