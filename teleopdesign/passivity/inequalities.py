@@ -31,6 +31,11 @@ def is_never_negative(law: sp.Expr, ranges: Ranges) -> bool:
     if law.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
         return False
     free = sorted(law.free_symbols, key=str)
+    for symbol in free:
+        if ranges.get(symbol) == ANY:
+            size = sp.Symbol(f"size_of_{symbol.name}", positive=True)
+            cases = (law.subs(symbol, way * size) for way in (1, -1, 0))
+            return all(is_never_negative(case, {**ranges, size: POSITIVE}) for case in cases)
     if len(free) == 1 and ranges.get(free[0]) == POSITIVE and law.is_rational_function(*free):
         return _is_above_zero(law, free[0])
     return _is_above_zero_at_corners(law, ranges) or least_bound(law, ranges) >= 0
@@ -153,7 +158,7 @@ def range_of(part: sp.Expr, ranges: Ranges) -> tuple[sp.Expr, sp.Expr]:
         if (ends := _ends_of_fraction(part, free[0])) is not None:
             return ends
         square = _ends_of_fraction(sp.cancel(part**2), free[0])  # of a root
-        if square is not None:
+        if square is not None and square[0] >= 0:
             most = sp.sqrt(square[1])
             most = most if most.is_Rational else sp.Rational(math.nextafter(float(most), math.inf))
             return (sp.S(0) if part.is_nonnegative else -most), most

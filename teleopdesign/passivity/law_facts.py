@@ -126,7 +126,9 @@ class _Form:
         within = self._bounded_states(made, bound)
         for force in self._cases(made.output, within):
             if not _stays_within_one(_scaled(force, 1 / exact_decimal(bound))):
-                raise ModelError(f"its force could not be shown to stay within {bound:g} N")
+                free = ", ".join(sorted(z.name for z, x in within.items() if x.is_Dummy))
+                beside = f", with any value of {free}" if free else ""
+                raise ModelError(f"its force could not be shown to stay within {bound:g}{beside}")
 
     def _cases(self, law: sp.Expr, within: Mapping[sp.Symbol, sp.Expr]) -> set[sp.Expr]:
         """The law with its values, for every direction of its signals and for rest.
@@ -148,32 +150,35 @@ class _Form:
     def _bounded_states(self, made: ControllerEquation, bound: float) -> dict[sp.Symbol, sp.Expr]:
         """State -> the size that it never exceeds, from zero at the start, times a share of it.
 
-        raises ModelError: no such size is known of some state
+        A state of which no such size is known may be any number.
         """
         changes = {**made.rates, **made.steps}
         within: dict[sp.Symbol, sp.Expr] = {}
         for _ in changes:  # a state may follow one that was bounded before
             for z, change in changes.items():
                 if z not in within and not (change.free_symbols & changes.keys()) - {z, *within}:
+                    cases = self._cases(change, within)
+                    steps = z in made.steps
+                    if self.kind != 0 and not steps and any(sp.diff(c, z).has(z) for c in cases):
+                        raise ModelError(f"{z} has no exact step: its rate is not affine in it")
+                    size = _size(z, cases, bound, steps=steps)
                     share = sp.Symbol(f"share_{len(within)}", real=True)
-                    size = self._size(z, self._cases(change, within), z in made.steps, bound)
-                    within[z] = size * share
-        if left := changes.keys() - within.keys():
-            raise ModelError(f"no range is known that {min(map(str, left))} never leaves")
+                    within[z] = sp.Dummy(real=True) if size is None else size * share
         return within
 
-    def _size(self, z: sp.Symbol, cases: set[sp.Expr], steps: bool, bound: float) -> sp.Expr:
-        """Size that a state never exceeds: the bound of the force, or its largest equilibrium.
 
-        cases: its rate, whose exact step keeps what the rate keeps, or (steps) its next value
-        raises ModelError: it could not be shown to stay within either
-        """
-        largest = max(_equilibrium(z, case - z * int(steps)) for case in cases)
-        keeps = _steps_within if steps else _leads_inward
-        for size in sorted({largest, exact_decimal(bound)}):
-            if all(keeps(case, z, size) for case in cases):
-                return size
-        raise ModelError(f"{z} could not be shown to stay within {float(largest):.6g}")
+def _size(z: sp.Symbol, cases: set[sp.Expr], bound: float, *, steps: bool) -> sp.Expr | None:
+    """Size that a state never exceeds: the bound of the force, or its largest equilibrium.
+
+    cases: its rate, whose exact step keeps what the rate keeps, or (steps) its next value
+    returns: None where neither could be shown
+    """
+    largest = max(_equilibrium(z, case - z * int(steps)) for case in cases)
+    keeps = _steps_within if steps else _leads_inward
+    for size in sorted({largest, exact_decimal(bound)}):
+        if size.is_finite and all(keeps(case, z, size) for case in cases):
+            return size
+    return None
 
 
 def _steps_within(after: sp.Expr, z: sp.Symbol, size: sp.Expr) -> bool:
@@ -197,22 +202,17 @@ def _ranges(law: sp.Expr) -> Ranges:
 
 
 def _equilibrium(z: sp.Symbol, change: sp.Expr) -> sp.Expr:
-    """Largest size of a state at which it does not change.
-
-    change: affine in the state;  raises ModelError: it is not, or its equilibria have no bound
-    """
+    """Largest size of a state at which it does not change; oo where none is known."""
     slope = sp.diff(change, z)
     if slope.has(z):
-        raise ModelError(f"the equation of {z} is not affine in it")
+        return sp.oo
     if slope == 0:
         return sp.S(0)
     rest = sp.simplify(-change.subs(z, 0) / slope)
     size = max(map(abs, range_of(rest, _ranges(rest))))
     if size.is_infinite:
         size = -min(least_bound(way * rest, _ranges(rest)) for way in (1, -1))
-    if not math.isfinite(size):
-        raise ModelError(f"no range is known that {z} never leaves")
-    return sp.Rational(size)
+    return sp.Rational(size) if math.isfinite(size) else sp.oo
 
 
 def _scaled(law: sp.Expr, factor: sp.Expr) -> sp.Expr:
@@ -226,7 +226,4 @@ def _scaled(law: sp.Expr, factor: sp.Expr) -> sp.Expr:
 
 def _stays_within_one(share: sp.Expr) -> bool:
     """Whether abs(share) <= 1 is proved."""
-    square = sp.cancel(share**2) if share.free_symbols == {_SPEED} else share
-    if square is not share and square.is_rational_function(_SPEED):  # of a root, too
-        return all(is_never_negative(e, _ranges(e)) for e in (square, 1 - square))
     return all(is_never_negative(e, _ranges(e)) for e in (1 - share, 1 + share))
