@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from ..effects import Effect
     from ..measurement import Experiment
     from ..model import Model
+    from ..passivity.identified import Basis
     from ..realise.reach import Reach
 
 #: of one or two bodies, or of an arm
@@ -230,39 +231,43 @@ def _select_body(model: Model, body: str, source: Path) -> Model:
     return Model({place: model.bodies[place]}, model.known)
 
 
-def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Reach | None]:
+def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Reach | None, Basis]:
     """The diagnosed body of an answer (.json), or of a folder, which is diagnosed now and printed.
 
     An answer contains its model, so it needs no folder. With a folder and `--answer`, the model of
     the answer is used with the records of the folder.
 
-    returns: the body, and the range that its records reached; None without records
+    returns: the body, the range that its records reached (None without records), and what limits
+        of its friction rest on
     """
     from ..design.reach import reach_of
+    from ..diagnose.answers import load_answer
+    from ._basis import basis_of_answer, basis_of_diagnosis
 
     if source.suffix == ".json" and not source.is_dir():
         if options.answer is not None:
             raise ExperimentError(f"--answer: found beside {source}, which is an answer itself")
         model = _model_of_answer(source, options)
-        return model.bodies[_place(model, source, options.body)], None
+        place = _place(model, source, options.body)
+        return model.bodies[place], None, basis_of_answer(load_answer(source), model, place)
     experiment = experiment_of(source)
     place = _place(stated_model(experiment, options), source, options.body)
     if options.answer is not None:
-        from ..diagnose.answers import load_answer
-
-        model = load_answer(options.answer).model(effects_by_name(options), experiment)
+        saved = load_answer(options.answer)
+        model = saved.model(effects_by_name(options), experiment)
+        basis = basis_of_answer(saved, model, place, experiment)
     else:
         diagnosis = diagnosis_of(experiment, options)
         print_diagnosis(diagnosis)
         print()
-        model = diagnosis.model
+        model, basis = diagnosis.model, basis_of_diagnosis(diagnosis, place)
     if experiment.arm is not None:
         from ..diagnose.arms.prepared import isolate_joint
 
         model = place_at_pose(model, experiment, place, options)
         print(inertia_line(model, place, options))
         experiment = isolate_joint(experiment, place)
-    return model.bodies[place], reach_of(experiment, place)
+    return model.bodies[place], reach_of(experiment, place), basis
 
 
 def _place(model: Model, source: Path, body: str | None) -> str:

@@ -23,6 +23,7 @@ from .answers.fingerprint import experiment_data
 from .by_simulation import SimulationComparison, simulation_data
 from .diagnosis import Diagnosis
 from .fit import Fit
+from .friction_cells import cells_data
 from .ladder_text import offset_rows
 from .learnable import learnable_data
 from .one_moment import Moment
@@ -72,6 +73,7 @@ def answer(diagnosis: Diagnosis) -> dict[str, Any]:
         "one_moment": _moment(diagnosis.moment),
         "on_all_records": make_plain(diagnosis.on_all_records),
         "at_bound": list(diagnosis.after.at_bound),
+        "friction_cells": cells_data(diagnosis.model, diagnosis.prepared),
         "evidence": (
             [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0]
             if recorded is None

@@ -15,6 +15,7 @@ from ..blocks import NINETY_FIVE, Body
 from ..effects import Effect
 from ..realise.acting_bound import largest_acting_force
 from ..realise.damping_interval import damping_interval
+from ..realise.friction_cells import FrictionCells
 from ..realise.friction_interval import (
     SPEED,
     FrictionInterval,
@@ -38,6 +39,52 @@ _LEVEL = ("friction_level", "friction_factor", "friction_speed")
 
 
 @dataclass(frozen=True)
+class Basis:
+    """What limits of an identified device rest on: the diagnosis that it comes from.
+
+    verdict: of the diagnosis;  left: what its model leaves, in noise floors
+    is_adequate: whether this counts as noise
+    cells: friction that model and residual show together; None: the answer does not say it
+    """
+
+    verdict: str
+    left: float
+    is_adequate: bool
+    cells: FrictionCells | None = None
+
+    @property
+    def bound(self) -> float | None:
+        """Least friction that the residual leaves, N or N m; None: it sets, or shows, no bound."""
+        if self.is_adequate or self.cells is None or not self.cells.covered:
+            return None
+        return self.cells.least
+
+    @property
+    def is_open(self) -> bool:
+        """Whether more than noise is left, and nothing bounds the friction with it."""
+        return not self.is_adequate and self.bound is None
+
+    def sentence(self, axis: str) -> str:
+        """What the limits rest on, in words."""
+        left = f"{self.left:.3g} noise floors left"
+        if self.is_adequate:
+            return f"the limits rest on a model whose error is noise ({left})"
+        answer = {"undecided": "an undecided answer"}.get(self.verdict, "an incomplete model")
+        start = f"the limits rest on {answer} with unexplained force ({left})"
+        if self.cells is None:
+            return f"{start}, which says nothing of the friction by place: none is certain"
+        covered, count = len(self.cells.covered), len(self.cells.cells)
+        if not covered:
+            return f"{start}, with too few samples in all {count} cells: none is certain"
+        open_ = self.cells.left_open(unit_of("position", axis))
+        rest = f"; not covered: {open_}" if open_ else ""
+        return (
+            f"{start}: on the friction with it in {covered} of {count} cells of position and "
+            f"direction{rest}"
+        )
+
+
+@dataclass(frozen=True)
 class IdentifiedDevice:
     """Friction of an identified device, as bounds for claims of passivity.
 
@@ -49,6 +96,7 @@ class IdentifiedDevice:
     left_open: effects that may supply energy, or that no theorem covers -> what could not be
         derived of them, "" where they declare nothing
     unknown: names of parameters without a standard error
+    basis: the diagnosis that the bounds rest on; None: the values are taken as they are
     """
 
     body: Body
@@ -59,6 +107,7 @@ class IdentifiedDevice:
     bristle_damping: Interval
     left_open: Mapping[str, str]
     unknown: tuple[str, ...]
+    basis: Basis | None = None
 
     @property
     def set_aside(self) -> tuple[str, ...]:
@@ -103,10 +152,14 @@ class IdentifiedDevice:
         return unit_of("stiffness", self.body.axis)
 
 
-def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
+def identify_device(
+    body: Body, reach: Reach | None = None, basis: Basis | None = None
+) -> IdentifiedDevice:
     """Bounds of friction level, presliding stiffness and damping of a body, in 95 % intervals.
 
     reach: range of the motions in the claims; None: every motion
+    basis: the diagnosis of the body. Where its model leaves more than noise, the lowest level is at
+        most the friction that the residual shows too, and holds in the cells that it covers
     raises ModelError: a body without friction, or with a friction level that may be zero, or with
         friction that deflects before it slides and a level without an upper bound
     """
@@ -114,6 +167,8 @@ def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
     friction = friction_interval(body, reach, errors=NINETY_FIVE)
     if friction is None:
         raise ModelError("passivity: the device has no friction to compensate")
+    if basis is not None and basis.bound is not None:
+        friction = _in_cells(friction, basis.bound)
     if friction.lowest.low <= 0:
         raise ModelError(
             f"passivity: the friction level may be as low as {friction.lowest.low:.3g} "
@@ -131,6 +186,11 @@ def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
     if bristle is not None:
         bristles = value_interval(bristle, errors=NINETY_FIVE)
     resistance = _resistance(body, damping.least, reach)
+    left_open = dict(effects_left_open(body, reach, errors=NINETY_FIVE))
+    if basis is not None and not basis.is_adequate:
+        resistance = replace(resistance, low=min(resistance.low, friction.lowest.low))
+        if basis.is_open or friction.presliding is not None:
+            left_open["what the diagnosis leaves unexplained"] = ""
     return IdentifiedDevice(
         body,
         reach,
@@ -138,7 +198,7 @@ def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
         resistance.round_outward(digits=DIGITS),
         damping.least.round_outward(digits=DIGITS),
         bristles.round_outward(digits=DIGITS),
-        effects_left_open(body, reach, errors=NINETY_FIVE),
+        left_open,
         tuple(
             n
             for n, v in body.parameters.items()
@@ -146,7 +206,15 @@ def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
             and math.isnan(v.stderr)
             and not (v.value == 0 and body.parameter(n).optional)  # one that is not there
         ),
+        basis,
     )
+
+
+def _in_cells(friction: FrictionInterval, bound: float) -> FrictionInterval:
+    """The levels, the lowest at most a bound (N) in the cells of a residual."""
+    lowest = Interval(*(min(x, bound) for x in vars(friction.lowest).values()))
+    over = "" if friction.over == ANY_MOTION else f"{friction.over}, "
+    return replace(friction, lowest=lowest, over=f"{over}the cells that the residual covers")
 
 
 def _round_friction(friction: FrictionInterval) -> FrictionInterval:

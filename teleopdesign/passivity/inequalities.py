@@ -116,11 +116,11 @@ def _least_coefficient(
         return sp.S(-1)
     coefficients = {(0,) * len(positive): sp.S(0)}
     for powers, c in whole.terms():
-        own, rest = powers[: len(positive)], powers[len(positive) :]
+        power, rest = powers[: len(positive)], powers[len(positive) :]
         term = c * sp.prod(x**k for x, k in zip(marks, rest, strict=True))
-        coefficients[own] = coefficients.get(own, sp.S(0)) + term
+        coefficients[power] = coefficients.get(power, sp.S(0)) + term
     corners = [dict(zip(marks, c, strict=True)) for c in product(*(ends[x] for x in marks))]
-    least = {own: min(c.subs(at) for at in corners) for own, c in coefficients.items()}
+    least = {power: min(c.subs(at) for at in corners) for power, c in coefficients.items()}
     return least[(0,) * len(positive)] if min(least.values()) >= 0 else sp.S(-1)
 
 

@@ -13,12 +13,9 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from ..diagnose.solve import BLOCK
-from ..measurement.filtering import Array
+from ..measurement.filtering import FORGOTTEN, Array
 from .rows import Rows
 
-#: periods of the bandwidth after which the low-pass has forgotten its input: its slowest pole, with
-#: a time constant of 2.6 / (2 pi bandwidth), has decayed to exp(-7) in both directions
-FORGOTTEN = 3.0
 #: lags that are looked at
 LAGS = 12
 

@@ -406,7 +406,7 @@ def test_a_bound_counts_for_the_periods_in_which_the_law_keeps_it(law, longest):
     assert bool(always.missing) is (first.time == "continuous")
 
 
-def test_a_state_with_a_step_of_its_own_is_read_from_a_file(tmp_path):
+def test_the_file_of_a_law_may_state_the_step_of_a_state(tmp_path):
     states = """states={"z": ControllerState("force", lambda now, p: -p.second * now.z,
         lambda now, p: now.z + now.period * now.input)}"""
     law = load_controller(law_file(tmp_path, "p.level * now.z", states))

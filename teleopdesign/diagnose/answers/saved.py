@@ -14,6 +14,8 @@ from ...effects import EFFECTS, Effect
 from ...measurement.bandwidth import bandwidth_of
 from ...measurement.experiment import Experiment
 from ...model import Model
+from ...realise.friction_cells import FrictionCells, cells_of_rows
+from ..criteria import CRITERIA
 from .bodies import model_from
 from .fingerprint import bodies_text, difference
 from .schema import read_content
@@ -62,6 +64,16 @@ class SavedAnswer:
         computed = last / floor if floor and last is not None else None
         left = self.content.get("left_over_noise_floors", computed)
         return float("inf") if left is None else float(left)
+
+    @property
+    def is_adequate(self) -> bool:
+        """Whether its last model leaves no more than noise."""
+        return self.verdict == "model_adequate" or self.left <= CRITERIA.adequate
+
+    def friction_cells(self, place: str) -> FrictionCells | None:
+        """Least friction of a body by cells of its travel; None: the answer does not say it."""
+        rows = self.content.get("friction_cells", {}).get(place)
+        return None if rows is None else cells_of_rows(rows)
 
     def model(
         self, known: Mapping[str, Effect] = EFFECTS, experiment: Experiment | None = None

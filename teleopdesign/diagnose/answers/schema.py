@@ -245,6 +245,17 @@ _LATER: dict[str, Check] = {
     "set_aside": _list_of(
         _table({"effect": _text, "at": _text, "check_error": _ERROR, "reason": _text})
     ),
+    "friction_cells": _table_of(
+        _list_of(
+            _table(
+                {
+                    **dict.fromkeys(("low", "high", "direction"), _number()),
+                    "samples": _SIZE,
+                    "least": _number(null=True),
+                }
+            )
+        )
+    ),
     "floor": _table({"drawn": _SIZE, "held": _flag}),
     "open": _list_of(
         _table(

@@ -21,23 +21,23 @@ DAHL = controller("dahl", {"level": 0.4, "stiffness": 1e4})
 LATE = 0.2
 
 
-def term(law, own, *, stores=False, dissipates=False, rate=None, own_rate=None):
+def term(law, numeric, *, stores=False, dissipates=False, rate=None, numeric_rate=None):
     """A term: sympy of now, floats of (x, v, late x, late v, time, state), and what is true of it.
 
-    rate, own_rate: of its state, sympy of (now, state), and floats of (x, v, state)
+    rate, numeric_rate: of its state, sympy of (now, state), and floats of (x, v, state)
     """
-    return law, own, stores, dissipates, rate, own_rate
+    return law, numeric, stores, dissipates, rate, numeric_rate
 
 
 def linked(k):
-    return {"rate": lambda n, z: n.velocity - k * z, "own_rate": lambda x, v, z: v - k * z}
+    return {"rate": lambda n, z: n.velocity - k * z, "numeric_rate": lambda x, v, z: v - k * z}
 
 
 BRISTLE = {"rate": lambda n, z: n.velocity - 3 * sp.Abs(n.velocity) * z,
-           "own_rate": lambda x, v, z: v - 3 * abs(v) * z}  # fmt: skip
+           "numeric_rate": lambda x, v, z: v - 3 * abs(v) * z}  # fmt: skip
 INNER = {
     "rate": lambda n, z: 2 * (n.position - z),
-    "own_rate": lambda x, v, z: 2 * (x - z),
+    "numeric_rate": lambda x, v, z: 2 * (x - z),
 }
 TERMS = {
     "damper": term(lambda n, z: n.velocity, lambda x, v, *_: v, dissipates=True),
@@ -124,15 +124,15 @@ def released(terms, motions, rounds=3, steps=500):
         x = (sizes * np.sin(angle)).sum(axis=1)
         return x, (sizes * k * w * np.cos(angle)).sum(axis=1)
 
-    own_rate = next((one[5] for _, one in terms if one[5] is not None), None)
+    numeric_rate = next((one[5] for _, one in terms if one[5] is not None), None)
     z, out, turned = np.zeros(len(motions)), np.zeros(len(motions)), np.zeros(len(motions))
     dt = period / steps
     for n in range(rounds * steps):
         t = (n + 0.5) * dt
         (x, v), late = at(t), at(t - LATE)
-        if own_rate is not None:  # of second order: the state in the middle of the step
-            z_mid = z + dt / 2 * own_rate(*at(n * dt), z)
-            z, z_now = z + dt * own_rate(x, v, z_mid), z_mid
+        if numeric_rate is not None:  # of second order: the state in the middle of the step
+            z_mid = z + dt / 2 * numeric_rate(*at(n * dt), z)
+            z, z_now = z + dt * numeric_rate(x, v, z_mid), z_mid
         else:
             z_now = z
         power = v * sum(sign * one[1](x, v, *late, t, z_now) for sign, one in terms)

@@ -73,7 +73,7 @@ PARAMETERS = {"level": Parameter("force", "F")}
 
 def random_law(rng):
     """(the package's law, its force in floats, its state, largest share at T, longest period)"""
-    shape, own, most = SHAPES[str(rng.choice(list(SHAPES)))]
+    shape, numeric, most = SHAPES[str(rng.choice(list(SHAPES)))]
     factor = FACTORS[str(rng.choice(list(FACTORS), p=[0.6, 0.2, 0.2]))]
     share = float(rng.choice([0.5, 1 - 1e-6, 1.0, 1 + 1e-6, 1.5]))
 
@@ -85,7 +85,7 @@ def random_law(rng):
         return sp.Rational(str(share)) * p.level * factor(now.period) * made
 
     def in_floats(v, x, T):
-        return share * LEVEL * factor(T) * own(v, x)
+        return share * LEVEL * factor(T) * numeric(v, x)
 
     longest, step, states, law = inf, None, {}, force
     if rng.random() < 0.5:
@@ -139,19 +139,19 @@ def proved(law):
 def test_no_force_exceeds_a_bound_on_which_a_claim_rests(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):
-        law, in_floats, state, largest, longest = random_law(rng)
+        law, in_floats, state, size_at, longest = random_law(rng)
         (stage,) = controller(law, {"level": LEVEL}).stages
         times = proved(law)
         period = float(10 ** rng.uniform(-4, -1))
         for time, holds, true in (
-            (0.0, bool(times), largest(0.0) <= 1),
+            (0.0, bool(times), size_at(0.0) <= 1),
             (period, law_facts(stage, (period, period)).bound is not None,
-             largest(period) <= 1 and period <= longest),
-            (period, "any" in times, max(largest(0.0), largest(inf)) <= 1 and longest == inf),
+             size_at(period) <= 1 and period <= longest),
+            (period, "any" in times, max(size_at(0.0), size_at(inf)) <= 1 and longest == inf),
         ):  # fmt: skip
-            found = largest_force(rng, in_floats, state, time)
-            assert not (holds and found > 1 + 1e-9), (law, longest, time, found)
-            counts["proved" if holds else "open", "beaten" if found > 1 else "not beaten"] += 1
+            largest = largest_force(rng, in_floats, state, time)
+            assert not (holds and largest > 1 + 1e-9), (law, longest, time, largest)
+            counts["proved" if holds else "open", "beaten" if largest > 1 else "not beaten"] += 1
             counts["true, and open"] += true and not holds
     print(dict(counts))
     assert counts["open", "beaten"] > number / 2
