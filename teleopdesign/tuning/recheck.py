@@ -27,7 +27,7 @@ class CheckedLimit(ByValue):
 
     value: the worst within the intervals of the limit;  worst: values at which it occurs
     how: method that shows the value
-    active: whether the limit holds the search back: its value is near the bound
+    active: whether the limit is kept and holds the search back: its value is near the bound
     """
 
     limit: TuningLimit
@@ -40,7 +40,7 @@ class CheckedLimit(ByValue):
 
     def __repr__(self) -> str:
         unit = unit_after_number(self.unit)
-        state = "active" if self.active else "kept" if self.holds else "missed"
+        state = "missed" if not self.holds else "active" if self.active else "kept"
         at = ", ".join(f"{n} = {v:.4g}" for n, v in self.worst.items())
         where = f" at {at}" if at else ""
         number = "" if np.isnan(self.value) else f": {self.value:.5g}{unit}{where}"
@@ -59,10 +59,16 @@ def _check(problem: Problem, trial: TrialPoint, k: int) -> CheckedLimit:
     if one.name in CLAIMS and one.measure is None:
         claim = claim_over_intervals(diagram, one.over, claim=one.name)
         proved = claim.status == "proved" and (one.bound <= 0 or claim.proved_margin >= one.bound)
-        holds = bool(claim.holds) and (np.isnan(claim.margin) or one.excess(claim.margin) >= 0)
+        unmeasured = np.isnan(claim.margin)  # a claim without a margin shows that it is at least 0
+        holds = bool(claim.holds) and (
+            one.bound <= 0 if unmeasured else one.excess(claim.margin) >= 0
+        )
         how = claim.known if one.over or not proved else f"proved at this point{claim.limited}"
-        if holds and not proved:
+        if unmeasured and not proved:
+            how = f"without a margin: {claim.how}"
+        elif holds and not proved:
             how = f"checked numerically at {claim.points} points, worst found there"
+        active = active and holds
         return CheckedLimit(one, claim.margin, claim.unit, holds, how, claim.worst, active)
     box = box_over(one)
 
@@ -79,6 +85,7 @@ def _check(problem: Problem, trial: TrialPoint, k: int) -> CheckedLimit:
     how = f"checked numerically at {worst.points} points, worst found there"
     how = how if one.over else "computed at this point"
     holds = one.excess(value) >= 0
+    active = active and holds
     return CheckedLimit(one, value, unit, holds, how, box.named(worst.point), active)
 
 
