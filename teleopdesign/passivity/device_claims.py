@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.errors import ModelError
-from ..base.rounding import round_down, round_up
+from ..base.rounding import round_down, round_near, round_up
 from ..controllers import CONTROLLERS, Controller, Stage, controller
 from ..diagrams import haptic_interface
 from ..simulate import Sampling
@@ -107,7 +107,7 @@ def _search_claim(
         lengths = [device.lowest.estimate / device.presliding.estimate]
     if compensator.stage.value_of("bristle_stiffness") is not None:
         lengths.append(compensator.level / compensator.second)
-    stroke = 100 * max(lengths)
+    stroke = round_near(100 * max(lengths), digits=3)
     try:
         claim = search_counterexample(
             haptic_interface(device.body, cancellation=compensator.controller),

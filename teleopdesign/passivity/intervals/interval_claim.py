@@ -11,6 +11,7 @@ import numpy as np
 from ...base.by_value import ByValue
 from ...base.notebook import html_table
 from ...base.quantity import unit_after_number
+from ...base.rounding import round_down
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim, NotTrueOrFalse
 from .box import ValueBox
@@ -77,7 +78,8 @@ class IntervalClaim(NotTrueOrFalse, ByValue):
         if not np.isnan(self.margin):
             lines.append(f"    worst margin {self.margin:.4g}{unit} at {where or 'its values'}")
         if not np.isnan(self.proved_margin):
-            lines.append(f"    proved to be at least {self.proved_margin:.4g}{unit}")
+            least = round_down(self.proved_margin, digits=4)
+            lines.append(f"    proved to be at least {least:g}{unit}")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
