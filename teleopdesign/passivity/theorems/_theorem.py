@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from ...base.by_value import ByValue
 from ...controllers import Stage
 from ...simulate import Sampling
-from ..claims.claim import Claim, Counterexample
+from ..claims.claim import Claim, Counterexample, Proof, Refutation, Unknown
 from ..identified import IdentifiedDevice
 from ..law_facts import ANY_TIME, LawFacts, law_facts
 from ..search.by_simulation import SimulatedMotion
@@ -65,11 +65,6 @@ class Question:
         return "sampled" if self.computer else "continuous"
 
     @property
-    def bound(self) -> float | None:
-        """Largest force that the cancellation commands, N; None where no bound follows."""
-        return self.law.bound
-
-    @property
     def bristle(self) -> tuple[float, float] | None:
         """(level, stiffness) of a cancellation that is a Dahl bristle, N and N/m; else None."""
         level, stiffness = self.law.bound, self.law.bristle_stiffness
@@ -113,26 +108,6 @@ class TopicClaim(ByValue):
         return f"{self.claim.heading}{' (in continuous time)' * limited}"
 
 
-def simulate_nothing(counterexample: Counterexample) -> SimulatedMotion | None:
-    """Default of `Theorem.simulate`: no simulation, equations alone replay a refuting motion."""
-    return None
-
-
-def cover_nothing(question: Question) -> Sequence[str]:
-    """Default of `Theorem.covers`: no effect besides those of friction."""
-    return ()
-
-
-def ask_nothing(question: Question) -> bool:
-    """Default of `Theorem.applies`: no question, the theorem is about numbers alone."""
-    return False
-
-
-def claim_nothing(question: Question) -> Sequence[TopicClaim]:
-    """Default of `Theorem.claims`: no claim."""
-    return ()
-
-
 @dataclass(frozen=True)
 class Theorem:
     """A theorem: its functions of numbers, and the questions about devices that it answers.
@@ -148,11 +123,42 @@ class Theorem:
 
     mathematics: tuple[Callable[..., Claim], ...]
     order: int
-    applies: Callable[[Question], bool] = ask_nothing
-    claims: Callable[[Question], Sequence[TopicClaim]] = claim_nothing
-    covers: Callable[[Question], Sequence[str]] = cover_nothing
-    simulate: Callable[[Counterexample], SimulatedMotion | None] = simulate_nothing
+    applies: Callable[[Question], bool] = lambda question: False
+    claims: Callable[[Question], Sequence[TopicClaim]] = lambda question: ()
+    covers: Callable[[Question], Sequence[str]] = lambda question: ()
+    simulate: Callable[[Counterexample], SimulatedMotion | None] = lambda motion: None
 
     def __post_init__(self) -> None:
         for function in self.mathematics:
             hypotheses_of(function)
+
+
+def decide(
+    statement: str,
+    holds: bool,
+    *,
+    proof: Callable[[], Proof],
+    motion: Callable[[], Any],
+    how: str | Callable[[Any], str],
+    why_open: str = "",
+) -> Claim:
+    """The claim of a theorem: proved where its condition holds, else as `refute` says."""
+    return Claim(statement, proof()) if holds else refute(statement, motion(), how, why_open)
+
+
+def refute(
+    statement: str, record: Any, how: str | Callable[[Any], str], why_open: str = ""
+) -> Claim:
+    """A claim that a motion refutes, or that is unknown.
+
+    record: a motion that releases energy, or None where the search has none
+    how: of the refutation, in words;  why_open: what an unknown claim says
+    """
+    if record is None:
+        return Claim(statement, Unknown(why_open))
+    return Claim(statement, Refutation(how if isinstance(how, str) else how(record), record))
+
+
+def unanswered(topic: str, statement: str, why: str, **more: Any) -> TopicClaim:
+    """A claim that no theorem answers."""
+    return TopicClaim(topic, Claim(statement, Unknown(why)), **more)
