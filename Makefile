@@ -5,19 +5,23 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?=
 FUZZ ?= 2000
+FAULT_ARGS ?= --warm
 MUTATE ?= teleopdesign/effects tests/effects --number 10
 STUDY_ARGS ?=
 STUDY_OUTPUT ?= studies/output
 # what is run with the lowest versions: files, equations, compiled code, proofs, tables
-LOWEST_TESTS ?= tests/effects tests/measurement tests/realise tests/simulate tests/passivity/test_kyp.py \
+LOWEST_TESTS ?= tests/effects tests/measurement tests/check tests/realise tests/simulate tests/passivity/test_kyp.py \
 	tests/studies tests/tuning tests/plot tests/design tests/commands
 # processes at a time, of tests and of studies
 JOBS ?= 2
 # parts in which pages are read: more than cores, for some pages take minutes and others none
 PARTS ?= 4
+# parts of the golden files (default: all quick ones), and whether the long ones too: WHOLE=1
+GOLDEN_PARTS ?=
+WHOLE ?=
 PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input
 
-.PHONY: help demo test slow lint types imports docs studies benchmarks fuzz mutants lowest lock licences wheel ci clean
+.PHONY: help demo test slow lint types imports docs studies golden size benchmarks fuzz mutants faults lowest lock licences wheel ci clean
 # what one process has compiled to bytecode, hundreds of others need not compile again: collecting the
 # tests takes each process 5.6 s of processor time, 9.5 s without
 unexport PYTHONDONTWRITEBYTECODE
@@ -67,6 +71,16 @@ fuzz: $(VENV)/installed-test $(VENV)/installed-fuzz  ## spoilt files for every r
 mutants: $(VENV)/installed-test  ## small changes that no test notices (MUTATE="FOLDER TESTS --number N")
 	@echo "== Mutants: $(MUTATE)"
 	@$(BIN)/python tests/trust/mutants.py $(MUTATE)
+
+golden: $(VENV)/installed-test  ## what the package answers against golden/frozen (GOLDEN_PARTS, WHOLE=1; see golden/README.md)
+	@echo "== Golden files"
+	@$(BIN)/python golden/freeze.py $(GOLDEN_PARTS) $(if $(WHOLE),--whole)
+
+size:  $(VENV)/installed-core  ## lines, files, thresholds, importers, modules loaded
+	@$(BIN)/python golden/size.py
+faults: $(VENV)/installed-test  ## planted faults that the plain tests do not notice; hours (FAULT_ARGS="--anchors-only")
+	@echo "== Planted faults"
+	@$(BIN)/python golden/faults.py $(FAULT_ARGS)
 
 benchmarks: $(VENV)/installed-test  ## times against their bounds, one at a time
 	@echo "== Benchmarks"

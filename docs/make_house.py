@@ -16,12 +16,12 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "teleopdesign"
-STYLE = PACKAGE / "plot" / "teleopdesign.mplstyle"
+STYLE = PACKAGE / "show" / "figures" / "teleopdesign.mplstyle"
 OUTPUT = Path(__file__).parent / "_static" / "house.svg"
 #: what the rooms of a layer are for, by one room of it
 FLOORS = {
     "cli": "what a user types",
-    "plot": "shows results, computes nothing",
+    "show": "shows results, computes nothing",
     "papers": "statements of the papers",
     "design": "from a model to controllers",
     "check": "around a diagnosis",

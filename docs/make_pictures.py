@@ -17,7 +17,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import teleopdesign as td  # noqa: E402
 
 ROD = td.example("rod")
-STYLE = Path(td.__file__).parent / "plot" / "teleopdesign.mplstyle"
+STYLE = Path(td.__file__).parent / "show" / "figures" / "teleopdesign.mplstyle"
 OUTPUT = Path(__file__).parent / "_static" / "diagnosis.png"
 MEASURED, BEFORE, AFTER = "0.6", "#D55E00", "#0072B2"
 #: s, of the check record: slow strokes, where friction is most of the force

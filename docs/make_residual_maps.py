@@ -27,7 +27,7 @@ from teleopdesign.blocks import Body, Value  # noqa: E402
 from teleopdesign.measurement.motion import motion_of  # noqa: E402
 from teleopdesign.realise.along_motion import residual_along  # noqa: E402
 
-STYLE = Path(td.__file__).parent / "plot" / "teleopdesign.mplstyle"
+STYLE = Path(td.__file__).parent / "show" / "figures" / "teleopdesign.mplstyle"
 STATIC = Path(__file__).parent / "_static"
 PICTURE, TABLE = STATIC / "residual_maps.png", STATIC / "residual_maps.txt"
 SAMPLE_TIME = 1e-3  # s

@@ -14,7 +14,7 @@ from teleopdesign import EFFECTS
 
 #: columns of the confusion figure beside the effects
 OTHER = ("other place", "look-alikes", "undecided", "adequate", "no answer")
-STYLE = "teleopdesign.plot.teleopdesign"
+STYLE = "teleopdesign.show.figures.teleopdesign"
 COLOURS = {"best candidate": "#0072B2", "all candidates": "#D55E00"}
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from teleopdesign.base.errors import ModelError
-from teleopdesign.plot import save_figure
+from teleopdesign.show import save_figure
 from teleopdesign.studies import study
 
 if TYPE_CHECKING:

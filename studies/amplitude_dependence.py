@@ -24,7 +24,7 @@ from _study import write_study
 
 from teleopdesign.diagrams import four_cases, read_open_number, world_haptics_2005
 from teleopdesign.frequency import ImpedanceMap, measured_impedance, quasi_linear_impedance
-from teleopdesign.plot import plot_spread
+from teleopdesign.show import plot_spread
 
 FORCE = 10.0  # N; what the actuator gives
 

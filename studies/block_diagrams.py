@@ -34,7 +34,7 @@ from teleopdesign.diagrams import (
     tip_coordinates,
     write_diagram,
 )
-from teleopdesign.plot import draw_diagram, save_figure
+from teleopdesign.show import draw_diagram, save_figure
 
 NAME = "block_diagrams"
 

@@ -38,7 +38,7 @@ from scipy.signal import butter, sosfiltfilt
 import teleopdesign as td
 from teleopdesign.base.errors import TeleopDesignError
 from teleopdesign.diagnose.search_plan import PLAN, QUICK
-from teleopdesign.plot import save_figure
+from teleopdesign.show import save_figure
 
 NAME = "grafted_effects"
 #: times what the last model leaves

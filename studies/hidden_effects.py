@@ -40,7 +40,7 @@ from _recovery_tables import (
 )
 from _scoring import load_answer, load_truth
 
-from teleopdesign.plot import save_figure
+from teleopdesign.show import save_figure
 
 NAME = "hidden_effects"
 BASELINES = tuple(m for m in METHODS if m != "answers")

@@ -36,7 +36,7 @@ from matplotlib.figure import Figure
 
 import teleopdesign as td
 from teleopdesign.diagnose.arms.answer import write_arm_answer
-from teleopdesign.plot import save_figure
+from teleopdesign.show import save_figure
 
 NAME = "hidden_in_arms"
 #: the simulator of arms: code that shares nothing with the package

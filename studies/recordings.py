@@ -32,7 +32,7 @@ from teleopdesign.diagnose.arms import find_missing_in_arm
 from teleopdesign.diagnose.search_plan import PLAN, QUICK
 from teleopdesign.measurement import Experiment
 from teleopdesign.measurement.recordings import RECORDINGS
-from teleopdesign.plot import save_figure
+from teleopdesign.show import save_figure
 from teleopdesign.unexplained import where_it_fails
 
 NAME = "recordings"

@@ -174,7 +174,7 @@ def _link() -> arms.Link:
 
 
 def _drawing() -> Any:
-    from teleopdesign.plot import draw_diagram
+    from teleopdesign.show import draw_diagram
 
     return draw_diagram(diagram())
 

@@ -1,4 +1,4 @@
-"""An effect, control law, diagram, command or theorem is added by one file and nothing else."""
+"""An effect, control law, diagram, command, check or theorem is one added file."""
 
 import os
 import shutil
@@ -102,6 +102,19 @@ THEOREM = Theorem(
 )
 '''
 
+CHECK = '''"""Throw-away: every recording is remarkable."""
+
+from ..base.finding import Finding
+from ._recording import RecordingCheck
+
+
+def find_remarkable_recordings(recording):
+    yield Finding("throw-away", "note", "a remarkable recording.")
+
+
+CHECK = RecordingCheck(order=5, find=find_remarkable_recordings)
+'''
+
 ASK = """
 from teleopdesign import Body, EFFECTS
 from teleopdesign.passivity.identified import identify_device
@@ -182,6 +195,11 @@ def test_a_command_is_one_file(copy, add_file):
     add_file("commands/throw_away.py", COMMAND)
     assert "--loudly" in run(copy, "throw-away", "--help")
     assert run(copy, "throw-away", "--loudly") == "HELLO\n"
+
+
+def test_a_check_of_recordings_is_one_file(copy, add_file):
+    add_file("check/throw_away.py", CHECK)
+    assert "a remarkable recording" in run(copy, "check", str(td.example("rod")))
 
 
 def test_a_theorem_is_one_file(copy, add_file):

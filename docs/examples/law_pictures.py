@@ -10,7 +10,7 @@ from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.simulate import Sampling, simulate, sine
 
-STYLE = Path(td.__file__).parent / "plot" / "teleopdesign.mplstyle"
+STYLE = Path(td.__file__).parent / "show" / "figures" / "teleopdesign.mplstyle"
 LEVEL = 0.5  # N
 BRISTLE = {"level": LEVEL, "stiffness": 1e4}  # gives by 50 um
 STRIBECK = {"extra_static_level": 0.15, "stribeck_velocity": 2e-3, "bristle_damping": 0.0}

@@ -4,6 +4,11 @@
 in `workbench.py`, without a page, so that a script can do the same.
 """
 
-from .workbench import Workbench
+from typing import TYPE_CHECKING
 
-__all__ = ["Workbench"]
+from ..base.folders import lazy_face
+
+if TYPE_CHECKING:
+    from .workbench import Workbench as Workbench
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..plot.diagnosis import AFTER, BACKWARD, BEFORE, FORWARD
+from ..show.figures.diagnosis import AFTER, BACKWARD, BEFORE, FORWARD
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..base.errors import TeleopDesignError
-from ..base.plain_data import write_beside, write_text
+from ..base.files import write_beside, write_text
 from ..diagnose.answer import write_answer
 from .pages import propose_design
 from .workbench import Workbench
@@ -44,7 +44,7 @@ def write_all(
 
     say: receives the name of each step
     """
-    from ..report import write_report
+    from ..show.report import write_report
     from ..unexplained import where_it_fails
 
     target = folder / RESULTS / bench.experiment.folder.name

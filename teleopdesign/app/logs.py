@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
+from ..check import look_at, stopping_findings
+from ..measurement.experiment import load_experiment
 from ..measurement.new_folder import FitAndCheck, check_spans, make_folder
 from ..measurement.survey import Choices, Survey, spans_of, survey_log
 from ..measurement.tables import open_log
@@ -88,7 +90,7 @@ class Preview:
         """
         from matplotlib.figure import Figure
 
-        from ..plot.log import shade_spans
+        from ..show.figures.log import shade_spans
 
         shown = [
             (key, entry)
@@ -173,6 +175,13 @@ def make_experiment(folder: Path, shown: Preview, spans: FitAndCheck | None = No
         raise ExperimentError(f"{target.name}: is there already: rename it or the log")
     make_folder(shown.survey, [log], target, title=stem, spans=spans)
     return str(target.relative_to(folder))
+
+
+def describe_made(folder: Path, name: str) -> str:
+    """What to do with an experiment that was made, or why no diagnosis of it can answer."""
+    recording = look_at(load_experiment(resolve_inside(folder, name)))
+    reasons = " ".join(f.sentence for f in stopping_findings(recording))
+    return f"{name} is created: {reasons or 'open it above'}"
 
 
 def choices_of(answers: Answers) -> Choices:

@@ -142,7 +142,7 @@ def _(
     def make(shown, spans):
         try:
             made = logs.make_experiment(folder, shown, spans)
-            set_note(f"{made} is created: open it above")
+            set_note(logs.describe_made(folder, made))
         except TeleopDesignError as error:
             set_note(str(error))
         set_names(lambda n: n + 1)

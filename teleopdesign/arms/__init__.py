@@ -1,18 +1,18 @@
 """Arms: chains of links on joints, their kinematics, and the joint forces of their motion."""
 
-from .base_parameters import BaseParameters, base_parameters
-from .chain import INERTIAL, Chain, Link, inertia_about, rotation_of
-from .regressor import force_columns
-from .urdf import read_urdf
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "INERTIAL",
-    "Chain",
-    "BaseParameters",
-    "Link",
-    "base_parameters",
-    "force_columns",
-    "inertia_about",
-    "read_urdf",
-    "rotation_of",
-]
+from ..base.folders import lazy_face
+
+if TYPE_CHECKING:
+    from .base_parameters import BaseParameters as BaseParameters
+    from .base_parameters import base_parameters as base_parameters
+    from .chain import INERTIAL as INERTIAL
+    from .chain import Chain as Chain
+    from .chain import Link as Link
+    from .chain import inertia_about as inertia_about
+    from .chain import rotation_of as rotation_of
+    from .regressor import force_columns as force_columns
+    from .urdf import read_urdf as read_urdf
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -9,10 +9,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .by_value import ByValue
-from .notebook import html_table
+from .frozen import ByValue
+from .shown import html_table
 
 Array = NDArray[np.float64]
+#: "fine" says that all is well, "note" is worth knowing, "warning" needs care
+Concern = Literal["fine", "note", "warning"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -49,19 +51,21 @@ class Finding(ByValue):
     """One fact about a recording, or about what a model leaves unexplained.
 
     topic: the subject of the finding ("sample clock", "dependence on velocity")
-    concern: "fine" says that all is well, "note" is worth knowing, "warning" needs care
-    sentence: the fact in plain words, with the numbers
+    concern: how much it matters;  sentence: the fact in plain words, with the numbers
     numbers: name -> value (SI)
     where: the record or body that the finding is about; "" for all
     graph: a graph that shows the fact, or None
+    stops: whether these records tell no effect, whatever is fitted, so that a diagnosis names none;
+        the sentence then ends with what mends that
     """
 
     topic: str
-    concern: Literal["fine", "note", "warning"]
+    concern: Concern
     sentence: str
     numbers: Mapping[str, float] = field(default_factory=dict)
     where: str = ""
     graph: Graph | None = None
+    stops: bool = False
 
     def __str__(self) -> str:
         place = f"{self.where}: " if self.where else ""

@@ -1,7 +1,7 @@
-"""Channels whose content is not what their label says: a clock in ms, swapped columns.
+"""Columns of position and force of one body that are exchanged.
 
 This shows without a model: inertia and friction explain a force by the motion, but not a position
-by a force, and no machine is logged once in ten seconds.
+by a force.
 """
 
 from __future__ import annotations
@@ -9,12 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..base.finding import Finding
-from ..measurement.experiment import Experiment
 from ..measurement.first_guess import explain_force
-from ..measurement.soundness.signal import channel_label
+from ._recording import CheckedRecording, RecordingCheck
 
-#: Hz: lowest and highest plausible rate of a log
-SLOWEST, FASTEST = 5.0, 1e6
 #: columns seem exchanged if the motion explains less than AS_LOGGED of the force as logged, and
 #: more than EXCHANGED of it the other way round. On the recordings of `fetch` and twelve simulated
 #: ones the part is 0.47 to 1.0 for columns in their places, and, with one exception (0.43), at most
@@ -22,53 +19,33 @@ SLOWEST, FASTEST = 5.0, 1e6
 AS_LOGGED, EXCHANGED = 0.25, 0.6
 
 
-def check_clock_unit(experiment: Experiment) -> Iterator[Finding]:
-    """Findings on a sample rate that no logger has: the unit of the time is wrong."""
-    for record in experiment.records:
-        rate = 1.0 / record.sample_time
-        if SLOWEST <= rate <= FASTEST:
-            continue
-        channel = experiment.channels.get("time")
-        unit = "s" if channel is None else channel.unit
-        smaller = {"s": "ms", "ms": "us", "us": "ns"}.get(unit, "ms")
-        larger = {"ms": "s", "us": "ms", "ns": "us"}.get(unit, "s")
-        meant = smaller if rate < SLOWEST else larger
-        yield Finding(
-            "sample clock",
-            "warning",
-            f"{rate:.4g} samples a second: the time is in {meant}, given as {unit}; write "
-            f'unit = "{meant}" at channels.time.',
-            {"rate": rate},
-            record.file,
-        )
-
-
-def check_mixed_columns(experiment: Experiment) -> Iterator[Finding]:
-    """Findings on columns of position and force that are exchanged within one body."""
+def find_mixed_columns(recording: CheckedRecording) -> Iterator[Finding]:
+    """Bodies whose force is explained by the motion only if it is taken for the position."""
+    if recording.prepared is None:
+        return
+    experiment = recording.prepared.experiment
     record = experiment.fit_records[0]
-    rows = max(record.segments, key=lambda s: s.stop - s.start)
+    rows = record.longest
     for body in experiment.bodies:
-        force, position = (
-            record.signals[f"{body}.{q}"][rows] for q in ("actuator_force", "position")
-        )
+        keys = [f"{body}.{q}" for q in ("position", "actuator_force")]
+        position, force = (record.signals[key][rows] for key in keys)
         hand = record.signals.get(f"{body}.interaction_force")
         other = 0.0 if hand is None else hand[rows]
         if force.std() == 0.0 or position.std() == 0.0:
             continue
-        as_logged = explain_force(force + other, position, record.sample_time)
-        exchanged = explain_force(position + other, force, record.sample_time)
-        if as_logged.explained < AS_LOGGED and exchanged.explained > EXCHANGED:
-            keys = [f"{body}.{q}" for q in ("position", "actuator_force")]
-            names = [channel_label(experiment, key) for key in keys]
+        as_logged = explain_force(force + other, position, record.sample_time).explained
+        exchanged = explain_force(position + other, force, record.sample_time).explained
+        if as_logged < AS_LOGGED and exchanged > EXCHANGED:
+            names = [recording.label(key) for key in keys]
             columns = [experiment.channels[key].column for key in keys]
-            yield Finding(
-                "swapped columns",
-                "warning",
+            sentence = (
                 f"the columns of {names[0]} and {names[1]} seem swapped: motion explains "
-                f"{100 * max(as_logged.explained, 0.0):.2g} % of the force, "
-                f"{100 * exchanged.explained:.2g} % the other way round; write "
-                f'column = "{columns[1]}" at channels.{names[0]} and column = "{columns[0]}" at '
-                f"channels.{names[1]}.",
-                {"as_given": as_logged.explained, "swapped": exchanged.explained},
-                body,
+                f"{100 * max(as_logged, 0.0):.2g} % of the force, {100 * exchanged:.2g} % the "
+                f'other way round; write column = "{columns[1]}" at channels.{names[0]} and '
+                f'column = "{columns[0]}" at channels.{names[1]}.'
             )
+            numbers = {"as_given": as_logged, "swapped": exchanged}
+            yield Finding("swapped columns", "warning", sentence, numbers, body)
+
+
+CHECK = RecordingCheck(order=110, find=find_mixed_columns)

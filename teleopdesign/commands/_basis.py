@@ -6,8 +6,8 @@ from ..base.errors import ExperimentError
 from ..diagnose import Diagnosis
 from ..diagnose.answers import SavedAnswer
 from ..diagnose.friction_cells import friction_cells
-from ..diagnose.prepare import prepare
 from ..measurement import Experiment, load_experiment
+from ..measurement.prepare import prepare
 from ..model import Model
 from ..passivity.identified import Basis
 

@@ -240,7 +240,7 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
     returns: the body, the range that its records reached (None without records), and what limits
         of its friction rest on
     """
-    from ..design.reach import reach_of
+    from ..design.stated_motion import reach_of
     from ..diagnose.answers import load_answer
     from ._basis import basis_of_answer, basis_of_diagnosis
 

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 def write_page(diagnosis: Diagnosis, path: Path) -> None:
     """Write the page, with findings on the recording, the residual, and what to measure next."""
-    from ..check import check_experiment
-    from ..report import write_report
+    from ..fitted_checks import check_experiment
+    from ..show.report import write_report
     from ..unexplained import where_it_fails
 
     say("checking the recording")
@@ -43,8 +43,8 @@ def _next_steps(diagnosis: Diagnosis) -> tuple[Finding, ...]:
 
 def write_arm_page(diagnosis: ArmDiagnosis, path: Path) -> None:
     """Write the page of an arm, with findings on the recording and the residual of each joint."""
-    from ..check import check_experiment
-    from ..report import write_arm_report
+    from ..fitted_checks import check_experiment
+    from ..show.report import write_arm_report
     from ..unexplained import where_it_fails
 
     say("checking the recording")

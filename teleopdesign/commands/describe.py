@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ModelError
-from ..base.plain_data import write_beside, write_json
+from ..base.files import write_beside, write_json
 from ._arms import add_body
 from ._diagnosis import diagnosis_of, experiment_and_answer, stated_model
 from ._options import add_experiment, check_output
@@ -16,7 +16,7 @@ from ._paths import shell_word
 if TYPE_CHECKING:
     from ..diagnose.fit import Fit
     from ..diagnose.noise_floor import NoiseFloor
-    from ..diagnose.prepare import Prepared
+    from ..measurement.prepare import Prepared
     from ..unexplained import ResidualDescription
 
 
@@ -79,8 +79,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _fit_model(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor | None, str]:
     """The fit, its data, its noise floor (if a diagnosis states one), and words for the model."""
-    from ..diagnose.prepare import prepare
     from ..diagnose.stated_fit import estimate_stated
+    from ..measurement.prepare import prepare
 
     experiment = experiment_and_answer(options)
     if options.as_is and options.answer is None and experiment.arm is None:

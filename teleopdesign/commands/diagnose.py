@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ModelError
-from ..base.plain_data import write_beside
+from ..base.files import write_beside
 from ._diagnosis import (
     diagnose_experiment,
     experiment_of,
@@ -24,8 +24,8 @@ from ._report import write_arm_page, write_page
 if TYPE_CHECKING:
     from ..diagnose import ArmDiagnosis, Diagnosis, SimulationComparison
     from ..diagnose.arms.prepared import PreparedArm
-    from ..diagnose.prepare import Prepared
     from ..measurement import Experiment
+    from ..measurement.prepare import Prepared
     from ..model import Model
 
 EXAMPLES = """
@@ -209,8 +209,7 @@ def _simulate(
 
 def _suggest_commands(diagnosis: Diagnosis, folder: Path, answer: Path | None) -> list[str]:
     """Lines with the next commands; with a written answer they need no second diagnosis."""
-    from ..diagnose.narrower_band import narrower_band
-    from ..measurement.bandwidth import motion_beyond
+    from ..fitted_checks.bandwidth import check_bandwidth
 
     source = shell_word(answer or folder)
     lines = []
@@ -218,13 +217,7 @@ def _suggest_commands(diagnosis: Diagnosis, folder: Path, answer: Path | None) -
         lines.append(f"what to measure to distinguish them: teleopdesign next {source}")
     if diagnosis.verdict != "model_adequate" and diagnosis.more_is_missing:
         lines.append(f"where the model fails: teleopdesign describe {source}")
-        narrower = narrower_band(diagnosis.after.model, diagnosis.prepared)
-        if narrower is not None:
-            lines.insert(0, f"{narrower}")
-        elif motion_beyond(diagnosis.experiment, diagnosis.prepared.bandwidth) is not None:
-            where = (
-                f"beyond {diagnosis.prepared.bandwidth:.3g} Hz, where the records still show motion"
-            )
-            lines.append(f"{where}: teleopdesign check {shell_word(folder)}")
+        wrong_band = check_bandwidth(diagnosis.after.model, diagnosis.prepared)
+        lines[:0] = [f.sentence for f in wrong_band]
     lines.append(f"to design a compensation: teleopdesign design {source} --output design")
     return ["", *lines]

@@ -86,6 +86,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Survey the logs, ask, write the folder and a picture of what was understood."""
+    from ..check import CheckedRecording, stopping_findings
     from ..measurement import load_experiment
     from ..measurement.new_folder import make_folder, require_new
     from ..measurement.survey import require_same_columns, survey_log
@@ -121,8 +122,10 @@ def run(options: argparse.Namespace) -> int:
     experiment = load_experiment(folder)
     print()
     print(experiment)
-    from ..plot.letters import explain_boxes
-    from ..plot.log import draw_survey, save_survey
+    for finding in stopping_findings(CheckedRecording(experiment)):
+        print(f"\nno diagnosis can answer yet: {finding.sentence}")
+    from ..show.figures.log import draw_survey, save_survey
+    from ..show.figures.style import explain_boxes
 
     picture = folder / "understood.png"
     save_survey(draw_survey(survey, experiment), picture)

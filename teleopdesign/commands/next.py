@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError, did_you_mean
-from ..base.plain_data import write_beside, write_json
+from ..base.files import write_beside, write_json
 from ._arms import add_body
 from ._diagnosis import arm_diagnosis_of, diagnosis_of, experiment_and_answer, print_diagnosis
-from ._options import add_experiment, check_output, say
-from ._values import value_from
+from ._options import add_experiment, check_output, say, value_from
 
 if TYPE_CHECKING:
     from ..diagnose import ArmDiagnosis
@@ -211,7 +210,7 @@ def _read_limits(texts: Sequence[str], experiment: Experiment) -> dict[str, dict
 
 def _limits(limits: dict[str, dict[str, float]], experiment: Experiment) -> dict[str, Limits]:
     """Body -> limits that its records have reached, replaced by the requested limits."""
-    from ..diagnose.prepare import prepare
+    from ..measurement.prepare import prepare
     from ..next_experiment import shown_limits
 
     if not limits:

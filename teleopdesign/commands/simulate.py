@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError
-from ._options import check_output, say_written
-from ._values import value_in
+from ._options import check_output, say_written, value_in
 from .derive import add_diagram, diagram_from
 
 if TYPE_CHECKING:
@@ -92,7 +91,7 @@ def run(options: argparse.Namespace) -> int:
         write = result.to_csv if options.output.suffix == ".csv" else result.to_netcdf
         write(options.output)
     if options.figure is not None:
-        from ..plot import save_figure
+        from ..show import save_figure
 
         figure = result.plot(*options.signal)
         save_figure(figure, options.figure, suffixes=(options.figure.suffix,))

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError, did_you_mean
-from ..base.whole_files import read_whole
+from ..base.files import read_whole
 from . import STOPPED
 from ._failures import BAD_INPUT
 from ._options import add_effect_files, add_law_files, check_output, count_argument, say
@@ -86,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
     if not result.measures and result.failures:
         return BAD_INPUT
     if options.figure is not None:
-        from ..plot import save_figure
+        from ..show import save_figure
 
         save_figure(result.plot(), options.figure, suffixes=(options.figure.suffix,))
     return 0

@@ -5,15 +5,15 @@ controller("smoothed_coulomb", {"level": 0.5, "smoothing_velocity": 0.015})
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from types import ModuleType
 from typing import Literal
 
 from ..base.arguments import check_arguments
 from ..base.errors import ModelError, did_you_mean
+from ..base.folders import Shelf
 from ..base.frozen import Catalogue
-from ..base.recipes import remember
 from ._controller import (
     SIGNALS,
     Ability,
@@ -65,18 +65,14 @@ __all__ = [
 ]
 
 
-def _laws() -> Mapping[str, ControlLaw]:
-    files = sorted(p for p in Path(__file__).parent.glob("*.py") if not p.name.startswith("_"))
-    modules = {p.stem: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
-    laws = {n: m.CONTROLLER.named(n, m.__doc__ or "") for n, m in modules.items()}
-    return Catalogue({n: remember(law, _law, n) for n, law in laws.items()}, "control law")
+def _shipped_law(module: ModuleType) -> ControlLaw:
+    law: ControlLaw = module.CONTROLLER
+    return law.named(module.__name__.rpartition(".")[2], module.__doc__ or "")
 
 
-def _law(name: str) -> ControlLaw:
-    return CONTROLLERS[name]
-
-
-CONTROLLERS: Mapping[str, ControlLaw] = _laws()
+CONTROLLERS: Mapping[str, ControlLaw] = Shelf(
+    __name__, Path(__file__).parent, _shipped_law, "control law"
+)
 
 
 def catalogue(extra: Iterable[str | Path | ControlLaw] = ()) -> Mapping[str, ControlLaw]:

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.errors import ModelError
-from ..base.names import check_name
+from ..base.errors import ModelError, check_name
 from ..base.recipes import remember
 from . import _state_space
 from ._controller import ControlLaw, Controller, ControllerState, Stage, mark_sampled_rate

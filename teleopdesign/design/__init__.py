@@ -5,33 +5,25 @@ from teleopdesign.design import design
 design(find_missing(experiment))     # C, H, what they do, whether that is passive
 """
 
-from ..base.arguments import check_arguments
-from .assumptions import Assumptions
-from .chosen import ProposedController, Reason
-from .force_feedback import FeedbackLoop
-from .from_answer import DiagnosedModel, diagnosed_model, read_answer
-from .outcome import Design
-from .prediction import CasePrediction, Prediction
-from .propose import design
-from .refine import TunedControllers, refine
-from .residual_friction import ResidualFriction, residual_friction
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "Assumptions",
-    "CasePrediction",
-    "ProposedController",
-    "Design",
-    "DiagnosedModel",
-    "FeedbackLoop",
-    "Prediction",
-    "Reason",
-    "ResidualFriction",
-    "TunedControllers",
-    "design",
-    "diagnosed_model",
-    "read_answer",
-    "residual_friction",
-    "refine",
-]
+from ..base.folders import lazy_face
 
-check_arguments(globals(), __all__)
+if TYPE_CHECKING:
+    from .assumptions import Assumptions as Assumptions
+    from .cancellation import ProposedController as ProposedController
+    from .cancellation import Reason as Reason
+    from .force_feedback import FeedbackLoop as FeedbackLoop
+    from .from_answer import DiagnosedModel as DiagnosedModel
+    from .from_answer import diagnosed_model as diagnosed_model
+    from .from_answer import read_answer as read_answer
+    from .outcome import Design as Design
+    from .prediction import CasePrediction as CasePrediction
+    from .prediction import Prediction as Prediction
+    from .propose import design as design
+    from .quasi_static import ResidualFriction as ResidualFriction
+    from .quasi_static import residual_friction as residual_friction
+    from .refine import TunedControllers as TunedControllers
+    from .refine import refine as refine
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

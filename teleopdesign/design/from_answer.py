@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from ..diagnose import Diagnosis
 from ..diagnose.answers import load_answer
 from ..diagnose.arms.prepared import isolate_joint

@@ -1,66 +1,24 @@
 """Compare a model with an experiment, see where it fails, and find the effect that is missing."""
 
-from __future__ import annotations
+from typing import TYPE_CHECKING
 
-from ..base.arguments import check_arguments
-from ..measurement.experiment import Experiment
-from ..model import Model
-from .arms import ArmDiagnosis, find_missing_in_arm
-from .by_simulation import HorizonError, RecordedLoop, SimulationComparison
-from .comparison import Comparison, compare
-from .corrected_fit import corrected_fit
-from .diagnosis import Diagnosis
-from .fit import Fit
-from .ladder import find_missing
-from .ladder_state import search_for
-from .prepare import prepare
-from .rank import rank_candidates
-from .ranking import Ranked, Ranking
-from .rung import Rung
-from .stated_fit import estimate_stated
+from ..base.folders import lazy_face
 
-__all__ = [
-    "ArmDiagnosis",
-    "Comparison",
-    "Diagnosis",
-    "Fit",
-    "HorizonError",
-    "Ranked",
-    "Ranking",
-    "RecordedLoop",
-    "Rung",
-    "SimulationComparison",
-    "compare",
-    "find_missing",
-    "find_missing_in_arm",
-    "fit",
-    "rank",
-]
+if TYPE_CHECKING:
+    from .arms import ArmDiagnosis as ArmDiagnosis
+    from .arms import find_missing_in_arm as find_missing_in_arm
+    from .by_simulation import HorizonError as HorizonError
+    from .by_simulation import RecordedLoop as RecordedLoop
+    from .by_simulation import SimulationComparison as SimulationComparison
+    from .comparison import Comparison as Comparison
+    from .comparison import compare as compare
+    from .diagnosis import Diagnosis as Diagnosis
+    from .estimates import fit as fit
+    from .estimates import rank as rank
+    from .fit import Fit as Fit
+    from .ladder import find_missing as find_missing
+    from .ranking import Ranked as Ranked
+    from .ranking import Ranking as Ranking
+    from .rung import Rung as Rung
 
-
-def fit(model: Model, experiment: Experiment, *, seed: int = 0) -> Model:
-    """The model with its free parameters re-estimated on the fit records, with standard errors.
-
-    Effects that `with_effect` added without values start from values of the size that the records
-    show.
-    As in `find_missing`, errors of the sensor readings are corrected: where the model leaves only
-    noise, their effect on the estimates is subtracted; where it leaves more, they widen the
-    standard errors. Of long records, only windows are fitted.
-
-    seed: of the random numbers for the noise floor and for the simulated readings
-    raises ExperimentError: the experiment lacks what the comparison needs
-    """
-    return corrected_fit(search_for(experiment, model, seed=seed)).model
-
-
-def rank(model: Model, experiment: Experiment) -> Ranking:
-    """Effects that the model may lack, best first.
-
-    Each candidate is added to the model, and all free parameters are estimated again.
-    returns: candidates with their fits and errors on fit and check records
-    """
-    prepared = prepare(experiment)
-    return rank_candidates(estimate_stated(model, prepared), prepared)
-
-
-check_arguments(globals(), __all__)
+__getattr__, __dir__, __all__ = lazy_face(__name__)

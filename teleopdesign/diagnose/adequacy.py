@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..measurement.prepare import Prepared
 from .criteria import CRITERIA, Criteria
 from .evidence import check_squares
 from .fit import Fit
 from .noise_floor import NoiseFloor
 from .one_moment import Moment, worst_moment
 from .outside_tone import Tone
-from .prepare import Prepared
 from .ranking import Ranking
 
 

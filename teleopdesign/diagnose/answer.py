@@ -13,7 +13,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from ..base.plain_data import harmless_cell, make_plain, write_beside, write_json
+from ..base.files import harmless_cell, make_plain, write_beside, write_json
 from ..measurement.experiment import Experiment
 from ..measurement.reading import reading_data
 from ..model import Model

@@ -25,13 +25,14 @@ import numpy as np
 
 from ..measurement.encoder import reading_noise
 from ..measurement.experiment import Experiment
+from ..measurement.logger_clock import CLOCK, LoggerClock
+from ..measurement.prepare import Prepared
 from .adequacy import is_adequate
 from .criteria import CRITERIA, Criteria
 from .fit import Fit
 from .learnable import Learnable
 from .noise_floor import NoiseFloor, noise_floor
-from .prepare import Prepared
-from .record_shift import CLOCK, LoggerClock, RecordShift, shifts_of
+from .record_shift import RecordShift, shifts_of
 
 
 def floor_between_rows(

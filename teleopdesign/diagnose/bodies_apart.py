@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..measurement.filtering import Array
+from ..measurement.prepare import Stretch
 from ..model import Model
 from ..realise.tangent_columns import Probe
 from .effort import EFFORTS
-from .prepare import Stretch
 from .residual import relative_residuals
 
 

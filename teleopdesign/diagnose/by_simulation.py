@@ -20,18 +20,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.notebook import html_table
-from ..base.plain_data import make_plain
-from ..base.quantity import unit_of
+from ..base.files import make_plain
+from ..base.frozen import ByValue
+from ..base.shown import html_table
+from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
+from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .cores import map_in_threads
 from .error import force_error
-from .prepare import Prepared, prepare
 from .record_offsets import apply_record_offsets
 from .simulated_course import LedBody, course_of, led_body, with_whole_dead_times
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from ..effects import Effect
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate, make_starts
 from .cores import map_on_cores
 from .fit import Fit
-from .prepare import Prepared
 from .progress import ProgressLine
 from .promise import Promises
 from .search import Base, estimate_from_starts

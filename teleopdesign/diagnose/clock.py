@@ -22,6 +22,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..blocks import Value
+from ..measurement.logger_clock import CLOCK
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .adequacy import is_adequate
 from .candidates import bodies_with_measured_force, make_starts
@@ -30,9 +32,8 @@ from .decision import is_better
 from .evidence import check_score, check_squares
 from .fit import Fit, estimate, fit_squares, rough_fit
 from .noise_floor import NoiseFloor
-from .prepare import Prepared
 from .ranking import Ranked
-from .record_shift import CLOCK, name_of_hand, shifts_of
+from .record_shift import name_of_hand, shifts_of
 from .search_plan import PLAN
 from .simulated_course import dead_times
 

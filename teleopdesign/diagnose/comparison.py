@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.notebook import html_table
-from ..base.plain_data import write_netcdf
-from ..base.quantity import unit_of
+from ..base.files import write_netcdf
+from ..base.frozen import ByValue
+from ..base.shown import figure_of, html_table
+from ..base.units import unit_of
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from ..realise.along_motion import residual_along
 from .arms.by_simulation import compare_arm_by_simulation
 from .by_simulation import RecordedLoop, SimulationComparison, compare_by_simulation
 from .error import force_error
 from .noise_floor import NoiseFloor, noise_floor
-from .prepare import Prepared, prepare
 from .record_offsets import as_logged
 
 if TYPE_CHECKING:
@@ -48,9 +48,7 @@ class Comparison(ByValue):
 
     def plot(self) -> Figure:
         """Residual over time, velocity and position."""
-        from ..plot.diagnosis import plot_comparison
-
-        return plot_comparison(self)
+        return figure_of(self)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the data with units to a NetCDF file."""

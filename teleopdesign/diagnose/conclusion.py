@@ -13,6 +13,7 @@ from itertools import pairwise
 
 from ..base.errors import ModelError
 from ..measurement.motion import Motion
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .adequacy import moment_above_noise, records_differ
 from .between_rows import floor_between_rows
@@ -29,7 +30,6 @@ from .ladder_state import LadderSearch, LadderState
 from .learnable import error_near_reversals, learnable
 from .order import select_other_helpers
 from .plausibility import implausible_effects
-from .prepare import Prepared
 from .probability import probable
 from .ranking import REFUSALS
 from .repeats import repeatability

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..measurement.prepare import Prepared
 from .adequacy import is_adequate, limit_noise_floor
 from .clock import with_paying_shift
 from .effort import EFFORTS
@@ -9,7 +10,6 @@ from .evidence import check_squares
 from .fit import Fit, estimate, fit_squares
 from .ladder_state import LadderSearch
 from .noise_floor import NoiseFloor, noise_floor
-from .prepare import Prepared
 from .ranking import Ranking
 from .reading_error import with_reading_error
 from .search_plan import PLAN

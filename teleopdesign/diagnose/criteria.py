@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..check.hidden_motion import FOR_EACH
+
 
 @dataclass(frozen=True)
 class Criteria:
@@ -34,12 +36,6 @@ class Criteria:
     #: beside each other: by more, what is left in floors must not rise. Higher: true effects are
     #: refused; lower: a tip that moves less at high frequencies is named
     weakened: float = 0.8
-    #: part of the squares of a measured acceleration from which jitter of the clock leaves nothing
-    #: to tell: an estimated inertia is smaller by this part. Of simulated devices jitter makes 0.01
-    #: to 0.20 of them where it is a tenth of a row, 0.28 to 1.04 where it is half a row; 0.003 at
-    #: most on eight recordings of real machines. Higher: tips are named that weaken the jitter;
-    #: lower: effects are missed that its floor leaves visible
-    jitter: float = 0.25
     #: part of the squares before from which a gain counts: less is no answer to where a model fails
     relevant: float = 0.03
     #: standard deviations of a difference below which two fits explain the records equally well.
@@ -50,9 +46,8 @@ class Criteria:
     #: reader sees as the same figure
     near: float = 0.02
     #: independent values for each free parameter, at which the smaller model fails, from which a
-    #: larger one counts: as many again are left to contradict it. Lower: chance is named; higher:
-    #: short records say nothing
-    for_each: float = 2.0
+    #: larger one counts; as many check a model (`check.hidden_motion`)
+    for_each: float = FOR_EACH
     #: noise floors (in quadrature) by which the check errors of two models must differ, or they are
     #: left open: a right model's error lies between one and about one and a half floors
     open: float = 1.0

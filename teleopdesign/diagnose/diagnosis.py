@@ -6,8 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
+from ..base.shown import figure_of
+from ..check import why_silent
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate, list_look_alikes
@@ -17,11 +20,9 @@ from .ladder_text import ladder_html, ladder_text, sentence
 from .learnable import Learnable, NearReversals
 from .noise_floor import NoiseFloor
 from .one_moment import Moment
-from .prepare import Prepared
 from .ranking import Ranking
 from .repeats import Repeatability
 from .rung import Rung
-from .silent_records import why_silent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -198,9 +199,7 @@ class Diagnosis(ByValue):
 
     def plot(self) -> Figure:
         """Figure of forces, of the residual over time, velocity and position, and of the ladder."""
-        from ..plot.diagnosis import plot_diagnosis
-
-        return plot_diagnosis(self)
+        return figure_of(self)
 
     def _repr_html_(self) -> str:
         return ladder_html(self.rungs, floor=self.floor.value, note=sentence(self))

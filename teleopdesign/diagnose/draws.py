@@ -14,13 +14,13 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .bodies_apart import select_bodies
 from .candidates import Candidate, make_starts
 from .cores import map_on_cores
 from .fit import Fit, fit_squares, free_parameters
 from .linear_start import span_of
-from .prepare import Prepared
 from .search import Base, estimate_best_start, is_rugged
 from .search_plan import PLAN, SearchPlan
 from .stated import has_moved, reset_to_stated

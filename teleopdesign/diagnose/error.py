@@ -13,8 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..measurement.filtering import Array
+from ..measurement.prepare import Stretch
 from ..model import Model
-from .prepare import Stretch
 from .residual import residuals
 
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..blocks import Body
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
+from ..measurement.prepare import Stretch, measured_force
 from ..model import Model
 from ..realise.along_motion import Residual
 from ..realise.residual_at_command import (
@@ -24,7 +25,6 @@ from ..realise.residual_at_command import (
     is_between,
     residual_at_command,
 )
-from .prepare import Stretch, measured_force
 from .record_offsets import AlongRecords, follow_records
 
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared
 from .criteria import CRITERIA, Criteria
 from .fit import Fit
-from .prepare import Prepared
 
 
 def explain_few_values(

@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from ..blocks import Value
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from .bodies_apart import select_bodies
 from .effort import EFFORTS, Effort
@@ -18,7 +19,6 @@ from .error import error_of, force_error
 from .error_at_command import AtCommand, refer_to_command
 from .folds import folds
 from .least_squares import column_sizes, sum_of_squares
-from .prepare import Prepared, Stretch
 from .record_offsets import AlongRecords, follow_records
 from .residual import both_residuals
 from .solve import BLOCK, Solution, model_without, solve

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .prepare import FOLDS, Stretch, measured_force
-from .shared_links import share_again
+from ..measurement.prepare import FOLDS, Stretch, measured_force
+from ..measurement.shared_links import share_again
 
 
 def folds(

@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from ..blocks import NINETY_FIVE
 from ..measurement.filtering import FORGOTTEN, Array
+from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from ..realise.along_motion import residual_along
 from ..realise.friction_cells import FrictionCell, FrictionCells
 from .fit import free_parameters
-from .prepare import Prepared, Stretch
 from .record_offsets import as_logged
 from .residual import residuals
 from .solve import BLOCK
@@ -147,14 +147,14 @@ def _refit(rows: _Rows, cell: NDArray[np.intp], bandwidth: float) -> tuple[Array
     tangents = rows.tangents if rows.tangents.shape[1] else np.zeros((len(cell), 1))
     friction = rows.friction + tangents @ step
     left = beside_levels(friction)
-    apart = _between_samples(rows, left)
+    apart = _correlation_time(rows, left)
     spread = left @ left / len(left) * max(apart / float(np.median(rows.seconds)), 1.0)
     covariance = np.linalg.pinv(columns.T @ columns) * spread
     error = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", tangents, covariance, tangents), 0.0))
     return friction - NINETY_FIVE * error, apart
 
 
-def _between_samples(rows: _Rows, left: Array) -> float:
+def _correlation_time(rows: _Rows, left: Array) -> float:
     """Integrated correlation time of what is left beside the levels, s."""
     sums, pairs, step = np.zeros(1), np.zeros(1), float(np.median(rows.seconds))
     for k in np.unique(rows.stretch):

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..effects import Effect
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .effort import EFFORTS, Effort
 from .fit import free_parameters
 from .least_squares import sum_of_squares
-from .prepare import Prepared
 from .search_plan import PLAN
 from .solve import Solution, solve
 

@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..check import why_silent
 from ..effects import depends_on_time, find_effect
 from ..measurement.experiment import Experiment
+from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .adequacy import Floors, allowed_floor, is_noise, limit_noise_floor
 from .candidates import Candidate
@@ -16,16 +18,13 @@ from .clock import with_late_hand, with_late_starts, with_paying_shift
 from .criteria import CRITERIA, Criteria
 from .decision import is_supported, worth_pursuing
 from .diagnosis import SetAside
-from .excerpt import cut_to_windows
 from .fit import Fit
 from .noise_floor import NoiseFloor, noise_floor
 from .outside_tone import Tone, best_tone
-from .prepare import Prepared, prepare
 from .rank import rank_candidates
 from .ranking import Ranked, Ranking
 from .rung import Rung
-from .search_plan import PLAN, SearchPlan
-from .silent_records import why_silent
+from .search_plan import PLAN, SearchPlan, cut_to_windows
 from .stated_fit import estimate_stated
 
 

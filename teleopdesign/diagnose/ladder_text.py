@@ -6,13 +6,13 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from ..base.notebook import html_table
-from ..base.quantity import unit_after_number, unit_of
-from ..base.standard_error import with_standard_error
+from ..base.sentences import with_standard_error
+from ..base.shown import html_table
+from ..base.units import unit_after_number, unit_of
 from ..blocks import Value
+from ..check.log_reading import short_segment_lines
 from ..measurement.bandwidth import slower_sensors
 from .adequacy import records_differ
-from .constant_force import constant_force_line
 from .criteria import CRITERIA
 from .fit import Fit
 from .left_out import left_out_lines, percent, possible_next
@@ -20,7 +20,6 @@ from .noise_floor import say_floors
 from .open_parameters import open_parameters_line
 from .record_offsets import offset_groups
 from .record_shift import shifts_of
-from .short_segments import short_segments_line
 
 if TYPE_CHECKING:
     from .arms.diagnosis import ArmRung
@@ -165,10 +164,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     lines += [f"left out: {words}" for words in diagnosis.left_out]
     if records_differ(diagnosis.after):
         lines.append(records_line(diagnosis))
-    if (short := short_segments_line(diagnosis.prepared.experiment)) is not None:
-        lines.append(short)
-    if (constant := constant_force_line(diagnosis.prepared.stretches)) is not None:
-        lines.append(constant)
+    lines += short_segment_lines(diagnosis.prepared.experiment)
     if diagnosis.verdict == "model_adequate" and (line := open_parameters_line(diagnosis.model)):
         lines.append(line)
     lines.append("")

@@ -21,16 +21,16 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
+from ..measurement.prepare import FOLDS, Prepared, Stretch, measured_force
 from ..measurement.reversals import mark_reversals
 from ..model import Model
 from .effort import EFFORTS
 from .error import error_of
 from .fit import estimate
 from .folds import folds
-from .prepare import FOLDS, Prepared, Stretch, measured_force
 from .record_offsets import apply_record_offsets
 from .residual import residuals
 from .tree_inputs import inputs_along

@@ -18,12 +18,12 @@ import sympy as sp
 
 from ..effects import Effect
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared
 from ..model import Model
 from ..realise.tangent_columns import Probe
 from .bodies_apart import select_bodies
 from .fit import Fit
 from .least_squares import column_sizes
-from .prepare import Prepared
 
 #: columns that pass through the friction balance in one call. The number is even, because a phase
 #: takes two columns; with the residual and one more column they fill lanes of eight. With fewer,

@@ -14,11 +14,11 @@ from dataclasses import dataclass, replace
 
 from ..base.errors import ExperimentError
 from ..measurement.bandwidth import LOWEST
+from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .criteria import CRITERIA, Criteria
 from .diagnosis import Diagnosis
 from .fit import Fit, estimate
-from .prepare import Prepared, prepare
 
 
 @dataclass(frozen=True)

@@ -16,15 +16,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
+from ..check.sample_clock import jitter_of
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motion_of
+from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from .criteria import CRITERIA
 from .error import error_of
 from .error_at_command import refer_to_command
-from .jitter import jitter_of
-from .prepare import Prepared, Stretch
 from .residual import residuals
 from .sensors import is_noise_estimated, sensor_of
 
@@ -107,7 +107,7 @@ def noise_floor(
     back = float(np.sqrt(np.mean(np.square(command_errors)))) / left if left else 1.0
     # at the command, sensor noise is larger if a law attenuates the command, and smaller with
     # one that amplifies it; the floor is at least the error that sensor noise makes in the force
-    jitters = any(jitter_of(s, prepared.experiment) > 0.0 for s in stretches)
+    jitters = any(_jitter(s, prepared) > 0.0 for s in stretches)
     return NoiseFloor(left, source, drawn=left, at_command=max(back, 1.0), jitters=jitters)
 
 
@@ -127,7 +127,7 @@ def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Genera
     side = _side(motion.position)
     signals = next(r for r in prepared.experiment.records if r.file == motion.file).signals
     # a command is held between rows: a small time shift of the reading does not change it
-    jitter = jitter_of(stretch, prepared.experiment)
+    jitter = _jitter(stretch, prepared)
     late = jitter * generator.standard_normal(len(motion.time)) if jitter > 0.0 else 0.0
     rate = np.gradient(motion.interaction, motion.sample_time)
 
@@ -151,6 +151,11 @@ def read_again(stretch: Stretch, prepared: Prepared, generator: np.random.Genera
         resolution=channels[f"{motion.body}.position"].resolution,
     )
     return replace(drawn, further=motion.further)
+
+
+def _jitter(stretch: Stretch, prepared: Prepared) -> float:
+    """The rms error (s) of the moments of a stretch's readings, estimated from the readings."""
+    return jitter_of(prepared.experiment, stretch.motion.body, stretch.motion.file)
 
 
 def _side(position: Array) -> float:

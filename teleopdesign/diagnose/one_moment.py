@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..measurement.prepare import Prepared
 from .fit import Fit, block_numbers
 from .noise_floor import NoiseFloor
-from .prepare import Prepared
 
 #: fewest moments of which one may be left out: with fewer, one moment is a large part of the
 #: records

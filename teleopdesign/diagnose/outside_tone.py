@@ -21,13 +21,13 @@ import numpy as np
 from scipy import fft
 from scipy.optimize import minimize_scalar
 
-from ..base.quantity import MAINS
+from ..base.units import MAINS
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from .criteria import CRITERIA
 from .evidence import check_squares, gain_score
 from .fit import Fit, estimate
-from .prepare import Prepared, Stretch
 from .residual import residuals
 from .search_plan import PLAN
 

@@ -8,6 +8,7 @@ where a controller computes the command from the position.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,16 +16,17 @@ import numpy as np
 
 from ..base.errors import ModelError
 from ..blocks import Body
+from ..check.computed_command import describe_computed
 from ..effects import CONTACT_ROLES, SIGNALS, Effect, RecordFacts
+from ..measurement.experiment import Experiment
 from ..measurement.motion import Motion
+from ..measurement.prepare import Prepared, Stretch, measured_force
 from ..measurement.repeated_rows import runs_of
 from ..measurement.reversals import count_reversals
 from ..model import Model
 from ..realise.along_motion import measured_along
 from ..realise.traced import Along
 from .criteria import CRITERIA
-from .feedback_law import explain_computed
-from .prepare import Prepared, Stretch, measured_force
 from .residual import residuals
 
 
@@ -49,7 +51,7 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
         for effect in effects:
             reason = _ask_effect(effect, "plausible", facts)
             if reason is None:
-                reason = explain_computed(effect, prepared.experiment, place)
+                reason = _explain_computed(effect, prepared.experiment, place)
             if reason is None and effect.role == "force":
                 reason = _explain_cancelled(effect, alongs, facts, model)
             if reason is not None:
@@ -64,6 +66,20 @@ def undetermined_of(effect: Effect, at: str, model: Model, prepared: Prepared) -
     """
     place = model.holder(at)
     return _ask_effect(effect, "undetermined", record_facts(model, place, prepared))
+
+
+@lru_cache(maxsize=256)
+def is_of_place(effect: Effect) -> bool:
+    """Whether an effect is a force that depends on the position at most."""
+    signals = effect.expression().free_symbols & set(SIGNALS.values())
+    return effect.role == "force" and not effect.states and signals <= {SIGNALS["position"]}
+
+
+def _explain_computed(effect: Effect, experiment: Experiment, body: str) -> str | None:
+    """A sentence where an effect only repeats the law of a controller; else None."""
+    if not is_of_place(effect) or not (computed := describe_computed(experiment, body)):
+        return None
+    return f"the command is {computed}; a controller computes it, and the effect repeats this law"
 
 
 def _explain_cancelled(

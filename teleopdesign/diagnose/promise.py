@@ -12,11 +12,11 @@ from collections.abc import Hashable, Sequence
 import numpy as np
 
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .bodies_apart import Apart, separate_bodies
 from .fit import Fit, free_parameters
 from .least_squares import scaled_normal_equations, sum_of_squares
-from .prepare import Prepared
 
 
 class Promises:

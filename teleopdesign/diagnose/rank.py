@@ -10,6 +10,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
 from ..base.errors import ModelError
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidate_fits import fit_each
 from .candidates import Candidate, bodies_with_measured_force, candidates
@@ -23,7 +24,6 @@ from .fit import Fit, estimate, fit_squares, rough_fit
 from .identifiability import is_identifiable
 from .order import rank_key
 from .plausibility import implausible_effects
-from .prepare import Prepared
 from .progress import ProgressLine
 from .ranking import Ranked, Ranking
 from .search import base_of, from_stated, keep_absent

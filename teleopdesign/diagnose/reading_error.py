@@ -22,13 +22,13 @@ import numpy as np
 
 from ..base.errors import ModelError
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared, Stretch, stretch_of
 from ..model import Model
 from ..realise.simulated import UNDAMPED
 from .cores import map_in_threads
 from .effort import EFFORTS
 from .fit import Fit, estimate
 from .noise_floor import read_again
-from .prepare import Prepared, Stretch, stretch_of
 from .record_offsets import apply_record_offsets
 from .simulated_course import as_led, dead_times, simulated_course, with_whole_dead_times
 from .solve import solve, spans_decades

@@ -19,9 +19,9 @@ from ..blocks import Body
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
+from ..measurement.prepare import Stretch
 from ..model import Model
 from ..realise.along_motion import Residual, residual_along
-from .prepare import Stretch
 
 #: iterations of the estimate: two are exact if the force is linear in the offsets
 TURNS = 2

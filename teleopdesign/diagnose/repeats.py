@@ -25,10 +25,10 @@ import numpy as np
 
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
+from ..measurement.prepare import Prepared, Stretch, measured_force
 from ..measurement.reversals import count_reversals
 from ..model import Model
 from .criteria import CRITERIA
-from .prepare import Prepared, Stretch, measured_force
 from .residual import residuals
 
 

@@ -14,13 +14,13 @@ from ..blocks import Body
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
+from ..measurement.prepare import Stretch
+from ..measurement.shared_links import clear
 from ..model import Model
 from ..realise.along_motion import Residual, residual_along
 from ..realise.tangent_columns import Probe
 from ..realise.traced import Traced, constant, filter_traced, in_rows
-from .prepare import Stretch
 from .record_offsets import AlongRecords, RecordOffsets, apply_offset_groups, offset_groups
-from .shared_links import clear
 
 
 def residuals(

@@ -7,10 +7,10 @@ from dataclasses import replace
 from itertools import pairwise
 
 from ..base.errors import ModelError
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
 from .fit import Fit, estimate
-from .prepare import Prepared
 from .rank import make_ranked
 from .ranking import Ranking
 from .rung import Rung

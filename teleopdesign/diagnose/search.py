@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 from ..effects import Effect
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import make_starts
 from .criteria import CRITERIA
@@ -25,7 +26,6 @@ from .further_starts import (
     with_what_they_need,
 )
 from .linear_start import linear_starts
-from .prepare import Prepared
 from .promise import Promises
 from .search_plan import PLAN
 from .solve import Solution, solve

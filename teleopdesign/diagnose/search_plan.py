@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from ..measurement.excerpt import excerpt
+from ..measurement.prepare import Prepared, prepare
+
 
 @dataclass(frozen=True)
 class SearchPlan:
@@ -187,3 +190,10 @@ QUICK = SearchPlan(
     draws=0,
     together=0,
 )
+
+
+def cut_to_windows(whole: Prepared, plan: SearchPlan = PLAN) -> Prepared:
+    """The windows of prepared records that are searched; the whole records where they are short."""
+    if sum(len(r.time) for r in whole.experiment.records) <= plan.long:
+        return whole
+    return prepare(excerpt(whole.experiment, most=plan.windows), bandwidth=whole.bandwidth)

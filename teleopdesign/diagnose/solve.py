@@ -9,14 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..measurement.filtering import Array
+from ..measurement.logger_clock import CLOCK
+from ..measurement.prepare import Prepared, Stretch
+from ..measurement.shared_links import best_links
 from ..model import Model
 from .bodies_apart import BodyByBody
 from .effort import Effort
 from .least_squares import gauss_newton_step, minimise, sum_of_squares
-from .prepare import Prepared, Stretch
-from .record_shift import CLOCK, RecordShifts, record_shifts
+from .record_shift import RecordShifts, record_shifts
 from .residual import residuals
-from .shared_links import best_links
 
 #: seconds over which residuals count as one observation in standard errors and tests
 BLOCK = 0.25

@@ -20,13 +20,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..measurement.prepare import Prepared
 from .criteria import CRITERIA, Criteria
 from .decision import is_better
 from .diagnosis import SetAside
 from .fit import Fit, estimate
 from .noise_floor import NoiseFloor, say_floors
 from .one_moment import MOMENTS
-from .prepare import Prepared
 from .rung import Rung
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ..base.errors import ModelError
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
 from .fit import Fit, estimate, fit_squares
-from .prepare import Prepared
 from .rung import Replaced, restore_replaced
 from .search import estimate_from_starts
 

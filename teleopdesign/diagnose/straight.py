@@ -16,14 +16,14 @@ import sympy as sp
 
 from ..base.errors import ModelError
 from ..effects import SIGNALS, Effect, period
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
 from .decision import is_better
-from .feedback_law import is_of_place
 from .fit import Fit, estimate
 from .ladder_state import LadderSearch, LadderState
 from .moves import remove
-from .prepare import Prepared
+from .plausibility import is_of_place
 from .rung import Rung
 from .rungs import estimate_without, ranking_alone, reorder_and_refit, without_rise
 from .search import keep_absent

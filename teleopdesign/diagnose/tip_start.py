@@ -16,11 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from ..realise.tip_along import tip_along
 from .candidates import Candidate
 from .fit import Fit, weigh_residuals
-from .prepare import Prepared, Stretch
 from .residual import residuals
 from .search_plan import PLAN, SearchPlan
 from .without_derivatives import minimise_nearby

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..base.errors import ModelError
+from ..measurement.prepare import Prepared
 from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA, Criteria
 from .diagnosis import Undetermined
@@ -17,7 +18,6 @@ from .evidence import whole_score
 from .fit import Fit, estimate
 from .open_parameters import OPEN
 from .plausibility import undetermined_of
-from .prepare import Prepared
 from .products import product_of
 from .rung import Rung
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from ..base.quantity import unit_after_number
+from ..base.units import unit_after_number
+from ..measurement.prepare import Prepared
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .effort import EFFORTS
 from .evidence import whole_score
 from .fit import Fit, estimate
-from .prepare import Prepared
 
 
 def explain_open_width(

@@ -1,67 +1,48 @@
 """Block diagrams: blocks that are wired by the names of their signals."""
 
-from ..base.arguments import check_arguments
-from .admittance_device import admittance_device
-from .arms import Arm, joint, teleoperator_of_arms, tip_coordinates
-from .control_parts import controller_parts, plant_parts
-from .coupled_plants import coupled_plant_parts
-from .disturbance_observer import disturbance_observer
-from .energy_tanks import energy_tanks
-from .felt_friction import FeltFriction, felt_friction
-from .four_channel import four_channel
-from .haptic_interface import four_cases, haptic_interface
-from .junctions import Junction, Kinematics, position_symbol
-from .parallel_rods import parallel_rods
-from .parts import ANY, AnyBlock, Attached, Block, Control, Linked, Moving, Part
-from .shared_states import with_shared_states
-from .shipped import SHIPPED, load_shipped
-from .teleoperator import teleoperator
-from .toml_reading import read_diagram
-from .toml_writing import write_diagram
-from .wave_variables import wave_variables
-from .wiring import Diagram
-from .world_haptics_2005 import READINGS, Reading, read_open_number, world_haptics_2005
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "ANY",
-    "READINGS",
-    "SHIPPED",
-    "AnyBlock",
-    "Arm",
-    "Attached",
-    "Block",
-    "Control",
-    "Diagram",
-    "FeltFriction",
-    "Junction",
-    "Kinematics",
-    "Linked",
-    "Moving",
-    "Part",
-    "Reading",
-    "admittance_device",
-    "tip_coordinates",
-    "controller_parts",
-    "coupled_plant_parts",
-    "disturbance_observer",
-    "energy_tanks",
-    "felt_friction",
-    "four_cases",
-    "four_channel",
-    "haptic_interface",
-    "joint",
-    "parallel_rods",
-    "plant_parts",
-    "position_symbol",
-    "read_diagram",
-    "read_open_number",
-    "load_shipped",
-    "teleoperator",
-    "teleoperator_of_arms",
-    "wave_variables",
-    "with_shared_states",
-    "world_haptics_2005",
-    "write_diagram",
-]
+from ..base.folders import lazy_face
 
-check_arguments(globals(), __all__)
+if TYPE_CHECKING:
+    from .admittance_device import admittance_device as admittance_device
+    from .arms import Arm as Arm
+    from .arms import joint as joint
+    from .arms import teleoperator_of_arms as teleoperator_of_arms
+    from .arms import tip_coordinates as tip_coordinates
+    from .control_parts import controller_parts as controller_parts
+    from .control_parts import plant_parts as plant_parts
+    from .coupled_plants import coupled_plant_parts as coupled_plant_parts
+    from .disturbance_observer import disturbance_observer as disturbance_observer
+    from .energy_tanks import energy_tanks as energy_tanks
+    from .felt_friction import FeltFriction as FeltFriction
+    from .felt_friction import felt_friction as felt_friction
+    from .four_channel import four_channel as four_channel
+    from .haptic_interface import four_cases as four_cases
+    from .haptic_interface import haptic_interface as haptic_interface
+    from .junctions import Junction as Junction
+    from .junctions import Kinematics as Kinematics
+    from .junctions import position_symbol as position_symbol
+    from .parallel_rods import parallel_rods as parallel_rods
+    from .parts import ANY as ANY
+    from .parts import AnyBlock as AnyBlock
+    from .parts import Attached as Attached
+    from .parts import Block as Block
+    from .parts import Control as Control
+    from .parts import Linked as Linked
+    from .parts import Moving as Moving
+    from .parts import Part as Part
+    from .shared_states import with_shared_states as with_shared_states
+    from .shipped import SHIPPED as SHIPPED
+    from .shipped import load_shipped as load_shipped
+    from .teleoperator import teleoperator as teleoperator
+    from .toml_reading import read_diagram as read_diagram
+    from .toml_writing import write_diagram as write_diagram
+    from .wave_variables import wave_variables as wave_variables
+    from .wiring import Diagram as Diagram
+    from .world_haptics_2005 import READINGS as READINGS
+    from .world_haptics_2005 import Reading as Reading
+    from .world_haptics_2005 import read_open_number as read_open_number
+    from .world_haptics_2005 import world_haptics_2005 as world_haptics_2005
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -1,7 +1,7 @@
 """The catalogue of physical effects: every file of this folder whose name has no `_` in front.
 
-An effect for a hand or an environment has the name of this block as its `block`. It is used there,
-and is no candidate of a diagnosis. `BLOCK_EFFECTS` are these effects, `EFFECTS` all others.
+An effect of a hand or an environment lies in `of_blocks` and has the name of this block as its
+`block`. It is used there, and is no candidate of a diagnosis. `BLOCK_EFFECTS` are these effects.
 
 The file name is the effect's name, and the docstring of the file is the effect's page. A user's
 file is read by `load_effect`; its effect is used like any other.
@@ -9,7 +9,7 @@ file is read by `load_effect`; its effect is used like any other.
 
 from __future__ import annotations
 
-import importlib
+from collections import ChainMap
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -17,11 +17,10 @@ from types import ModuleType
 from weakref import WeakValueDictionary
 
 from ..base.arguments import check_arguments
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, check_name, did_you_mean
+from ..base.folders import Shelf
 from ..base.frozen import Catalogue
-from ..base.names import check_name
-from ..base.recipes import remember
-from ..base.users_files import checked_path, laws_of, load_once, run
+from ..base.recipes import checked_path, laws_of, load_once, run
 from ._effect import (
     CONTACT_ROLES,
     FURTHER,
@@ -177,26 +176,21 @@ def check_laws(effect: Effect, path: Path) -> None:
                 raise ModelError(f"{path}: correction uses {', '.join(map(str, strangers))}")
 
 
-def _shipped_effects() -> dict[str, Effect]:
-    files = sorted(p for p in Path(__file__).parent.glob("*.py") if not p.name.startswith("_"))
-    modules = {p: importlib.import_module(f"{__name__}.{p.stem}") for p in files}
-    return {p.stem: remember(_effect_of(m, p), _shipped_effect, p.stem) for p, m in modules.items()}
+def _shipped_effect(module: ModuleType) -> Effect:
+    return _effect_of(module, Path(str(module.__file__)))
 
 
-def _shipped_effect(name: str) -> Effect:
-    return _SHIPPED[name]
-
-
-_SHIPPED = _shipped_effects()
 #: effects of a body or its actuation, and of contacts: the candidates of a diagnosis
-EFFECTS: Mapping[str, Effect] = Catalogue(
-    {n: e for n, e in _SHIPPED.items() if not e.block},
-    "effect",
-    see=" (see `teleopdesign effects`)",
+EFFECTS: Mapping[str, Effect] = Shelf(
+    __name__, Path(__file__).parent, _shipped_effect, "effect", see=" (see `teleopdesign effects`)"
 )
 #: effects that belong to a hand or an environment
-BLOCK_EFFECTS: Mapping[str, Effect] = Catalogue(
-    {n: e for n, e in _SHIPPED.items() if e.block}, "effect of a block"
+BLOCK_EFFECTS: Mapping[str, Effect] = Shelf(
+    f"{__name__}.of_blocks",
+    Path(__file__).parent / "of_blocks",
+    _shipped_effect,
+    "effect of a block",
+    defined_in=__name__,
 )
 
 
@@ -205,7 +199,7 @@ def with_block_effects(effects: Mapping[str, Effect] = EFFECTS) -> Mapping[str, 
 
     Of two effects with one name, the one in `effects` is used.
     """
-    return Catalogue({**BLOCK_EFFECTS, **effects}, "effect")
+    return ChainMap(effects, BLOCK_EFFECTS)  # type: ignore[arg-type]  # only read
 
 
 def catalogue(extra: Iterable[str | Path | Effect] = ()) -> Mapping[str, Effect]:

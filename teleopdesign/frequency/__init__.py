@@ -1,36 +1,26 @@
 """Frequency responses of a diagram."""
 
-from ..base.arguments import check_arguments
-from ..derive import transfer_function
-from .describing_function import describing_function
-from .grid import falling_profile
-from .impedance_map import ImpedanceMap
-from .loop import LoopGain, delay_margin, loop_gain
-from .margins import gain_margin, phase_margin
-from .matrix_response import MatrixResponse, matrix_response
-from .measured_impedance import measured_impedance
-from .measured_response import measured_response, simulated_response
-from .quasi_linear import quasi_linear_impedance
-from .response import FrequencyResponse, bode
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "FrequencyResponse",
-    "ImpedanceMap",
-    "LoopGain",
-    "MatrixResponse",
-    "bode",
-    "delay_margin",
-    "describing_function",
-    "falling_profile",
-    "gain_margin",
-    "loop_gain",
-    "matrix_response",
-    "measured_impedance",
-    "measured_response",
-    "phase_margin",
-    "quasi_linear_impedance",
-    "simulated_response",
-    "transfer_function",
-]
+from ..base.folders import lazy_face
 
-check_arguments(globals(), __all__)
+if TYPE_CHECKING:
+    from ..derive import transfer_function as transfer_function
+    from .describing_function import describing_function as describing_function
+    from .grid import falling_profile as falling_profile
+    from .impedance_map import ImpedanceMap as ImpedanceMap
+    from .loop import LoopGain as LoopGain
+    from .loop import delay_margin as delay_margin
+    from .loop import loop_gain as loop_gain
+    from .margins import gain_margin as gain_margin
+    from .margins import phase_margin as phase_margin
+    from .matrix_response import MatrixResponse as MatrixResponse
+    from .matrix_response import matrix_response as matrix_response
+    from .measured_response import measured_impedance as measured_impedance
+    from .measured_response import measured_response as measured_response
+    from .measured_response import simulated_response as simulated_response
+    from .quasi_linear import quasi_linear_impedance as quasi_linear_impedance
+    from .response import FrequencyResponse as FrequencyResponse
+    from .response import bode as bode
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -6,22 +6,21 @@ The diagnosis estimates all parameters at once from any motion; these are the cl
 second opinion on the same data.
 """
 
-from ..base.arguments import check_arguments
-from .coulomb_level import CoulombLevel, LevelAtSpeed, Line, coulomb_level
-from .largest_stiffness import LargestStiffness, largest_stiffness_without_oscillation
-from .mean_error import mean_error
-from .steady_runs import SteadyRun, steady_runs
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "CoulombLevel",
-    "LargestStiffness",
-    "LevelAtSpeed",
-    "Line",
-    "SteadyRun",
-    "coulomb_level",
-    "largest_stiffness_without_oscillation",
-    "mean_error",
-    "steady_runs",
-]
+from ..base.folders import lazy_face
 
-check_arguments(globals(), __all__)
+if TYPE_CHECKING:
+    from .coulomb_level import CoulombLevel as CoulombLevel
+    from .coulomb_level import LevelAtSpeed as LevelAtSpeed
+    from .coulomb_level import Line as Line
+    from .coulomb_level import coulomb_level as coulomb_level
+    from .largest_stiffness import LargestStiffness as LargestStiffness
+    from .largest_stiffness import (
+        largest_stiffness_without_oscillation as largest_stiffness_without_oscillation,
+    )
+    from .steady_runs import SteadyRun as SteadyRun
+    from .steady_runs import mean_error as mean_error
+    from .steady_runs import steady_runs as steady_runs
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -9,20 +9,17 @@
 form.
 """
 
-from ..base.arguments import check_arguments
-from .channel import Channel
-from .description import BodyDescription, EnvironmentDescription, ModelValue
-from .experiment import Experiment, load_experiment
-from .record import Record
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "BodyDescription",
-    "Channel",
-    "EnvironmentDescription",
-    "Experiment",
-    "ModelValue",
-    "Record",
-    "load_experiment",
-]
+from ..base.folders import lazy_face
 
-check_arguments(globals(), __all__)
+if TYPE_CHECKING:
+    from .channel import Channel as Channel
+    from .description import BodyDescription as BodyDescription
+    from .description import EnvironmentDescription as EnvironmentDescription
+    from .description import ModelValue as ModelValue
+    from .experiment import Experiment as Experiment
+    from .experiment import load_experiment as load_experiment
+    from .record import Record as Record
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 #: steps between two readings whose number is certain from the smallest gap alone: this gap may be 1
 #: % wrong if a log has few digits
 STEPS_APART = 20
-#: values lie on a grid if the size of the mean of exp(2 pi i x/step) is at least this: 1 exactly on
+#: values lie on a grid if the size of the mean of exp(2 pi i x/step) exceeds this: 1 exactly on
 #: the grid, 0.04 for 600 random values
 ON_GRID = 0.9
 #: the grid is that of an encoder if the different values are less than this part of the readings: a
@@ -71,13 +71,18 @@ def reading_step(position: Array) -> float:
     return min(step, rounding)
 
 
+def is_on_grid(x: Array, step: float) -> bool:
+    """Whether readings (n,), of which `ENOUGH` are looked at, lie on a grid with any origin."""
+    some = x[:: max(1, len(x) // ENOUGH)]
+    return bool(np.abs(np.exp(2j * np.pi * (some - some[0]) / step).mean()) > ON_GRID)
+
+
 def grid_of(position: Array, step: float) -> float:
     """Step of the grid on which the readings lie, near `step`; 0 where there is no such grid."""
     if step <= 0.0 or np.ptp(position) <= 20.0 * step:
         return 0.0
     mean = _fitted_step(position, step)
-    places = (position - position[0]) / mean
-    return mean if np.abs(np.exp(2j * np.pi * places).mean()) > ON_GRID else 0.0
+    return mean if is_on_grid(position, mean) else 0.0
 
 
 def _fitted_step(position: Array, step: float) -> float:

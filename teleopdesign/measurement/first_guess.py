@@ -196,7 +196,7 @@ def is_size(force: Array, position: Array, sample_time: float) -> bool:
     a pendulum which is fastest where its load is largest, is left out of both.
     """
     stretch = _stretch((force, position), position, sample_time)
-    if stretch is None or np.min(force) < 0.0:
+    if stretch is None or np.min(force) < 0.0 or hardly_varies(force):
         return False
     motion, (target, place) = stretch
     place = (place - place.mean()) / max(float(np.ptp(place)), np.finfo(float).tiny)

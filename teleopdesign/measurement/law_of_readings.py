@@ -27,6 +27,8 @@ from .repeated_rows import runs_of
 ORDERS = ((1, 0), (2, 0), (4, 0), (4, 1), (4, 2))
 #: steps that a command must span: of a command with few levels, any line is within a step
 FEWEST_STEPS = 20.0
+#: part of the range of a column that sums of its numbers lose in floating point
+LOST = 1e-9
 #: part of the range of a command by which its numbers are wrong in a log of six digits
 DIGITS = 5e-6
 #: errors of the law in the command's change by one step of a reading. Where the command does not
@@ -94,6 +96,31 @@ class _Rows:
         """`columns`, and the commands of the rows before, (n, m + past)."""
         before = [self.u[run.start - j : run.stop - j] for j in range(1, past + 1)]
         return np.column_stack([self.columns(run, taps), *before])
+
+
+def is_copy(column: Array, position: Array) -> bool:
+    """Whether a column is the position times a constant plus a constant, up to rounding.
+
+    So is a reading in volts beside the same reading in mm, and the error of a controller whose set
+    point is constant. A straight line of the position explains such a column to the last digit. The
+    force of a real spring is not so exact: its sensor has noise of its own.
+    """
+    return spring_of_copy(column, position) is not None
+
+
+def spring_of_copy(column: Array, position: Array) -> LawOfReadings | None:
+    """The law of a command that is the position but for constants (`is_copy`); None: it is not."""
+    x, y = position - position.mean(), column - column.mean()
+    power = float(x @ x)
+    if power == 0.0:
+        return None
+    slope = float(x @ y) / power
+    reach, off = float(np.ptp(column)), float(np.max(np.abs(y - slope * x)))
+    if off > reach / FEWEST_STEPS + LOST * reach:  # no rounding that is allowed explains it
+        return None
+    rounding = abs(slope) * reading_step(position) + reading_step(column)
+    exact = rounding * FEWEST_STEPS <= reach and off <= rounding + LOST * reach
+    return LawOfReadings(-slope, 0.0, is_damped=False) if exact else None
 
 
 def law_of_readings(

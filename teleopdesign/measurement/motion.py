@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from .encoder import reading_noise, reading_step
 from .filtering import Array, Spectrum, spectrum
 from .held_command import held_command
@@ -24,6 +24,8 @@ TRAVEL = 3
 #: velocities within so many errors, from the noise of readings, count as rest: in slow motion the
 #: steps of an encoder are no white noise, and their error is larger than that of white noise
 SLOW = 4.0
+#: part (of the motion in one direction, of the time, of a force) below which it counts as absent
+RARE = 0.02
 #: s, shortest stretch that leaves something after the ends are trimmed
 SHORTEST = 0.6
 
@@ -228,7 +230,7 @@ def motion_of(
 def without_mains(record: Record, name: str) -> Array:
     """A force of a record (n,), minus a hum of the mains that no position shows."""
     force = record.signals[name]
-    longest = max(record.segments, key=lambda rows: rows.stop - rows.start)
+    longest = record.longest
     positions = [x[longest] for key, x in record.signals.items() if key.endswith(".position")]
     hum = hum_of(force[longest], positions, record.sample_time)
     if hum is None:

@@ -8,8 +8,8 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
-from ..base.notebook import html_table
+from ..base.frozen import ByValue
+from ..base.shown import html_table
 from .channel import Channel, conversion_to_si, factor_of
 from .description import BodyDescription
 from .log_clock import clock_of_log
@@ -49,6 +49,11 @@ class Record(ByValue):
     def duration(self) -> float:
         """Length of all segments together, s."""
         return len(self.time) * self.sample_time
+
+    @property
+    def longest(self) -> slice:
+        """Rows of the longest segment."""
+        return max(self.segments, key=lambda rows: rows.stop - rows.start)
 
     def rate_of(self, channel: str) -> float:
         """Readings of a channel in a second, Hz: fewer than samples where it was interpolated."""

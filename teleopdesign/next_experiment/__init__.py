@@ -6,34 +6,25 @@ write_reference(proposal.reference, experiment, "next.csv")
 show_in_simulation(proposal)                # each rival is made the truth, and diagnosed
 """
 
-from ..base.arguments import check_arguments
-from .arm_paths import ArmPaths, propose_paths
-from .in_simulation import SimulatedDiagnosis, show_in_simulation
-from .limits import Limits, shown_limits
-from .prediction import DeterminedParameter, Separation
-from .proposal import Proposal, Reference
-from .propose import propose
-from .reference_csv import write_reference
-from .remedies import Remedy
-from .rivals import Rival
-from .words import proposal_data
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "ArmPaths",
-    "DeterminedParameter",
-    "Limits",
-    "Proposal",
-    "Reference",
-    "Remedy",
-    "Rival",
-    "Separation",
-    "SimulatedDiagnosis",
-    "proposal_data",
-    "propose",
-    "propose_paths",
-    "show_in_simulation",
-    "shown_limits",
-    "write_reference",
-]
+from ..base.folders import lazy_face
 
-check_arguments(globals(), __all__)
+if TYPE_CHECKING:
+    from .arm_paths import ArmPaths as ArmPaths
+    from .arm_paths import propose_paths as propose_paths
+    from .in_simulation import SimulatedDiagnosis as SimulatedDiagnosis
+    from .in_simulation import show_in_simulation as show_in_simulation
+    from .limits import Limits as Limits
+    from .limits import shown_limits as shown_limits
+    from .prediction import DeterminedParameter as DeterminedParameter
+    from .prediction import Separation as Separation
+    from .proposal import Proposal as Proposal
+    from .proposal import Reference as Reference
+    from .proposal import proposal_data as proposal_data
+    from .proposal import write_reference as write_reference
+    from .propose import propose as propose
+    from .remedies import Remedy as Remedy
+    from .rivals import Rival as Rival
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

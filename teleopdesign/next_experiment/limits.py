@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from ..base.errors import ModelError, did_you_mean
-from ..diagnose.prepare import Prepared, Stretch
+from ..measurement.prepare import Prepared, Stretch
 
 #: part of the samples that may exceed a limit that is read from a record: single samples are noise
 OUTLYING = 1e-3

@@ -9,175 +9,104 @@
 A refuted claim contains a motion that releases energy: `claim.record.replay()`.
 """
 
-from ..base.arguments import check_arguments
-from .available_storage import AvailableStorage, available_storage
-from .claims.certificate import Certificate, read_certificate
-from .claims.claim import Claim, Evidence, Proof, Refutation, Unknown
-from .claims.counterexample_files import read_record, write_record
-from .claims.second_opinion import SecondOpinion, second_opinion
-from .diagram_claims import DiagramClaims, Search, diagram_claims
-from .intervals.interval_claim import IntervalClaim
-from .intervals.over_box import claim_over_intervals
-from .linear.hand_port import hand_port
-from .linear.impedance import Impedance, impedance
-from .linear.kyp import Kyp, kyp, storage_function
-from .linear.positive_real import Excess, damping_excess, mobility_excess, positive_real
-from .margin_map import MarginMap, margin_map
-from .observer import (
-    PassivityControlled,
-    PortEnergy,
-    observe,
-    observe_record,
-    observe_simulation,
-    passivity_controlled,
-)
-from .ports import Port, ports
-from .rate_independent import (
-    Coulomb,
-    Cycle,
-    Dahl,
-    DahlBehindSpring,
-    Spring,
-    symmetric_cycle,
-)
-from .regions import Region, region
-from .search.by_simulation import (
-    Given,
-    SimulatedMotion,
-    confirmed_motion,
-    released_energy,
-    search_counterexample,
-)
-from .search.stroke_motion import Strokes
-from .theorems.bounded_compensation import bounded_compensation
-from .theorems.compliant_transmission import any_environment, free_motion, free_motion_margin
-from .theorems.dahl_compensation import (
-    dahl_compensation,
-    largest_one_off_energy,
-    largest_passive_level,
-    largest_ratio,
-    onset_amplitude,
-    self_motion_speed,
-)
-from .theorems.delayed_compensation import (
-    delayed_small_motion,
-    inertia_given_out,
-    released_by_delay,
-)
-from .theorems.delayed_coupling import delayed_spring
-from .theorems.delayed_inertia import cancelled_inertia, damping_given_out, largest_passive_inertia
-from .theorems.energy_tank import energy_tank
-from .theorems.lugre import lugre_passivity
-from .theorems.quantised_spring import quantised_spring, stiffest_spring
-from .theorems.sampled_compensation import Trembling, sampled_compensation
-from .theorems.sampled_data import required_damping, sampled_coupling, sampled_passivity
-from .theorems.velocity_compensation import SteadyStrokes, velocity_compensation
-from .theorems.wave_channel import wave_channel, wave_claim, wave_teleoperator
-from .two_port.claims import absolutely_stable, passive
-from .two_port.two_port import (
-    FrequencyMargins,
-    TwoPort,
-    sweep_margins,
-    teleoperator_two_port,
-    two_port,
-)
-from .z_width import WALL_DAMPING, WALL_STIFFNESS, ZWidth, z_width
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "WALL_DAMPING",
-    "WALL_STIFFNESS",
-    "AvailableStorage",
-    "Certificate",
-    "Claim",
-    "Coulomb",
-    "Cycle",
-    "Dahl",
-    "DahlBehindSpring",
-    "DiagramClaims",
-    "Evidence",
-    "Excess",
-    "FrequencyMargins",
-    "Given",
-    "Impedance",
-    "IntervalClaim",
-    "Kyp",
-    "MarginMap",
-    "PassivityControlled",
-    "Port",
-    "PortEnergy",
-    "Proof",
-    "Refutation",
-    "Region",
-    "Search",
-    "SecondOpinion",
-    "SimulatedMotion",
-    "Spring",
-    "SteadyStrokes",
-    "Strokes",
-    "Trembling",
-    "TwoPort",
-    "Unknown",
-    "ZWidth",
-    "absolutely_stable",
-    "any_environment",
-    "available_storage",
-    "bounded_compensation",
-    "cancelled_inertia",
-    "claim_over_intervals",
-    "confirmed_motion",
-    "dahl_compensation",
-    "damping_excess",
-    "damping_given_out",
-    "delayed_small_motion",
-    "delayed_spring",
-    "diagram_claims",
-    "energy_tank",
-    "free_motion",
-    "free_motion_margin",
-    "released_energy",
-    "released_by_delay",
-    "hand_port",
-    "impedance",
-    "inertia_given_out",
-    "kyp",
-    "largest_one_off_energy",
-    "largest_passive_inertia",
-    "largest_passive_level",
-    "largest_ratio",
-    "lugre_passivity",
-    "margin_map",
-    "mobility_excess",
-    "observe",
-    "observe_record",
-    "observe_simulation",
-    "onset_amplitude",
-    "sweep_margins",
-    "passive",
-    "passivity_controlled",
-    "ports",
-    "positive_real",
-    "quantised_spring",
-    "read_certificate",
-    "read_record",
-    "region",
-    "required_damping",
-    "sampled_compensation",
-    "sampled_coupling",
-    "sampled_passivity",
-    "search_counterexample",
-    "second_opinion",
-    "self_motion_speed",
-    "stiffest_spring",
-    "storage_function",
-    "symmetric_cycle",
-    "teleoperator_two_port",
-    "two_port",
-    "velocity_compensation",
-    "wave_channel",
-    "wave_claim",
-    "wave_teleoperator",
-    "write_record",
-    "z_width",
-]
+from ..base.folders import lazy_face
 
-check_arguments(globals(), __all__)
+if TYPE_CHECKING:
+    from .available_storage import AvailableStorage as AvailableStorage
+    from .available_storage import available_storage as available_storage
+    from .claims.certificate import Certificate as Certificate
+    from .claims.certificate import read_certificate as read_certificate
+    from .claims.claim import Claim as Claim
+    from .claims.claim import Evidence as Evidence
+    from .claims.claim import Proof as Proof
+    from .claims.claim import Refutation as Refutation
+    from .claims.claim import Unknown as Unknown
+    from .claims.counterexample_files import read_record as read_record
+    from .claims.counterexample_files import write_record as write_record
+    from .claims.second_opinion import SecondOpinion as SecondOpinion
+    from .claims.second_opinion import second_opinion as second_opinion
+    from .diagram_claims import DiagramClaims as DiagramClaims
+    from .diagram_claims import Search as Search
+    from .diagram_claims import diagram_claims as diagram_claims
+    from .intervals.interval_claim import IntervalClaim as IntervalClaim
+    from .intervals.over_box import claim_over_intervals as claim_over_intervals
+    from .linear.hand_port import hand_port as hand_port
+    from .linear.impedance import Impedance as Impedance
+    from .linear.impedance import impedance as impedance
+    from .linear.kyp import Kyp as Kyp
+    from .linear.kyp import kyp as kyp
+    from .linear.kyp import storage_function as storage_function
+    from .linear.positive_real import Excess as Excess
+    from .linear.positive_real import damping_excess as damping_excess
+    from .linear.positive_real import mobility_excess as mobility_excess
+    from .linear.positive_real import positive_real as positive_real
+    from .margin_map import MarginMap as MarginMap
+    from .margin_map import margin_map as margin_map
+    from .observer import PassivityControlled as PassivityControlled
+    from .observer import PortEnergy as PortEnergy
+    from .observer import observe as observe
+    from .observer import observe_record as observe_record
+    from .observer import observe_simulation as observe_simulation
+    from .observer import passivity_controlled as passivity_controlled
+    from .ports import Port as Port
+    from .ports import ports as ports
+    from .rate_independent import Coulomb as Coulomb
+    from .rate_independent import Cycle as Cycle
+    from .rate_independent import Dahl as Dahl
+    from .rate_independent import DahlBehindSpring as DahlBehindSpring
+    from .rate_independent import Spring as Spring
+    from .rate_independent import symmetric_cycle as symmetric_cycle
+    from .regions import Region as Region
+    from .regions import region as region
+    from .search.by_simulation import Given as Given
+    from .search.by_simulation import SimulatedMotion as SimulatedMotion
+    from .search.by_simulation import confirmed_motion as confirmed_motion
+    from .search.by_simulation import released_energy as released_energy
+    from .search.by_simulation import search_counterexample as search_counterexample
+    from .search.stroke_motion import Strokes as Strokes
+    from .theorems.bounded_compensation import bounded_compensation as bounded_compensation
+    from .theorems.compliant_transmission import any_environment as any_environment
+    from .theorems.compliant_transmission import free_motion as free_motion
+    from .theorems.compliant_transmission import free_motion_margin as free_motion_margin
+    from .theorems.dahl_compensation import dahl_compensation as dahl_compensation
+    from .theorems.dahl_compensation import largest_one_off_energy as largest_one_off_energy
+    from .theorems.dahl_compensation import largest_passive_level as largest_passive_level
+    from .theorems.dahl_compensation import largest_ratio as largest_ratio
+    from .theorems.dahl_compensation import onset_amplitude as onset_amplitude
+    from .theorems.dahl_compensation import self_motion_speed as self_motion_speed
+    from .theorems.delayed_compensation import delayed_small_motion as delayed_small_motion
+    from .theorems.delayed_compensation import inertia_given_out as inertia_given_out
+    from .theorems.delayed_compensation import released_by_delay as released_by_delay
+    from .theorems.delayed_coupling import delayed_spring as delayed_spring
+    from .theorems.delayed_inertia import cancelled_inertia as cancelled_inertia
+    from .theorems.delayed_inertia import damping_given_out as damping_given_out
+    from .theorems.delayed_inertia import largest_passive_inertia as largest_passive_inertia
+    from .theorems.energy_tank import energy_tank as energy_tank
+    from .theorems.lugre import lugre_passivity as lugre_passivity
+    from .theorems.quantised_spring import quantised_spring as quantised_spring
+    from .theorems.quantised_spring import stiffest_spring as stiffest_spring
+    from .theorems.sampled_compensation import Trembling as Trembling
+    from .theorems.sampled_compensation import sampled_compensation as sampled_compensation
+    from .theorems.sampled_data import required_damping as required_damping
+    from .theorems.sampled_data import sampled_coupling as sampled_coupling
+    from .theorems.sampled_data import sampled_passivity as sampled_passivity
+    from .theorems.velocity_compensation import SteadyStrokes as SteadyStrokes
+    from .theorems.velocity_compensation import velocity_compensation as velocity_compensation
+    from .theorems.wave_channel import wave_channel as wave_channel
+    from .theorems.wave_channel import wave_claim as wave_claim
+    from .theorems.wave_channel import wave_teleoperator as wave_teleoperator
+    from .two_port.claims import absolutely_stable as absolutely_stable
+    from .two_port.claims import passive as passive
+    from .two_port.two_port import FrequencyMargins as FrequencyMargins
+    from .two_port.two_port import TwoPort as TwoPort
+    from .two_port.two_port import sweep_margins as sweep_margins
+    from .two_port.two_port import teleoperator_two_port as teleoperator_two_port
+    from .two_port.two_port import two_port as two_port
+    from .z_width import WALL_DAMPING as WALL_DAMPING
+    from .z_width import WALL_STIFFNESS as WALL_STIFFNESS
+    from .z_width import ZWidth as ZWidth
+    from .z_width import z_width as z_width
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

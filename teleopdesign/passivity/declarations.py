@@ -126,11 +126,11 @@ def _missing_step(effect: Effect, body: Body, reach: Reach | None, errors: float
             for now in at_rest
         )
 
-    missing = [_unstored(inertia, *way, least=least) for way in ways]
+    missing = [_missing_of_storage(inertia, *way, least=least) for way in ways]
     return "" if "" in missing else missing[0]
 
 
-def _unstored(
+def _missing_of_storage(
     inertia: sp.Expr,
     force: sp.Expr,
     rates: Mapping[sp.Symbol, sp.Expr],

@@ -10,7 +10,7 @@ import sympy as sp
 
 from ..base.errors import ModelError
 from ..base.frozen import Frozen
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..blocks import NINETY_FIVE, Body
 from ..effects import Effect
 from ..realise.acting_bound import largest_acting_force

@@ -125,7 +125,7 @@ class _Form:
             raise ModelError("has no equations in continuous time" if self.kind == 0 else "is code")
         within = self._bounded_states(made, bound)
         for force in self._cases(made.output, within):
-            if not _stays_within_one(_scaled(force, 1 / exact_decimal(bound))):
+            if not _stays_within_one(_scale(force, 1 / exact_decimal(bound))):
                 free = ", ".join(sorted(z.name for z, x in within.items() if x.is_Dummy))
                 beside = f", with any value of {free}" if free else ""
                 raise ModelError(f"its force could not be shown to stay within {bound:g}{beside}")
@@ -184,7 +184,7 @@ def _size(z: sp.Symbol, cases: set[sp.Expr], bound: float, *, steps: bool) -> sp
 def _steps_within(after: sp.Expr, z: sp.Symbol, size: sp.Expr) -> bool:
     """Whether the value of a state at the next sample is within a size if the state is."""
     share = sp.Symbol("share_here", real=True)
-    return _stays_within_one(_scaled(after.subs(z, size * share), 1 / (size or sp.S(1))))
+    return _stays_within_one(_scale(after.subs(z, size * share), 1 / (size or sp.S(1))))
 
 
 def _leads_inward(rate: sp.Expr, z: sp.Symbol, size: sp.Expr) -> bool:
@@ -215,12 +215,12 @@ def _equilibrium(z: sp.Symbol, change: sp.Expr) -> sp.Expr:
     return sp.Rational(size) if math.isfinite(size) else sp.oo
 
 
-def _scaled(law: sp.Expr, factor: sp.Expr) -> sp.Expr:
+def _scale(law: sp.Expr, factor: sp.Expr) -> sp.Expr:
     """The law times a factor > 0, with the limits within it scaled too, so that they stay exact."""
     if isinstance(law, sp.Max | sp.Min):
-        return law.func(*(_scaled(part, factor) for part in law.args))
+        return law.func(*(_scale(part, factor) for part in law.args))
     if isinstance(law, sp.Piecewise):
-        return sp.Piecewise(*((_scaled(part, factor), where) for part, where in law.args))
+        return sp.Piecewise(*((_scale(part, factor), where) for part, where in law.args))
     return law * factor
 
 

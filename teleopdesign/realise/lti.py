@@ -157,7 +157,8 @@ def numerical(expression: sp.Expr) -> Callable[[np.ndarray], np.ndarray]:
     inexact = {x: sp.Float(x) for x in expression.atoms(sp.Rational) if not x.is_Integer}
     # an integer may be longer than what numpy takes
     inexact |= {x: sp.Float(x) for x in expression.atoms(sp.Integer) if abs(x) >= 2**31}
-    call = sp.lambdify(S, expression.xreplace(inexact), "numpy")
+    # the module: by its name sympy would import all that belongs to it, f2py and tests included
+    call = sp.lambdify(S, expression.xreplace(inexact), [np])
 
     def values(s: np.ndarray) -> np.ndarray:
         s = np.asarray(s, dtype=complex)

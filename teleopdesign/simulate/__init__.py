@@ -1,30 +1,24 @@
 """Simulate a diagram, with a prescribed motion or in closed loop, sampled or continuous."""
 
-from ..base.arguments import check_arguments
-from .force_displacement import ForceDisplacement, Loop, force_displacement, loop_of
-from .force_velocity import ForceVelocity, force_velocity
-from .many import simulate_many
-from .sampling import Sampling
-from .setup import Setup, prepare
-from .simulation import Simulation, simulate
-from .trajectory import Trajectory, sampled_motion, sine
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "ForceDisplacement",
-    "ForceVelocity",
-    "Loop",
-    "Trajectory",
-    "Setup",
-    "Sampling",
-    "Simulation",
-    "force_displacement",
-    "force_velocity",
-    "loop_of",
-    "prepare",
-    "sampled_motion",
-    "simulate",
-    "simulate_many",
-    "sine",
-]
+from ..base.folders import lazy_face
 
-check_arguments(globals(), __all__)
+if TYPE_CHECKING:
+    from .force_displacement import ForceDisplacement as ForceDisplacement
+    from .force_displacement import ForceVelocity as ForceVelocity
+    from .force_displacement import Loop as Loop
+    from .force_displacement import force_displacement as force_displacement
+    from .force_displacement import force_velocity as force_velocity
+    from .force_displacement import loop_of as loop_of
+    from .many import simulate_many as simulate_many
+    from .sampling import Sampling as Sampling
+    from .setup import Setup as Setup
+    from .setup import prepare as prepare
+    from .simulation import Simulation as Simulation
+    from .simulation import simulate as simulate
+    from .trajectory import Trajectory as Trajectory
+    from .trajectory import sampled_motion as sampled_motion
+    from .trajectory import sine as sine
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -13,45 +13,32 @@ result["force_error"]                       # a labelled array over both axes
 result.plot.map("force_error")
 """
 
-from ..base.arguments import check_arguments
-from .case import SimulatedCase
-from .chosen_measures import Measure, measure
-from .diagnosed import diagnose_recording
-from .from_toml import read_study_file
-from .measures import MEASURES
-from .onset import find_onset, growth
-from .outcomes import PointOutcome
-from .point import Amount, Point
-from .progress import Progress
-from .result import Study, read_study
-from .run import study
-from .samples import Samples, latin_hypercube, random_samples, sensitivity_samples, sobol
-from .sensitivities import sensitivities
-from .sensitivity import sensitivity
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "MEASURES",
-    "Amount",
-    "SimulatedCase",
-    "Measure",
-    "PointOutcome",
-    "Point",
-    "Progress",
-    "Samples",
-    "Study",
-    "diagnose_recording",
-    "growth",
-    "latin_hypercube",
-    "find_onset",
-    "measure",
-    "random_samples",
-    "read_study",
-    "read_study_file",
-    "sensitivities",
-    "sensitivity",
-    "sensitivity_samples",
-    "sobol",
-    "study",
-]
+from ..base.folders import lazy_face
 
-check_arguments(globals(), __all__)
+if TYPE_CHECKING:
+    from .case import SimulatedCase as SimulatedCase
+    from .chosen_measures import Measure as Measure
+    from .chosen_measures import measure as measure
+    from .from_toml import diagnose_recording as diagnose_recording
+    from .from_toml import read_study_file as read_study_file
+    from .measures import MEASURES as MEASURES
+    from .measures import find_onset as find_onset
+    from .measures import growth as growth
+    from .outcomes import PointOutcome as PointOutcome
+    from .outcomes import Progress as Progress
+    from .point import Amount as Amount
+    from .point import Point as Point
+    from .result import Study as Study
+    from .result import read_study as read_study
+    from .run import study as study
+    from .samples import Samples as Samples
+    from .samples import latin_hypercube as latin_hypercube
+    from .samples import random_samples as random_samples
+    from .samples import sensitivity_samples as sensitivity_samples
+    from .samples import sobol as sobol
+    from .sensitivity import sensitivities as sensitivities
+    from .sensitivity import sensitivity as sensitivity
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -8,23 +8,19 @@ front = td.trade_off(diagram, free, ("force_error", "tracking_error"), duration=
 fitted = td.fit_simulation(diagram, record, {"Z_M.coulomb.level": (0.05, 2.0)})
 """
 
-from ..base.arguments import check_arguments
-from .limits import TuningLimit, limit
-from .recheck import CheckedLimit
-from .simulation_fit import SimulationFit, fit_simulation
-from .trade_off import ParetoFront, trade_off
-from .tune import Tuned, tune
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "CheckedLimit",
-    "ParetoFront",
-    "SimulationFit",
-    "Tuned",
-    "TuningLimit",
-    "fit_simulation",
-    "limit",
-    "trade_off",
-    "tune",
-]
+from ..base.folders import lazy_face
 
-check_arguments(globals(), __all__)
+if TYPE_CHECKING:
+    from .limits import TuningLimit as TuningLimit
+    from .limits import limit as limit
+    from .recheck import CheckedLimit as CheckedLimit
+    from .simulation_fit import SimulationFit as SimulationFit
+    from .simulation_fit import fit_simulation as fit_simulation
+    from .trade_off import ParetoFront as ParetoFront
+    from .trade_off import trade_off as trade_off
+    from .tune import Tuned as Tuned
+    from .tune import tune as tune
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

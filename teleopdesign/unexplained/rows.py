@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from ..diagnose.fit import block_numbers, free_parameters
 from ..diagnose.folds import folds
-from ..diagnose.prepare import Prepared, Stretch
 from ..diagnose.record_offsets import as_logged
 from ..diagnose.residual import residuals
 from ..effects import Effect, Parameter
 from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared, Stretch
 from ..measurement.reversals import look_back_to_reversal
 from ..model import Model
 from ..realise.along_motion import residual_along

@@ -18,8 +18,8 @@ from teleopdesign.commands.diagnose import _suggest_for_joints
 from teleopdesign.diagnose.arms.fit import ArmFit, error_over_joints, estimate_arm
 from teleopdesign.diagnose.arms.prepared import PreparedArm
 from teleopdesign.diagnose.error import force_error
-from teleopdesign.diagnose.shared_links import Knowledge
 from teleopdesign.measurement.filtering import Array
+from teleopdesign.measurement.shared_links import Knowledge
 from teleopdesign.measurement.zero_phase import zero_phase
 
 

@@ -44,7 +44,7 @@ WRONG = {
 }
 FOLDERS = (
     "effects blocks controllers diagrams simulate frequency derive passivity design identify "
-    "diagnose next_experiment measurement plot report"
+    "diagnose next_experiment measurement show show.report"
 ).split()
 #: these write files, reach for the network, or are told where they look for it
 LEFT_OUT = {"fetch", "save_figure", "write_record", "write_diagram", "write_reference"}

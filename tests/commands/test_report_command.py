@@ -13,7 +13,7 @@ from teleopdesign import load_experiment
 from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
 from teleopdesign.commands._report import _next_steps
-from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.next_experiment import shown_limits
 
 

@@ -6,7 +6,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.blocks import Value
-from teleopdesign.design import DiagnosedModel, energy, felt_impedance
+from teleopdesign.design import DiagnosedModel, felt_impedance, verdict
 
 #: what a diagnosis of the rod ends with, rounded: value and standard error
 ROD = {
@@ -22,8 +22,8 @@ ROD = {
 def few_motions():
     """A design looks at fewer motions, the ends of the grid among them: half of its time."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(energy, "SIZES", (0.1, 1.0))
-        patch.setattr(energy, "FREQUENCIES", (1.0, 3.0, 30.0))
+        patch.setattr(verdict, "SIZES", (0.1, 1.0))
+        patch.setattr(verdict, "FREQUENCIES", (1.0, 3.0, 30.0))
         patch.setattr(felt_impedance, "MULTIPLES", (1.0, 10.0))
         yield
 

@@ -14,12 +14,12 @@ from teleopdesign.diagnose.draws import search_among_draws
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.diagnose.search import Base, _vary_starts, base_of, estimate_from_starts
 from teleopdesign.diagnose.search_plan import PLAN
 from teleopdesign.diagnose.stated_fit import estimate_stated
 from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.realise import ode_scan
 
 BACKLASH = EFFECTS["backlash"]

@@ -18,8 +18,8 @@ from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.learnable import Learnable
 from teleopdesign.diagnose.noise_floor import NoiseFloor, noise_floor
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.record_shift import RecordShift
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model
 
 INERTIA, DAMPING = 0.5, 2.0  # kg*m^2, N*m*s/rad

@@ -12,11 +12,11 @@ from teleopdesign.diagnose.bodies_apart import BodyByBody, select_bodies, separa
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.promise import Promises
 from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.diagnose.stated import reset_to_stated
 from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.prepare import prepare
 
 
 @pytest.fixture(scope="module")

@@ -19,11 +19,11 @@ from teleopdesign.diagnose.candidates import (
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.fit import estimate, free_parameters
 from teleopdesign.diagnose.identifiability import is_identifiable
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.rank import rank_candidates
-from teleopdesign.diagnose.scales import scales
 from teleopdesign.effects import CONTACT_ROLES, EFFECTS, catalogue
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.measurement.saving import write_experiment
+from teleopdesign.measurement.scales import scales
 
 
 @pytest.fixture(scope="module")

@@ -10,10 +10,10 @@ from diagnose.simulated_cases import FEW, truth_of, write_simulated
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.prepare import SOUGHT, prepare
 from teleopdesign.diagnose.record_shift import record_shifts
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.diagnose.search import base_of
+from teleopdesign.measurement.prepare import SOUGHT, prepare
 from teleopdesign.realise import compiled, scan, shape_scan
 
 

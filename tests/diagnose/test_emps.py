@@ -7,10 +7,10 @@ from shared_data import shared_folder
 import teleopdesign as td
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.learnable import learnable
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.prepare import prepare
 
 pytestmark = pytest.mark.slow
 

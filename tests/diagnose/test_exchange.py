@@ -10,9 +10,9 @@ from teleopdesign.diagnose.exchange import best_exchange
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_state import LadderSearch
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.prepare import prepare
 
 pytestmark = pytest.mark.slow  # diagnoses of whole cases
 

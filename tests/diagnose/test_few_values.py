@@ -9,7 +9,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.few_values import explain_few_values, independent_values
-from teleopdesign.diagnose.prepare import Stretch
+from teleopdesign.measurement.prepare import Stretch
 
 #: the module, not the function of its name
 rank = import_module("teleopdesign.diagnose.rank")

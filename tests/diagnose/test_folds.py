@@ -5,7 +5,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.diagnose.folds import folds
-from teleopdesign.diagnose.prepare import FOLDS, prepare
+from teleopdesign.measurement.prepare import FOLDS, prepare
 
 H = 0.02
 

@@ -15,11 +15,11 @@ from teleopdesign.diagnose.error import error_of, force_error
 from teleopdesign.diagnose.fit import block_numbers, estimate
 from teleopdesign.diagnose.folds import folds
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.prepare import FOLDS, prepare
 from teleopdesign.diagnose.residual import relative_residuals, residuals
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.measurement.bandwidth import default_bandwidth
 from teleopdesign.measurement.channel import Channel
+from teleopdesign.measurement.prepare import FOLDS, prepare
 from teleopdesign.realise.along_motion import residual_along
 
 

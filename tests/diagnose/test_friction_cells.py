@@ -15,9 +15,9 @@ from machines import make_machine, run_machine
 from truth_effects import draw, shape
 
 from teleopdesign.diagnose.friction_cells import FEWEST, PASSES, friction_cells
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.stated_fit import estimate_stated
 from teleopdesign.measurement import load_experiment
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model
 
 KINDS = ("rub", "narrow", "worn", "both ways apart", "all along", "a force of the time")

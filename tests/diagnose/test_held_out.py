@@ -10,8 +10,8 @@ from teleopdesign import Model
 from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate, free_parameters
 from teleopdesign.diagnose.folds import folds
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.solve import model_without, solve
+from teleopdesign.measurement.prepare import prepare
 
 
 @pytest.fixture(scope="module")

@@ -30,7 +30,7 @@ from teleopdesign.diagnose.stated import reset_to_stated
 from teleopdesign.diagnose.width import OpenWidths
 from teleopdesign.effects import EFFECTS
 from teleopdesign.next_experiment.rivals import rival_instead
-from teleopdesign.report.parameter_table import parameter_rows
+from teleopdesign.show.report.parameter_table import parameter_rows
 
 pytestmark = pytest.mark.slow  # diagnoses of whole cases
 

@@ -8,18 +8,16 @@ from diagnose.made_records import jittered
 from diagnose.simulated_cases import write_simulated
 
 from teleopdesign import check_experiment, find_missing, load_experiment
-from teleopdesign.diagnose import jitter
+from teleopdesign.check import sample_clock, why_silent
+from teleopdesign.check.sample_clock import jitter_share
 from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.decision import objection
-from teleopdesign.diagnose.jitter import jitter_share
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.ranking import Ranked
 from teleopdesign.diagnose.search import estimate_from_starts
-from teleopdesign.diagnose.silent_records import why_silent
 from teleopdesign.effects import find_effect
 from teleopdesign.measurement.encoder import sampling_jitter
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model
 
 
@@ -81,12 +79,12 @@ def test_records_with_much_jitter_tell_no_effect(adequate, monkeypatch):
     """At half a row of jitter and 500 Hz a tip behind a spring was named, which weakens it."""
     late = jittered(adequate, 0.3)
     share = jitter_share(prepare(late).of("fit"), late)
-    monkeypatch.setattr(jitter, "CRITERIA", replace(CRITERIA, jitter=0.99 * share))
+    monkeypatch.setattr(sample_clock, "JITTER", 0.99 * share)
     diagnosis = find_missing(late)
     assert diagnosis.verdict == "undecided" and not diagnosis.missing
     assert len(diagnosis.last.ranked) == 0
     assert "taken at other moments than their rows say" in str(diagnosis)
     warning = [f for f in check_experiment(late) if "taken at other moments" in f.sentence]
     assert [f.concern for f in warning] == ["warning"]
-    monkeypatch.setattr(jitter, "CRITERIA", replace(CRITERIA, jitter=1.01 * share))
+    monkeypatch.setattr(sample_clock, "JITTER", 1.01 * share)
     assert why_silent(prepare(late), Model.from_experiment(late)) == ""

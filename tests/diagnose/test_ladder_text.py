@@ -2,15 +2,13 @@
 
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 from diagnose.stand_ins import fit, floor, ranked
 
-from teleopdesign.diagnose import constant_force, ladder_text
-from teleopdesign.diagnose.constant_force import constant_force_line
+from teleopdesign.diagnose import ladder_text
 from teleopdesign.diagnose.ladder_text import records_line, say_floors
 from teleopdesign.diagnose.left_out import left_out_lines, possible_next
-from teleopdesign.report.words import _floors
+from teleopdesign.show.report.words import _floors
 
 
 @pytest.mark.parametrize(("left", "message"), [(0.94, "0.9"), (45.34, "45.3"), (1000.0, "1000.0")])
@@ -22,18 +20,6 @@ def test_an_error_is_a_number_of_noise_floors(left, message):
 def test_a_floor_next_to_zero_is_no_measure(left):
     """Where the force has no stated noise, the floor is that of the position alone."""
     assert say_floors(left) == _floors(left) == "more than 1000"
-
-
-@pytest.mark.parametrize(("varies", "message"), [(0.0, True), (0.009, True), (0.02, False)])
-def test_any_friction_explains_a_force_that_hardly_varies(monkeypatch, varies, message):
-    """A motor that spun up under one torque left 0.00 % with an inertia of zero."""
-    monkeypatch.setattr(constant_force, "measured_force", lambda s: s.force)
-    sine = np.sqrt(2.0) * varies * np.sin(np.linspace(0.0, 20.0 * np.pi, 2000, endpoint=False))
-    stretches = [SimpleNamespace(force=0.05 * (1.0 + s * sine)) for s in (1.0, 0.0)]
-    line = constant_force_line(stretches)
-    assert (line is not None) == message
-    if message:
-        assert "a constant friction explains it along any motion" in line
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from diagnose.made_records import write_made
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.measurement.prepare import prepare
 
 LEVEL, SPEED = "device.stribeck.extra_static_level", "device.stribeck.stribeck_velocity"
 

@@ -15,10 +15,10 @@ from teleopdesign.diagnose.clock import with_late_hand, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.record_shift import name_of_hand, shifts_of
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.prepare import prepare
 
 pytestmark = pytest.mark.slow  # diagnoses of whole cases
 

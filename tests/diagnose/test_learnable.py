@@ -20,8 +20,8 @@ from teleopdesign.diagnose.learnable import (
     learnable_data,
     learnable_from,
 )
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.tree_inputs import inputs_along
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.measurement.reversals import mark_reversals
 
 

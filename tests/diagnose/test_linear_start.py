@@ -9,11 +9,11 @@ import teleopdesign as td
 from teleopdesign.diagnose.candidates import make_starts
 from teleopdesign.diagnose.fit import estimate, fit_squares
 from teleopdesign.diagnose.linear_start import linear_starts
-from teleopdesign.diagnose.prepare import prepare
-from teleopdesign.diagnose.scales import scales
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.experiment import Experiment
+from teleopdesign.measurement.prepare import prepare
+from teleopdesign.measurement.scales import scales
 
 PERIOD, AMPLITUDE, PHASE = 7.3e-4, 0.08, 2.0  # m: travel of some fifty periods; N; rad
 

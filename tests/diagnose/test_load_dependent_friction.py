@@ -7,8 +7,8 @@ from diagnose.made_records import write_made
 import teleopdesign as td
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.prepare import prepare
 
 EFFECT = EFFECTS["load_dependent_friction"]
 INERTIA, GRAVITY, LEVEL, DAMPING = 0.05, 2.0, 0.2, 0.05

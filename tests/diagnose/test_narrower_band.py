@@ -9,10 +9,10 @@ from scipy.signal import lfilter
 
 import teleopdesign as td
 from teleopdesign import Model
-from teleopdesign.check.bandwidth_check import check_bandwidth
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.narrower_band import choose_band, narrower_band, narrower_to_search
-from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.fitted_checks.bandwidth import check_bandwidth
+from teleopdesign.measurement.prepare import prepare
 
 
 def with_position(experiment, read):

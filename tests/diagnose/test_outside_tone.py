@@ -14,10 +14,10 @@ from teleopdesign.diagnose.evidence import check_squares
 from teleopdesign.diagnose.fit import estimate, weigh_residuals
 from teleopdesign.diagnose.noise_floor import NoiseFloor
 from teleopdesign.diagnose.outside_tone import Tone, _tone_squares, best_tone, is_of_mains
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS, depends_on_time
+from teleopdesign.measurement.prepare import prepare
 
 FRICTION = 'coulomb = { level = { value = 1.0, unit = "N*m" } }'
 

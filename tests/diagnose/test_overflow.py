@@ -9,9 +9,9 @@ import pytest
 from teleopdesign import Model, example, load_experiment
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.fit import estimate, fit_squares, standard_errors
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.promise import Promises, _remaining_squares
 from teleopdesign.diagnose.residual import relative_residuals
+from teleopdesign.measurement.prepare import prepare
 
 GAIN = "device.actuator_gain.gain"
 

@@ -14,8 +14,8 @@ from teleopdesign.diagnose.candidates import (
     tells_place_from_time,
     tells_speed_from_time,
 )
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.effects import EFFECTS, depends_on_position, load_effect, period
+from teleopdesign.measurement.prepare import prepare
 
 TURN = 2 * np.pi
 GRAVITY = '''"""Gravity: a pendulum."""

@@ -14,7 +14,6 @@ from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_state import LadderSearch
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.reading_error import (
     ReadingError,
     as_read,
@@ -29,6 +28,7 @@ from teleopdesign.diagnose.simulated_course import (
     simulated_course,
 )
 from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.realise.along_motion import residual_along
 
 

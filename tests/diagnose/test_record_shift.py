@@ -9,17 +9,17 @@ from diagnose.simulated_cases import FEW, truth_of, write_simulated
 from scipy.signal import lfilter
 
 import teleopdesign as td
-from teleopdesign.check import check_experiment
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.answers.bodies import model_data, model_from
 from teleopdesign.diagnose.clock import with_late_starts, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_text import ladder_text
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.record_shift import RecordShift, shifts_of
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
+from teleopdesign.fitted_checks import check_experiment
+from teleopdesign.measurement.prepare import prepare
 
 
 def shifted(experiment, rows):

@@ -10,7 +10,6 @@ from diagnose.made_records import write_made
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.decision import open_to_others
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.repeats import (
     Repeatability,
     _differences,
@@ -18,6 +17,7 @@ from teleopdesign.diagnose.repeats import (
     repeatability,
     repeats_data,
 )
+from teleopdesign.measurement.prepare import prepare
 
 NOISE, EXACT = 0.3, 1e-6  # N m, in each reading of the torque
 PERIOD = 2.5  # s

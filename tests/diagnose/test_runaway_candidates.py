@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.measurement import load_experiment
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model
 
 pytestmark = pytest.mark.slow  # fits of candidates

@@ -8,7 +8,7 @@ from truth_effects import TEN
 
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.measurement.prepare import prepare
 
 #: with hidden states or many parameters, which imitate most of the ten
 IMITATORS = ("transmission_compliance", "maxwell_slip", "friction_memory", "torque_ripple")

@@ -8,8 +8,8 @@ from teleopdesign import Model, load_experiment
 from teleopdesign.blocks import Value
 from teleopdesign.diagnose.candidates import make_starts
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import base_of, estimate_from_starts
+from teleopdesign.measurement.prepare import prepare
 
 pytestmark = pytest.mark.slow  # searches of three springs
 

@@ -11,7 +11,6 @@ import teleopdesign as td
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.noise_floor import NoiseFloor, noise_floor
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.rung import Rung
 from teleopdesign.diagnose.stand_in import (
     acting_moments,
@@ -22,6 +21,7 @@ from teleopdesign.diagnose.stand_in import (
 )
 from teleopdesign.diagnose.stated_fit import estimate_stated
 from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model
 
 FRICTION = 'coulomb = { level = { value = 0.5, unit = "N*m" } }\n'

@@ -8,9 +8,9 @@ import teleopdesign as td
 from teleopdesign.diagnose import further_starts, search
 from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate, free_parameters
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search_plan import PLAN
 from teleopdesign.diagnose.stated import is_at_stated
+from teleopdesign.measurement.prepare import prepare
 
 STRIBECK = {"extra_static_level": 0.2, "stribeck_velocity": 0.022}
 

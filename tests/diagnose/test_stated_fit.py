@@ -7,9 +7,9 @@ from diagnose.simulated_cases import write_simulated
 
 import teleopdesign as td
 from teleopdesign.diagnose.fit import fit_squares
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.stated_fit import estimate_stated
+from teleopdesign.measurement.prepare import prepare
 
 
 def anew(model, *names):

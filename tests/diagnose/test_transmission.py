@@ -9,11 +9,11 @@ from effects.recorded import write_recorded
 import teleopdesign as td
 from teleopdesign.diagnose.candidates import Candidate, candidates
 from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import base_of
 from teleopdesign.diagnose.search_plan import PLAN
 from teleopdesign.diagnose.tip_start import _Course, _linear_problem, tip_starts
 from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model
 
 DAMPED = "viscous = { damping = 0.5 }"

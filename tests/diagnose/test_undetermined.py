@@ -181,7 +181,7 @@ def test_what_was_set_aside_or_is_undetermined_stands_in_text_and_answer(
 
 @pytest.fixture(scope="module")
 def prepared_case(experiment):
-    from teleopdesign.diagnose.prepare import prepare
+    from teleopdesign.measurement.prepare import prepare
 
     return prepare(experiment)
 

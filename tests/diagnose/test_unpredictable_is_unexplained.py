@@ -17,9 +17,9 @@ from teleopdesign.diagnose.error_at_command import refer_to_command
 from teleopdesign.diagnose.evidence import gain_at_command
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.effects import EFFECTS
+from teleopdesign.measurement.prepare import prepare
 
 ACTUATION = {n: e for n, e in EFFECTS.items() if e.role == "actuation"}
 FROM_ACTING = {"load_dependent_friction": EFFECTS["load_dependent_friction"]}

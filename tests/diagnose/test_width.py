@@ -11,9 +11,9 @@ from teleopdesign import Body, Effect, FitSearch, Model, Parameter, load_experim
 from teleopdesign.diagnose import width
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.rank import make_ranked
 from teleopdesign.diagnose.width import OpenWidths, explain_open_width
+from teleopdesign.measurement.prepare import prepare
 
 LEVEL, WIDTH = 0.3, 0.5
 STATED = "coulomb = { level = { value = 0.05, unit = 'N*m' } }"

@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 
 import teleopdesign.effects as folder
 from teleopdesign.base.errors import ModelError
-from teleopdesign.base.quantity import AXES, QUANTITIES, unit_of
+from teleopdesign.base.units import AXES, QUANTITIES, unit_of
 from teleopdesign.effects import (
     BLOCK_EFFECTS,
     EFFECTS,
@@ -35,7 +35,8 @@ from teleopdesign.effects import (
 )
 from teleopdesign.effects._effect import ROLES
 
-FILES = sorted(p for p in Path(folder.__file__).parent.glob("*.py") if p.name[0] != "_")
+HOME = Path(folder.__file__).parent
+FILES = [p for p in (*HOME.glob("*.py"), *HOME.glob("of_blocks/*.py")) if p.name[0] != "_"]
 CLAIMS = ("even in velocity", "non-negative")  # those that a test below checks
 
 
@@ -44,7 +45,7 @@ CLAIMS = ("even in velocity", "non-negative")  # those that a test below checks
 
 def test_every_file_of_the_folder_is_one_effect_under_the_name_of_the_file():
     known = EFFECTS | BLOCK_EFFECTS
-    assert [p.stem for p in FILES] == sorted(known)
+    assert sorted(p.stem for p in FILES) == sorted(known)
     assert all(known[name].name == name for name in known)
 
 
@@ -68,9 +69,9 @@ def test_a_law_may_not_use_a_signal_that_its_role_does_not_know(signal, tmp_path
 
 
 def test_a_law_may_use_parameters_of_effects_that_it_needs_and_of_no_others(tmp_path):
-    text = (Path(folder.__file__).parent / "impact_damping.py").read_text()
+    text = (Path(folder.__file__).parent / "of_blocks" / "impact_damping.py").read_text()
     file = tmp_path / "own_damping.py"
-    file.write_text(text.replace("from ._effect", "from teleopdesign.effects._effect"))
+    file.write_text(text.replace("from .._effect", "from teleopdesign.effects._effect"))
     assert "environment_stiffness" in str(load_effect(file).expression())
     file.write_text(
         file.read_text().replace('needs=frozenset({"environment"})', "needs=frozenset()")

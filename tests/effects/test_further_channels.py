@@ -8,10 +8,10 @@ from effects.recorded import write_recorded
 from teleopdesign import Body, Model, ModelError, find_missing, fit, load_effect, load_experiment
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.diagnose.candidates import candidates
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS, SIGNALS
 from teleopdesign.effects.viscous_temperature import REFERENCE
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.simulate import simulate
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose.prepare import prepare
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.realise.along_motion import residual_along
 
 

@@ -8,7 +8,7 @@ from shared_data import shared_folder
 def no_picture(request, monkeypatch):
     """`teleopdesign new` draws no picture but where a test wants it: a test reads what it says."""
     if "picture" not in request.fixturenames:
-        monkeypatch.setattr("teleopdesign.plot.log.save_survey", lambda figure, path: None)
+        monkeypatch.setattr("teleopdesign.show.figures.log.save_survey", lambda figure, path: None)
 
 
 @pytest.fixture

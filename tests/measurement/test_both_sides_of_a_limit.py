@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from check.made_channels import wrong_steps
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.io import savemat
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
+from teleopdesign.check import CheckedRecording
 from teleopdesign.measurement.bandwidth import LOWEST, default_bandwidth
 from teleopdesign.measurement.doors import _log, json_records, matlab
 from teleopdesign.measurement.doors.bag import _check_field
@@ -20,8 +22,6 @@ from teleopdesign.measurement.reading import ReadingStep
 from teleopdesign.measurement.record_clock import RecordClock
 from teleopdesign.measurement.repeated_rows import rows_between_readings
 from teleopdesign.measurement.resample import commands_on_clock
-from teleopdesign.measurement.soundness.encoder_steps import check_steps
-from teleopdesign.measurement.soundness.signal import signals
 from teleopdesign.measurement.tables import open_log
 from teleopdesign.measurement.time_grid import stamps_are_true
 from teleopdesign.measurement.zero_phase import filter_both_ways, margin, sections
@@ -116,12 +116,14 @@ def test_readings_between_the_stated_steps_are_reported_unless_they_were_interpo
         actuator_force="F",
         inertia=0.1,
     )
-    (position,) = (s for s in signals(experiment) if s.channel.quantity == "position")
+    (position,) = (
+        s for s in CheckedRecording(experiment).signals if s.channel.quantity == "position"
+    )
     step = ReadingStep("log.csv", "stamps", "read", "none", interpolates=interpolates)
     position = replace(position, record=replace(position.record, reading=(step,)))
     if coarser:  # what lies further apart than the stated steps was not made by interpolation
         position = replace(position, step=2e-3)
-    findings = check_steps(position, [])
+    findings = wrong_steps(position)
     if interpolates and not coarser:
         assert findings == []
     else:

@@ -5,8 +5,7 @@ import openpyxl
 import pytest
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.base.quantity import is_unit
-from teleopdesign.base.unit_text import parse_unit
+from teleopdesign.base.units import is_unit, parse_unit
 from teleopdesign.measurement.column_names import ALIASES, bare_name, unit_in_name, unit_of_text
 from teleopdesign.measurement.doors._cells import is_number, number_of
 from teleopdesign.measurement.doors._header import names_and_units

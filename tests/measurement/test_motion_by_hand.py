@@ -1,7 +1,6 @@
 """The motion that readings leave of a body, and the forces along it."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +17,7 @@ from teleopdesign.measurement.motion import (
     without_mains,
 )
 from teleopdesign.measurement.reading import ReadingStep
+from teleopdesign.measurement.record import Record
 from teleopdesign.measurement.record_clock import RecordClock
 from teleopdesign.measurement.time_grid import clock_of
 
@@ -113,9 +113,7 @@ def record_of(segments, force=None, hand=None):
     }
     if hand is not None:
         signals["device.interaction_force"] = hand
-    return SimpleNamespace(
-        file="fit.csv", time=T, sample_time=H, segments=segments, signals=signals
-    )
+    return Record("fit.csv", "fit", frozenset(), T, H, segments, signals)
 
 
 def test_stretches_long_enough_to_be_trimmed_are_motions():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.base.quantity import measures, si_factor
+from teleopdesign.base.units import measures, si_factor
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import Choices, survey_log
 

@@ -1,15 +1,13 @@
 """Rows that a log repeats or lost, and signals on the clock of a record, by hand."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from measurement.made_channels import H
+from check.made_channels import H
 
 from teleopdesign.measurement import log_clock
 from teleopdesign.measurement.channel import Channel
-from teleopdesign.measurement.reading import ReadingStep
 from teleopdesign.measurement.record_clock import RecordClock
 from teleopdesign.measurement.repeated_rows import (
     _goes_on,
@@ -25,7 +23,6 @@ from teleopdesign.measurement.signals_of_log import (
     _restore_steps,
     rule_of,
 )
-from teleopdesign.measurement.soundness import check_signals
 
 
 def made_clock(off, **more):
@@ -182,24 +179,3 @@ def test_after_a_clock_was_set_back_rows_go_on_at_their_places():
     assert out == pytest.approx(values)
     late = resample_on_grid(values, made, "line", stamped=True, step=0.0, delay=0.5 * H)
     assert late == pytest.approx([0.5, 1.5, 2.5, 3.0, 55.0, 65.0, 75.0, 80.0])
-
-
-def test_clock_and_channels_in_order_are_reported_once_and_only_then(monkeypatch):
-    from teleopdesign import example, load_experiment
-    from teleopdesign.measurement import soundness
-
-    rod = load_experiment(example("rod"))
-    assert isinstance(rod.records[0].reading, tuple) and ReadingStep is not None
-    for concern in (None, "note", "warning"):
-        for topic in ("sample clock", "noise"):
-            result = []
-            if concern:
-                result = [SimpleNamespace(topic=topic, concern=concern)]
-            monkeypatch.setattr(soundness, "check_clock", lambda *_, result=result: result)
-            monkeypatch.setattr(soundness, "check_segments", lambda *_: [])
-            monkeypatch.setattr(soundness, "_check_channel", lambda *_: [])
-            topics = [(f.topic, f.concern) for f in check_signals(rod)][
-                len(result) * len(rod.records) :
-            ]
-            assert (("sample clock", "fine") in topics) == (not concern or topic == "noise")
-            assert (("channels", "fine") in topics) == (concern != "warning" or topic != "noise")

@@ -69,3 +69,13 @@ def test_a_motor_works_against_a_spring_at_its_output(load, sign):
     assert survey.channels["interaction_force"].get("sign", 1) == sign
     assert ("channels.interaction_force.sign" in survey.guesses) == (sign < 0)
     assert "sign" not in survey.channels["position"]
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_hand_that_moves_a_joint_beside_a_weak_motor_turns_no_position(sign):
+    """With the hand's force the wrong way round, friction would drive and inertia be negative."""
+    q, needed, _ = driven(0.0)
+    weak = 0.05 * np.sin(2 * np.pi * 1.3 * T)
+    survey = look({"t": T, "angle": q, "cmd_torque": weak, "hand_torque": sign * (needed - weak)})
+    assert survey.channels["interaction_force"].get("sign", 1) == sign
+    assert "sign" not in survey.channels["position"]

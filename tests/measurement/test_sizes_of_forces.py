@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from measurement.columns_by_hand import Q, T, look
+from measurement.columns_by_hand import Q, T
 
+from teleopdesign.cli import main
 from teleopdesign.measurement.first_guess import is_size
 
 H = float(T[1])
@@ -38,11 +39,11 @@ def test_a_force_with_both_signs_or_in_one_direction_is_no_size():
     assert not is_size(np.full(len(T), 1e200) * (1 + SERVO), Q, H)
 
 
-def test_a_log_of_sizes_says_so_beside_any_other_guess():
-    survey = look({"t": T, "angle": Q, "current_A": SERVO})
-    says = survey.guesses["channels.actuator_force.column"]
-    assert says.startswith("'current_A' seems to hold the size of a force without its sign")
-    survey = look({"t": T, "angle": Q, "x2": SERVO}, actuator_force="x2")
-    assert "without its sign" in survey.guesses["channels.actuator_force.column"]
-    signed = look({"t": T, "angle": Q, "current_A": 0.02 * A + 0.3 * np.sign(V)})
-    assert "channels.actuator_force.column" not in signed.guesses
+def test_new_says_of_a_log_of_sizes_that_no_diagnosis_can_answer(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    signed = 0.02 * A + 0.3 * np.sign(V)
+    for name, force, is_size_of in (("size", SERVO, True), ("signed", signed, False)):
+        table = np.column_stack([T, Q, force])
+        np.savetxt(f"{name}.csv", table, delimiter=",", header="t,angle,current_A", comments="")
+        assert main(["new", f"{name}.csv", "--yes", "--torque-constant", "1 N*m/A"]) == 0
+        assert ("Log it with its sign" in capsys.readouterr().out) == is_size_of

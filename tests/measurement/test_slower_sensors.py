@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.check import check_experiment
+from teleopdesign.fitted_checks import check_experiment
 from teleopdesign.measurement.bandwidth import INTERPOLATED, bandwidth_of
 from teleopdesign.measurement.resample import interpolate_by_rule
 

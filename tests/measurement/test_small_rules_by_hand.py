@@ -4,16 +4,16 @@ import datetime
 
 import numpy as np
 import pytest
-from measurement.made_channels import H, record_of
+from check.made_channels import H, clock_errors, record_of
 
 from teleopdesign import example, load_experiment
 from teleopdesign.base.errors import ExperimentError
+from teleopdesign.check import sample_clock
+from teleopdesign.check.velocity import shift_and_factor
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.doors.hdf5 import _unit
 from teleopdesign.measurement.numbers_in_cells import numbers_of
 from teleopdesign.measurement.repeated_rows import BESIDE, _chance_of_repeats
-from teleopdesign.measurement.soundness import clock
-from teleopdesign.measurement.soundness.time_shift import shift_and_factor
 from teleopdesign.measurement.survey.clock import numeric_columns
 from teleopdesign.measurement.tables import columns_of
 from teleopdesign.measurement.uneven_stamps import _places
@@ -24,10 +24,10 @@ def log_with(columns, **more):
 
 
 def test_the_figure_of_a_clock_shows_by_how_many_ms_each_stamp_is_off(monkeypatch):
-    record = record_of(2 * clock.POINTS)
+    record = record_of(2 * sample_clock.POINTS)
     off = 0.1 * H * np.sin(np.arange(len(record.time)))
-    monkeypatch.setattr(clock, "stamps_of", lambda *_: record.time + off)
-    (finding,) = clock.check_clock(None, record, [])
+    monkeypatch.setattr(sample_clock, "stamps_of", lambda *_: record.time + off)
+    (finding,) = clock_errors(record)
     (series,) = finding.graph.series
     assert np.array_equal(series.x, record.time[::2])
     assert series.y == pytest.approx(1e3 * off[::2], rel=1e-6)

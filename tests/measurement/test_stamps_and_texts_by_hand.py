@@ -1,13 +1,13 @@
 """Stamps that wrap, share rows or begin anew; held commands; numbers, texts and files."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.base.toml_table import Table, parse_toml
+from teleopdesign.base.toml import Table, parse_toml
+from teleopdesign.check.stated_accuracy import true_step
 from teleopdesign.measurement import slower_signals
 from teleopdesign.measurement.channel import Channel
 from teleopdesign.measurement.description import value_from
@@ -17,8 +17,6 @@ from teleopdesign.measurement.even_clock import _least_squares_period, _resoluti
 from teleopdesign.measurement.experiment import _span, load_experiment
 from teleopdesign.measurement.repeated_rows import repeated_rows, rows_between_readings
 from teleopdesign.measurement.resample import _average_held, _position
-from teleopdesign.measurement.soundness import clock
-from teleopdesign.measurement.soundness.encoder_steps import true_step
 from teleopdesign.measurement.stamp_unit import unit_of_steps
 from teleopdesign.measurement.tables import LogColumns, open_log
 from teleopdesign.measurement.time_grid import _mostly_back
@@ -150,39 +148,6 @@ def test_the_time_of_rows_for_slower_bodies():
     assert stamps([5.0, np.nan]) is None is stamps([])
     assert stamps(np.zeros(100), rate=50.0) == pytest.approx(0.02 * np.arange(100))
     assert stamps([5.0, 7.0], to_seconds=None) == pytest.approx([5.0, 7.0])
-
-
-@pytest.mark.parametrize(("resolution", "step"), [(None, 0.5), (2.0, 2.0)])
-def test_scatter_that_grows_with_speed_is_reported_with_its_size(monkeypatch, resolution, step):
-    calls = []
-
-    def jitter(x, result, h):
-        calls.append((len(x), result, h))
-        return part * h
-
-    monkeypatch.setattr(clock, "sampling_jitter", jitter)
-    record = SimpleNamespace(sample_time=0.01, file="a.csv")
-    x = np.array([0.0, 3.0, 7.0, 3.0])  # rms speed sqrt((9 + 16 + 16) / 3) / 0.01
-    signal = SimpleNamespace(
-        channel=SimpleNamespace(resolution=resolution), step=0.5, record=record, unit="m",
-        name="position", stretches=[(0, x[:2]), (2, x)],
-    )  # fmt: skip
-    part = 0.019
-    assert clock._scatter(signal) == [] and calls == [(4, step, 0.01)]
-    part = 0.05
-    (finding,) = clock._scatter(signal)
-    moved = 5e-4 * math.sqrt(41 / 3) / 0.01
-    numbers = {"jitter": 5e-4, "part": 0.05, "position": moved}
-    assert finding.numbers == pytest.approx(numbers)
-    assert f"0.5 ms rms early or late (5 % of a sample), {moved:.2g} m" in finding.sentence
-
-
-def test_clocks_in_order_say_whether_stamps_or_samples_are_counted():
-    records = [SimpleNamespace(sample_time=h) for h in (0.01, 0.002, 0.01)]
-    for channels, words in (({}, "samples are counted"), ({"time": 1}, "the time stamps are")):
-        finding = clock.clock_in_order(SimpleNamespace(records=records, channels=channels))
-        assert finding.sentence.startswith(words) and "100 and 500 Hz." in finding.sentence
-        assert finding.numbers == {"rate": 100.0}
 
 
 def test_the_true_step_is_the_largest_multiple_on_which_readings_lie():

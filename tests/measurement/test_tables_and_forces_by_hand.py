@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from measurement.made_channels import H, channel, record_of
+from check.made_channels import H, channel, record_of
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.channel import Channel
@@ -12,7 +12,6 @@ from teleopdesign.measurement.encoder import sampling_jitter
 from teleopdesign.measurement.filtering import spectrum
 from teleopdesign.measurement.held_command import held_command
 from teleopdesign.measurement.resample import _interpolate_in_steps
-from teleopdesign.measurement.soundness.signal import local_scale
 from teleopdesign.measurement.spans import cut_to
 from teleopdesign.measurement.survey import Choices, Survey, SurveyedColumn, survey_log
 from teleopdesign.measurement.survey.derivative import derivative_factor, wrap_of
@@ -120,17 +119,6 @@ def test_a_graph_shows_a_hundred_samples_to_either_side():
     assert end[0].y.tolist() == list(range(460, 500)) and end[1].y.tolist() == [499.0]
     assert list(channel(np.arange(9.0), segments=(slice(0, 4), slice(4, 9))).stretches)[1][0] == 4
     assert record_of(9).time[-1] == pytest.approx(8 * H)
-
-
-def test_the_scale_nearby_is_the_largest_of_three_blocks():
-    e = np.concatenate([np.full(256, 1.0), np.full(256, 3.0), np.full(512, 1.0), np.ones(100)])
-    median = 0.6744897501960817
-    scale = local_scale(e, 0.0)
-    assert scale[:768] == pytest.approx(3.0 / median) and len(scale) == len(e)
-    # further away, the tail of the block of 1024 decides: 0.99 of it lies below 3
-    tail = 3.0 / 2.5758293035489004
-    assert scale[768:] == pytest.approx(max(1.0 / median, tail))
-    assert local_scale(np.zeros(300), 0.5) == pytest.approx(0.5)
 
 
 # values, names and units

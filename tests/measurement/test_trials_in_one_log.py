@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from check.made_channels import interruptions
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors._log import Log
-from teleopdesign.measurement.soundness.segments import check_segments
 from teleopdesign.measurement.survey import Choices, spans_of, survey_log
 from teleopdesign.measurement.survey.trials import longest_trial, trial_column
 
@@ -83,7 +83,7 @@ def test_no_gap_is_reported_where_trials_follow_at_once():
     made = td.experiment(
         data, axis="revolute", position="q", actuator_force="u", segment="trial", inertia=0.02
     )
-    (finding,) = check_segments(made.records[0])
+    (finding,) = interruptions(made.records[0])
     assert "with no gap between them" in finding.sentence
     assert finding.numbers["longest_gap"] == pytest.approx(0.0, abs=1e-9)
 

@@ -71,7 +71,7 @@ def test_the_table_the_file_and_the_picture_say_what_is_not_used(tmp_path, monke
 
 
 def test_the_picture_names_some_and_counts_the_rest():
-    from teleopdesign.plot.log import unused_lines
+    from teleopdesign.show.figures.log import unused_lines
 
     assert unused_lines({}) == []
     assert unused_lines({"a": "b"}) == ['not used: "a": b']

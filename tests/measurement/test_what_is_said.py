@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from check.made_channels import ask
 from measurement.test_guesses_of_a_survey import Q, T, U, look
 
 import teleopdesign as td
@@ -14,8 +15,6 @@ from teleopdesign.measurement.doors import workbook
 from teleopdesign.measurement.log_clock import _left_out, _order
 from teleopdesign.measurement.new_folder import check_spans
 from teleopdesign.measurement.record_clock import RecordClock
-from teleopdesign.measurement.soundness.signal import signals
-from teleopdesign.measurement.soundness.time_shift import check_velocity
 
 RATE_OF_Q = np.gradient(Q, T)
 
@@ -91,8 +90,7 @@ def with_velocity(change):
         actuator_force="F",
         inertia=0.1,
     )
-    by = {s.channel.quantity: s for s in signals(experiment)}
-    return check_velocity(by["position"], by["velocity"])
+    return ask("velocity", experiment)
 
 
 @pytest.mark.parametrize("late", [5, -5])
@@ -106,12 +104,12 @@ def test_a_velocity_that_is_late_or_early_is_reported_with_the_time(late):
 
 
 @pytest.mark.parametrize(
-    ("factor", "topics"),
-    [(1.0, []), (1.04, []), (0.96, []), (1.06, ["units"]), (0.94, ["units"]), (-1.0, ["units"])],
+    ("factor", "is_other"),
+    [(1.0, False), (1.04, False), (0.96, False), (1.06, True), (0.94, True), (-1.0, True)],
 )
-def test_a_velocity_in_other_units_is_reported_from_a_factor_of_a_twentieth(factor, topics):
+def test_a_velocity_in_other_units_is_reported_from_a_factor_of_a_twentieth(factor, is_other):
     findings = with_velocity(lambda t, v: factor * v)
-    assert [f.topic for f in findings] == topics
+    assert [f.concern for f in findings] == ["warning"] * is_other
     for one in findings:
         assert one.numbers["factor"] == pytest.approx(factor, rel=1e-3)
         assert "times the derivative of position" in one.sentence

@@ -18,11 +18,11 @@ from security.diagram_file import diagram_file
 from trust.fuzzed_logs import made_readers
 
 from teleopdesign.base.errors import TeleopDesignError
-from teleopdesign.check import check_experiment
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answers import load_answer
 from teleopdesign.diagrams import read_diagram
 from teleopdesign.effects import load_effect
+from teleopdesign.fitted_checks import check_experiment
 from teleopdesign.measurement import load_experiment
 from teleopdesign.model import Model
 from teleopdesign.studies import read_study_file

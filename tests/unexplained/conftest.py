@@ -5,8 +5,8 @@ import pytest
 
 from teleopdesign import Model, example, load_experiment
 from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.unexplained import describe_residual
 from teleopdesign.unexplained.rows import rows_of
 

@@ -9,8 +9,8 @@ from unexplained.planting import written
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose import find_missing
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.prepare import prepare
 from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.unexplained import describe_residual
 
 WORDS = {

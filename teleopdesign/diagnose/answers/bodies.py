@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...base.errors import ExperimentError, did_you_mean, quote
-from ...base.toml_table import Table
+from ...base.toml import Table
 from ...blocks import Body, Value, with_block_effects
 from ...blocks.described import body_of
 from ...effects import Effect

@@ -10,19 +10,19 @@ from ...base.errors import ExperimentError, ModelError
 from ...blocks import with_block_effects
 from ...effects import EFFECTS, Effect, are_alike
 from ...measurement.experiment import Experiment
+from ...measurement.prepare import Prepared, prepare
 from ...model import Model
 from ..candidates import Candidate
 from ..diagnosis import Diagnosis, OpenQuestion, SetAside, Undetermined
 from ..effort import EFFORTS
-from ..excerpt import cut_to_windows
 from ..fit import Fit, estimate
 from ..learnable import learnable_from, read_near_reversals
 from ..noise_floor import NoiseFloor
 from ..one_moment import Moment
-from ..prepare import Prepared, prepare
 from ..ranking import Ranking
 from ..repeats import read_repeats
 from ..rung import Replaced, Rung, restore_replaced
+from ..search_plan import cut_to_windows
 from .bodies import known_effect, model_from
 from .saved import SavedAnswer
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...base.errors import ExperimentError, did_you_mean, quote
-from ...base.quantity import AXES, unit_of
+from ...base.units import AXES, unit_of
 from ...blocks import CONTACT
 from ...effects import EFFECTS, Effect
 from ...measurement.bandwidth import bandwidth_of

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from ...base.errors import ExperimentError, quote
-from ...base.toml_table import describe_toml_value
-from ...base.whole_files import read_whole
+from ...base.files import read_whole
+from ...base.toml import describe_toml_value
 
 #: a check of a value; the text says where the value stands, for the message
 Check = Callable[[object, str], None]

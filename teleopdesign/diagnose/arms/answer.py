@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...base.plain_data import harmless_cell, make_plain, write_beside, write_json
+from ...base.files import harmless_cell, make_plain, write_beside, write_json
 from ...measurement.filtering import Array
 from ...measurement.reading import reading_data
 from ...realise.along_motion import residual_along

@@ -19,6 +19,7 @@ from ...effects import SIGNALS
 from ...measurement.experiment import Experiment
 from ...measurement.filtering import Array
 from ...measurement.motion import Motion
+from ...measurement.prepare import Stretch
 from ...model import Model
 from ..by_simulation import (
     BRISTLE_SHARE,
@@ -29,7 +30,6 @@ from ..by_simulation import (
     horizon_error,
 )
 from ..error import force_error
-from ..prepare import Stretch
 from ..record_offsets import apply_record_offsets
 from .course import ArmLinks, LedArm, courses, led_arm
 from .fit import error_over_joints, remove_links

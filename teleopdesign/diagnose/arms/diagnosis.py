@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ...base.by_value import ByValue
+from ...base.frozen import ByValue
+from ...base.shown import figure_of
 from ...measurement.experiment import Experiment
 from ..candidates import Candidate
 from ..diagnosis import Diagnosis
@@ -134,9 +135,7 @@ class ArmDiagnosis(ByValue):
 
     def plot(self) -> Figure:
         """Figure of force and residual of each joint, and of the ladder of the arm."""
-        from ...plot.arm_diagnosis import plot_arm_diagnosis
-
-        return plot_arm_diagnosis(self)
+        return figure_of(self)
 
     def _repr_html_(self) -> str:
         sentences = "; ".join(f"{joint}: {sentence(one)}" for joint, one in self.joints.items())

@@ -12,8 +12,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...base.by_value import ByValue
+from ...base.frozen import ByValue
 from ...measurement.filtering import Array
+from ...measurement.prepare import Prepared, Stretch
+from ...measurement.shared_links import Knowledge, share, weighted_columns
 from ...model import Model
 from ...realise.along_motion import residual_along
 from ...realise.tangent_columns import LinkParameter
@@ -21,11 +23,9 @@ from ..effort import EFFORTS, Effort
 from ..error import force_error
 from ..fit import Fit, block_numbers, command_error_of, estimate, free_parameters, standard_errors
 from ..least_squares import column_sizes
-from ..prepare import Prepared, Stretch
 from ..record_offsets import apply_record_offsets
 from ..record_shift import record_shifts
 from ..residual import relative_residuals
-from ..shared_links import Knowledge, share, weighted_columns
 from ..solve import BLOCK, solve
 from ..stated_fit import estimate_stated
 from .prepared import PreparedArm

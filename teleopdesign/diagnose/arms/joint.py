@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...blocks import Value
+from ...measurement.prepare import Prepared
 from ...model import Model
 from ..fit import Fit, estimate, fit_squares
 from ..ladder_state import LadderSearch, LadderState, look
-from ..prepare import Prepared
 from ..record_shift import shifts_of
 from ..rung import Rung
 from .fit import ArmFit, estimate_arm, knowledge, misfits, with_others

@@ -12,10 +12,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from ...effects import Effect
+from ...measurement.prepare import Prepared
 from ...model import Model
 from ..fit import Fit
 from ..linear_start import linear_starts
-from ..prepare import Prepared
 from .prepared import PreparedArm
 
 

@@ -9,16 +9,16 @@ import numpy as np
 
 from ...arms import BaseParameters, Chain, base_parameters
 from ...arms.base_parameters import columns_with_motors
-from ...base.by_value import ByValue
 from ...base.errors import ExperimentError
+from ...base.frozen import ByValue
 from ...effects import EFFECTS
 from ...measurement.bandwidth import bandwidth_of
 from ...measurement.experiment import Experiment
 from ...measurement.filtering import Array
 from ...measurement.motion import LinkForces, Motion
+from ...measurement.prepare import Prepared, Stretch, prepare
 from ...model import Model
 from ..noise_floor import DRAWS, read_again
-from ..prepare import Prepared, Stretch, prepare
 
 #: poses of a record over which an inertia is averaged
 POSES = 50

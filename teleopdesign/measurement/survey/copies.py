@@ -8,36 +8,15 @@ import numpy as np
 
 from ..encoder import reading_step
 from ..first_guess import explain_force
-from ..law_of_readings import FEWEST_STEPS, law_of_readings
+from ..law_of_readings import FEWEST_STEPS, LOST, is_copy, law_of_readings, spring_of_copy
 from .content import Array
 from .set_point import has_numbers_of, lags
 
-#: part of the range of a column that sums of its numbers lose in floating point
-DIGITS = 1e-9
 #: fits of a line to the half of the rows that lies nearest to it: each leaves out rows further off
 FITS = 4
 #: part of its travel that a body crosses between two rows at most: the command of a relay jumps
 #: over all of its range
 JUMP = 0.5
-
-
-def is_copy(column: Array, position: Array) -> bool:
-    """Whether a column is the position times a constant plus a constant, up to rounding.
-
-    So is a reading in volts beside the same reading in mm, and the error of a controller whose set
-    point is constant. A straight line of the position explains such a column to the last digit. The
-    force of a real spring is not so exact: its sensor has noise of its own.
-    """
-    x, y = position - position.mean(), column - column.mean()
-    power = float(x @ x)
-    if power == 0.0:
-        return False
-    slope = float(x @ y) / power
-    reach, off = float(np.ptp(column)), float(np.max(np.abs(y - slope * x)))
-    if off > reach / FEWEST_STEPS + DIGITS * reach:  # no rounding that is allowed explains it
-        return False
-    rounding = abs(slope) * reading_step(position) + reading_step(column)
-    return rounding * FEWEST_STEPS <= reach and off <= rounding + DIGITS * reach
 
 
 def repeats_mostly(column: Array, other: Array) -> bool:
@@ -57,7 +36,7 @@ def repeats_mostly(column: Array, other: Array) -> bool:
         near = off <= np.median(off)
     rounding = abs(slope) * reading_step(other) + reading_step(column)
     reach = float(np.ptp(column))
-    exact = off <= rounding + DIGITS * reach
+    exact = off <= rounding + LOST * reach
     return rounding * FEWEST_STEPS <= reach and 2 * int(exact.sum()) > len(column)
 
 
@@ -69,9 +48,8 @@ def pulls_back(command: Array, position: Array, h: float) -> bool:
 
     h: time between two rows
     """
-    if is_copy(command, position):
-        return float((position - position.mean()) @ (command - command.mean())) < 0.0
-    law = law_of_readings(command, position, [slice(0, len(command))], sample_time=h)
+    law = spring_of_copy(command, position)
+    law = law or law_of_readings(command, position, [slice(0, len(command))], sample_time=h)
     return law is not None and law.stiffness > 0.0
 
 

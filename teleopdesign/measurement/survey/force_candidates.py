@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ...base.quantity import is_unit
+from ...base.units import is_unit
 from ..column_names import likeness, words_of
+from ..law_of_readings import is_copy
 from .axes import same_but_axis
 from .content import (
     SURE_NAME,
@@ -17,7 +18,7 @@ from .content import (
     rises,
     sample_time_of,
 )
-from .copies import is_copy, repeats_mostly
+from .copies import repeats_mostly
 from .derivative import (
     has_signs_of_steps,
     is_acceleration,

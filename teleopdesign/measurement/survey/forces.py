@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from ...base.quantity import si_factor
+from ...base.units import si_factor
 from ..column_names import is_difference, is_wanted, likeness
 from ..doors._log import join_names
-from ..first_guess import FirstGuess, explain_force, is_size, is_turned, left_by_motion
+from ..first_guess import FirstGuess, explain_force, is_turned, left_by_motion
 from .acting import current_that_acted, names_current, names_voltage
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
 from .balance import hand_by_balance, scale_by_balance
@@ -76,7 +76,6 @@ def describe_forces(
     beside = taken_for_something_else(survey, velocity)
     force, measured = _find_driving_force(survey, free, physics, scores, choices, (file, beside))
     survey.channels["actuator_force"] = describe_force(survey, force, "actuator_force", choices)
-    _warn_of_size(survey, force, x, h)
     if measured:
         survey.channels["actuator_force"]["measured"] = True
     state_scatter(survey, force)
@@ -135,18 +134,6 @@ def _find_driving_force(
     if why is not None:
         survey.guesses["channels.actuator_force.column"] = why
     return force, acted is not None
-
-
-def _warn_of_size(survey: Survey, force: str, x: Array, h: float) -> None:
-    """Say where the chosen column seems to hold the size of a force that takes both signs."""
-    if not is_size(survey.columns[force].values, x, h):
-        return
-    key = "channels.actuator_force.column"
-    why = (
-        f"{force!r} seems to hold the size of a force without its sign: it is never negative, and "
-        "rises with the speed in both directions; no answer is right without the sign"
-    )
-    survey.guesses[key] = "; ".join(filter(None, (survey.guesses.get(key), why)))
 
 
 def _sizes_beside_signed(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from ..law_of_readings import is_copy
 from .content import Array
-from .copies import is_copy
 from .derivative import DERIVATIVE, EXACT, derivative_factor, follows_direction, has_both_signs
 from .set_point import has_numbers_of
 

@@ -9,9 +9,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...base.quantity import is_unit
+from ...base.units import is_unit
 from ..column_names import is_another_quantity, is_difference, is_wanted, likeness
 from ..doors._log import Log
+from ..law_of_readings import is_copy
 from .axes import of_another_axis
 from .content import (
     SURE_NAME,
@@ -24,7 +25,7 @@ from .content import (
     rises,
     sample_time_of,
 )
-from .copies import is_copy, repeats_mostly
+from .copies import repeats_mostly
 from .derivative import (
     DERIVATIVE,
     is_acceleration,

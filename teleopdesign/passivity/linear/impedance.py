@@ -89,22 +89,24 @@ def decimal(number: sp.Expr) -> str:
 
 
 def readable(expression: sp.Expr) -> str:
-    """An expression as text for people: exact, with long fractions as decimals where they are.
+    """An expression as text for people: exact; decimals where a fraction of it is long.
 
     The denominator of such an expression begins with the coefficient 1, as that of `Impedance`.
     """
-    if _long_fractions(expression):
+    if any(_is_long(x) for x in expression.atoms(sp.Rational)):
         above, below = sp.fraction(expression)
         first = sp.expand(below).as_ordered_terms()[0].as_coeff_Mul()[0]
         expression = sp.expand(above / first) / sp.expand(below / first)
-    texts = {x: decimal(x) for x in _long_fractions(expression)}
-    decimals = {x: text for x, text in texts.items() if "/" not in text}
-    digits = {x: sum(c.isdigit() for c in text.partition("e")[0]) for x, text in decimals.items()}
-    return str(expression.xreplace({x: sp.Float(t, digits[x]) for x, t in decimals.items()}))
+        numbers = {x for x in expression.atoms(sp.Rational) if _is_long(x) or not x.is_Integer}
+        texts = {x: decimal(x) for x in numbers}
+        decimals = {x: text for x, text in texts.items() if "/" not in text}
+        digits = {x: sum(map(str.isdigit, t.partition("e")[0])) for x, t in decimals.items()}
+        expression = expression.xreplace({x: sp.Float(t, digits[x]) for x, t in decimals.items()})
+    return str(expression)
 
 
-def _long_fractions(expression: sp.Expr) -> set[sp.Rational]:
-    return {x for x in expression.atoms(sp.Rational) if len(str(x)) > _LONGEST}
+def _is_long(number: sp.Rational) -> bool:
+    return len(str(number)) > _LONGEST
 
 
 def gaussian(poly: sp.Poly, rate: Fraction, frequency: Fraction) -> tuple[Fraction, Fraction]:

@@ -200,7 +200,7 @@ def first_wave(
     return next((wave for wave in waves if wave is not None), None)
 
 
-def beside(frequency: Fraction, number: int) -> Iterable[tuple[Fraction, Fraction]]:
+def rates_at(frequency: Fraction, number: int) -> Iterable[tuple[Fraction, Fraction]]:
     """Rates of growth, halved so many times, at a frequency."""
     return ((rate, frequency) for rate in halvings(frequency, number))
 

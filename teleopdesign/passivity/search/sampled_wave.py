@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import sympy as sp
 
-from ...base.by_value import ByValue
+from ...base.frozen import ByValue
 from ..rate_independent import AbstractMotion
 from .growing_wave import ROUNDING
 

@@ -20,7 +20,7 @@ from typing import Any
 import sympy as sp
 
 from ...base.errors import ModelError, did_you_mean
-from ...base.quantity import AXES
+from ...base.units import AXES
 from ..claims.axis_units import use_units_of
 from ..claims.claim import Claim
 from ..linear.impedance import exact

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from ...base.by_value import ByValue
+from ...base.frozen import ByValue
 from ...controllers import Stage
 from ...simulate import Sampling
 from ..claims.claim import Claim, Counterexample, Proof, Refutation, Unknown
@@ -159,6 +159,6 @@ def refute(
     return Claim(statement, Refutation(how if isinstance(how, str) else how(record), record))
 
 
-def unanswered(topic: str, statement: str, why: str, **more: Any) -> TopicClaim:
+def leave_open(topic: str, statement: str, why: str, **more: Any) -> TopicClaim:
     """A claim that no theorem answers."""
     return TopicClaim(topic, Claim(statement, Unknown(why)), **more)

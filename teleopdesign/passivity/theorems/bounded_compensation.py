@@ -82,13 +82,13 @@ def _claims(question: Question) -> list[TopicClaim]:
     device, bound = question.device, question.law.bound
     assert bound is not None
     acting, time = device.acting_force(bound), question.time_of_bound
-    claims = [TopicClaim("any law within the level", _beside_level(device, acting), time=time)]
+    claims = [TopicClaim("any law within the level", _compare_level(device, acting), time=time)]
     if question.estimates:
-        claims.append(TopicClaim("the same, with damping", _at_every_speed(device, acting)))
+        claims.append(TopicClaim("the same, with damping", _compare_at_every_speed(device, acting)))
     return claims
 
 
-def _beside_level(device: IdentifiedDevice, acting: float) -> Claim:
+def _compare_level(device: IdentifiedDevice, acting: float) -> Claim:
     """The claim that the friction level covers any law whose acting force is within `acting`, N."""
     if math.isinf(acting):
         why = "no bound is known of the force that the actuation makes of a command"
@@ -96,7 +96,7 @@ def _beside_level(device: IdentifiedDevice, acting: float) -> Claim:
     return bounded_compensation(coulomb_level=device.lowest.low, bound=acting)
 
 
-def _at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
+def _compare_at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
     """The claim that level and damping together cover a law with a force within `acting`, N."""
     least, unit = device.least_resistance.low, device.force_unit.replace("*", " ")
     statement = (

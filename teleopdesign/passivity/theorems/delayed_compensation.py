@@ -22,7 +22,7 @@ from ...frequency.closed_forms import dahl
 from ...realise.lti import S
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
-from ..search.growing_wave import beside, first_wave
+from ..search.growing_wave import first_wave, rates_at
 from ._certificates import certificate
 from ._hypotheses import NOT_NEGATIVE, require_hypotheses
 from ._theorem import Theorem, decide
@@ -96,7 +96,7 @@ def delayed_small_motion(
 def _where(tau: float) -> Iterator[tuple[Fraction, Fraction]]:
     """Rates and frequencies about the first minimum of sin(w tau)/(w tau), then exponentials."""
     for y in (4.4934, 4.0, 5.0, 3.5, 5.5) if tau else ():
-        yield from beside(Fraction(y / tau), 24)
+        yield from rates_at(Fraction(y / tau), 24)
     for k in range(40, -41, -1):
         yield Fraction(2) ** k, Fraction(0)
 

@@ -25,7 +25,7 @@ from ...realise.lti import S
 from ..claims.claim import Claim, Evidence, Proof, Unknown
 from ..linear.impedance import decimal
 from ..linear.positive_real import positive_real
-from ..search.growing_wave import beside, first_wave
+from ..search.growing_wave import first_wave, rates_at
 from ._certificates import certificate
 from ._hypotheses import NOT_NEGATIVE, one_of, require_hypotheses
 from ._theorem import Theorem, refute
@@ -127,7 +127,7 @@ def cancelled_inertia(
         where = [w]
     else:  # the phase of jw at the peaks; far enough up for a margin of 1e-3
         where = [(2 * np.pi * n + np.pi / 2 * (not t)) / float(tau) for n in 2 ** np.arange(0, 14)]
-    points = (point for w in where for point in beside(Fraction(w), 30))
+    points = (point for w in where for point in rates_at(Fraction(w), 30))
     return refute(
         statement,
         first_wave(sp.ImmutableMatrix([[z]]), points),

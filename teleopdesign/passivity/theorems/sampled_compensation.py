@@ -27,7 +27,7 @@ from ..rate_independent import AbstractMotion, Dahl
 from ..search.stroke_motion import Strokes
 from ._cycle_simulation import simulate_cycle
 from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim, refute, unanswered
+from ._theorem import Question, Theorem, TopicClaim, leave_open, refute
 from .bounded_compensation import bounded_compensation
 
 #: most samples, one way, of a motion that refutes a claim
@@ -204,7 +204,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     if device.bristle_damping.high > 0:
         why = "no theorem covers bristle damping beside a compensator in a computer"
         statement = "the device's friction with its sampled compensator is passive"
-        return [unanswered("any motion, sampled", statement, why)]
+        return [leave_open("any motion, sampled", statement, why)]
     claim = sampled_compensation(
         coulomb_level=device.highest.estimate,
         compensator_level=level,

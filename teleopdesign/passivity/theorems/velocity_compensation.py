@@ -36,7 +36,7 @@ from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, Coulomb, Dahl
 from ._certificates import certificate
 from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
-from ._theorem import Question, Theorem, Time, TopicClaim, decide, unanswered
+from ._theorem import Question, Theorem, Time, TopicClaim, decide, leave_open
 
 _SYMBOLS = sp.symbols("velocity level smoothing", real=True)
 
@@ -234,7 +234,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     if device.bristle_damping.high > 0:
         why = "no theorem covers bristle damping beside a law of velocity"
         statement = "the device's friction beside its compensator of velocity is passive"
-        return [unanswered(topic, statement, why, spends_damping=True)]
+        return [leave_open(topic, statement, why, spends_damping=True)]
     claim = velocity_compensation(
         coulomb_level=device.lowest.low,
         compensator_level=law.bound,

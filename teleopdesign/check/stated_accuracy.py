@@ -1,0 +1,134 @@
+"""Steps and noise of a channel as stated, compared with those of its readings.
+
+The noise floor of a diagnosis depends on these values. The scatter of readings is their content
+near the Nyquist frequency (`reading_noise`). Its median over pieces of the record ignores motion
+with such content.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ..base.finding import Concern, Finding
+from ..base.units import si_factor
+from ..measurement.channel import BODY_QUANTITIES
+from ..measurement.encoder import is_on_grid, reading_noise, reading_step
+from ..measurement.filtering import Array
+from ._recording import CheckedRecording, RecordingCheck, Signal
+
+#: multiples of the stated step that are tested as the true one
+MULTIPLES = range(2, 65)
+#: ratio of measured to stated noise that gives a warning: a quarter of a second of a record shows
+#: the noise within 10 %, and a noise floor that is wrong by this factor changes a verdict
+FACTOR = 1.6
+#: samples of a piece of which noise is measured, and fewest of the last piece
+PIECE, LAST = 500, 16
+
+
+def find_wrong_accuracy(recording: CheckedRecording) -> Iterator[Finding]:
+    """Channels whose readings have other steps, or other noise, than stated."""
+    for signal in recording.varying:
+        others = recording.beside(signal)
+        yield from check_steps(signal, others)
+        yield from check_noise(signal, others)
+
+
+CHECK = RecordingCheck(order=70, find=find_wrong_accuracy, in_order="steps and noise as stated")
+
+
+def check_steps(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
+    """Compare the stated resolution of a channel with its readings.
+
+    others: channels of the same record, one of which may have the stated steps instead
+    """
+    stated, read_step = signal.channel.resolution, signal.step
+    if stated is None or not read_step or (step := true_step(signal.values, stated)) == stated:
+        return
+    is_between = signal.quantity == "position" and any(
+        done.interpolates for done in signal.record.reading
+    )
+    if step is None and read_step < stated and is_between:
+        return  # the readings have steps; the interpolated samples have none
+    swapped = [o.name for o in others if step is None and _shares_steps(o, stated)]
+    concern: Concern = "warning"
+    text = f" is not read in steps of the stated {stated:.4g} {signal.unit}"
+    if step is not None:
+        text = (
+            f" moves in steps of {step:.4g} {signal.unit}, {step / stated:.0f} times the stated "
+            f"{stated:.4g}: the encoder is coarser than stated; write resolution = "
+            f"{_as_written(signal, step):.4g} at channels.{signal.name}."
+        )
+    elif swapped:
+        text += f", but {swapped[0]} is: are the two columns swapped?"
+    elif read_step < stated:
+        concern, text = "note", f"{text}, but in finer ones."
+    else:
+        text += f", but of {read_step:.4g}."
+    numbers = {"stated": stated, "seen": read_step if step is None else step}
+    yield signal.finding("encoder steps", concern, text, numbers)
+
+
+def check_noise(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
+    """Compare the stated noise of a channel with its readings; no finding where none is stated.
+
+    others: channels of the same record; one of the same unit may be the noisy one instead
+    """
+    stated = signal.channel.noise
+    if stated is None:
+        return
+    # rounding has an rms of at most 0.29 steps
+    expected = float(np.hypot(stated, 0.29 * (signal.channel.resolution or 0.0)))
+    scatter = measured_noise(signal)
+    ratio = scatter / expected
+    if 1 / FACTOR < ratio < FACTOR:
+        return
+    alike = [o for o in others if o.channel.noise is None and o.unit == signal.unit]
+    noisy = [o.name for o in alike if 1 / FACTOR < measured_noise(o) / expected < FACTOR]
+    hint = f" {noisy[0]} has it: are the two columns swapped?" if noisy and ratio < 1 else ""
+    effect = "hides effects" if ratio < 1 else "makes noise look like an effect"
+    words = (
+        f" scatters by {scatter:.3g} {signal.unit} rms, {stated:.3g} is stated: a noise floor that "
+        f"is wrong {effect}.{hint}"
+    )
+    numbers = {"stated": stated, "seen": scatter, "ratio": ratio}
+    yield signal.finding("noise", "warning", words, numbers)
+
+
+def true_step(x: Array, stated: float) -> float | None:
+    """The step of the readings: the stated one or a multiple of it; None: neither.
+
+    Each place counts once: the rows of a body at rest lie on any grid.
+    """
+    if not is_on_grid(x, stated):
+        return None
+    reached, ratio = float(np.ptp(x)), round(reading_step(x) / stated)
+    multiples = [k for k in (*MULTIPLES, ratio) if k > 1 and k * stated < 0.1 * reached]
+    places = np.unique(x)
+    on = [k for k in multiples if is_on_grid(places, k * stated)]
+    return stated * max(on, default=1)
+
+
+def _as_written(signal: Signal, step: float) -> float:
+    """A step in the unit in which the channel's resolution is written."""
+    channel = signal.channel
+    if channel.conversion is not None:
+        return step / abs(channel.conversion.factor)
+    factor = si_factor(channel.unit, quantity=BODY_QUANTITIES[channel.quantity], axis=signal.axis)
+    return step / factor
+
+
+def _shares_steps(other: Signal, stated: float) -> bool:
+    """Whether another channel moves in the stated steps; a much finer step would fit by chance."""
+    alike = 0.5 < other.step / stated < 2.0 * MULTIPLES.stop
+    return alike and is_on_grid(other.values, stated)
+
+
+def measured_noise(signal: Signal) -> float:
+    """Rms noise of the readings, SI."""
+    pieces: list[float] = []
+    for _, x in signal.stretches:
+        starts = range(0, max(len(x) - PIECE, 0) + 1, max(PIECE, len(x) // 40))
+        pieces += [reading_noise(x[k : k + PIECE]) for k in starts if len(x) - k >= LAST]
+    return float(np.median(pieces)) if pieces else 0.0

@@ -1,0 +1,1 @@
+"""Figures of results; nothing is computed here."""

@@ -1,0 +1,218 @@
+"""A drawing as a short list of shapes, which an SVG writer and a matplotlib painter both render.
+
+Lengths are in points, x points to the right, y points down.
+
+A drawing of shapes as SVG: plain elements, no style sheet, so that any program reads it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+from xml.sax.saxutils import escape, quoteattr
+
+SheetPoint = tuple[float, float]
+#: "block": name of a block, "signal": name of a signal, "sign": at a junction, "law": in a box
+TextRole = Literal["block", "signal", "sign", "law"]
+SIZES: dict[TextRole, float] = {"block": 11.0, "signal": 10.0, "sign": 10.0, "law": 7.0}
+SMALLER = 0.72  # size of an index against that of its letter
+
+
+@dataclass(frozen=True)
+class Box:
+    """A block, given by its centre; with the block name "", a bar that gathers signals."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    block: str
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A summing junction."""
+
+    x: float
+    y: float
+    radius: float
+
+
+@dataclass(frozen=True)
+class Wire:
+    """One way of a signal along horizontal and vertical lines;  arrow: at the last point.
+
+    signal: key of the signal, unique for each signal, also for wires without a name
+    """
+
+    points: tuple[SheetPoint, ...]
+    signal: str
+    arrow: bool = True
+
+
+@dataclass(frozen=True)
+class Dot:
+    """The point at which a wire branches off another wire of the same signal."""
+
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class Run:
+    """Characters of one style.
+
+    level: 0 on the line, -1 an index, 1 an exponent
+    """
+
+    text: str
+    level: int
+    italic: bool
+
+
+@dataclass(frozen=True)
+class Text:
+    """A text, with y at the middle of its letters.
+
+    anchor: the part of the text that lies at x
+    """
+
+    x: float
+    y: float
+    runs: tuple[Run, ...]
+    role: TextRole
+    anchor: Literal["start", "middle", "end"] = "middle"
+
+    @property
+    def plain(self) -> str:
+        """The characters without their style."""
+        return "".join(run.text for run in self.runs)
+
+    @property
+    def width(self) -> float:
+        """Estimated width (points), on the safe side for the font of the house style."""
+        return width(self.runs, self.role)
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Left, top, right and bottom edge (points)."""
+        start = {"start": 0.0, "middle": -0.5, "end": -1.0}[self.anchor] * self.width
+        half = 0.5 * SIZES[self.role]
+        return self.x + start, self.y - half, self.x + start + self.width, self.y + half
+
+
+SheetShape = Box | Circle | Wire | Dot | Text
+
+
+def symbol(name: str) -> tuple[Run, ...]:
+    """A name as papers write it: R_FF with FF as its index, single letters in italics."""
+    name = readable(name)
+    head, _, index = name.partition("_")
+    if not head or not index:
+        return (Run(name, 0, _is_letter(name)),)
+    return Run(head, 0, _is_letter(head)), Run(index.replace("_", " "), -1, _is_letter(index))
+
+
+def readable(text: str) -> str:
+    """The text with "?" for characters that cannot be printed; XML may not contain some of them."""
+    return "".join(c if c.isprintable() else "?" for c in text)
+
+
+def _is_letter(text: str) -> bool:
+    return re.fullmatch(r"[^\W\d_]\d?", text) is not None
+
+
+def width(runs: tuple[Run, ...], role: TextRole) -> float:
+    """Estimated width of a text (points), for a font like Times."""
+    return sum(
+        SIZES[role] * (SMALLER if run.level else 1.0) * sum(map(_em, run.text)) for run in runs
+    )
+
+
+def _em(character: str) -> float:
+    if character in "ijl.,:;|!'()[] ":
+        return 0.34
+    if character in "mwMW":
+        return 0.92
+    return 0.74 if character.isupper() or ord(character) > 0x2000 else 0.53
+
+
+ARROW = (6.0, 2.2)  # length, half width
+FONT = "'STIX Two Text', STIXGeneral, 'Times New Roman', serif"
+#: how far below its middle the line on which letters stand lies, in sizes
+BASELINE = 0.32
+RAISED = {0: 0.0, -1: 0.22, 1: -0.38}
+
+
+def svg(shapes: Sequence[SheetShape], *, width: float, height: float, title: str) -> str:
+    """The text of an SVG file, on a sheet of that size (points); title: alternative text."""
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}pt" height="{height:g}pt" '
+        f'viewBox="0 0 {width:g} {height:g}" role="img" fill="none" stroke="black" '
+        f'stroke-width="0.8" font-family={quoteattr(FONT)}>',
+        f"<title>{escape(readable(title))}</title>",
+        *(_element(shape) for shape in shapes),
+        "</svg>",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _element(shape: SheetShape) -> str:
+    if isinstance(shape, Box):
+        left, top = shape.x - shape.width / 2, shape.y - shape.height / 2
+        size = f'width="{shape.width:g}" height="{shape.height:g}"'
+        return f'<rect x="{left:g}" y="{top:g}" {size} fill="white"/>'
+    if isinstance(shape, Circle):
+        return f'<circle cx="{shape.x:g}" cy="{shape.y:g}" r="{shape.radius:g}" fill="white"/>'
+    if isinstance(shape, Dot):
+        return f'<circle cx="{shape.x:g}" cy="{shape.y:g}" r="1.8" fill="black" stroke="none"/>'
+    return _wire(shape) if isinstance(shape, Wire) else _text(shape)
+
+
+def _wire(wire: Wire) -> str:
+    points = " ".join(f"{x:g},{y:g}" for x, y in shaft(wire))
+    line = f'<polyline points="{points}"/>'
+    if not wire.arrow:
+        return line
+    head = " ".join(f"{x:g},{y:g}" for x, y in arrow_head(wire))
+    return f'{line}<polygon points="{head}" fill="black" stroke="none"/>'
+
+
+def shaft(wire: Wire) -> tuple[SheetPoint, ...]:
+    """The points of a wire's line; under an arrow it ends before the tip, which stays sharp."""
+    if not wire.arrow:
+        return wire.points
+    tip, left, right = arrow_head(wire)
+    foot = (left[0] + right[0]) / 2, (left[1] + right[1]) / 2
+    return *wire.points[:-1], ((tip[0] + foot[0]) / 2, (tip[1] + foot[1]) / 2)
+
+
+def arrow_head(wire: Wire) -> tuple[tuple[float, float], ...]:
+    """The corners of the arrow head at the wire's last point, tip first."""
+    (x0, y0), (x, y) = wire.points[-2:]
+    length = abs(x - x0) + abs(y - y0)  # along one axis
+    dx, dy = (x - x0) / length, (y - y0) / length
+    back, half = ARROW
+    foot = x - back * dx, y - back * dy
+    return (
+        (x, y),
+        (foot[0] - half * dy, foot[1] + half * dx),
+        (foot[0] + half * dy, foot[1] - half * dx),
+    )
+
+
+def _text(text: Text) -> str:
+    size = SIZES[text.role]
+    out, level = "", 0.0
+    for run in text.runs:
+        raised = RAISED[run.level]
+        style = ' font-style="italic"' if run.italic else ""
+        small = f' font-size="{size * SMALLER:.4g}"' if run.level else ""
+        moved = f' dy="{(raised - level) * size:.4g}"' if raised != level else ""
+        out += f"<tspan{style}{small}{moved}>{escape(run.text)}</tspan>"
+        level = raised
+    place = f'x="{text.x:g}" y="{text.y + BASELINE * size:.5g}"'
+    fill = 'fill="black" stroke="none"'
+    return f'<text {place} font-size="{size:g}" text-anchor="{text.anchor}" {fill}>{out}</text>'

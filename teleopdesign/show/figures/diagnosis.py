@@ -1,0 +1,212 @@
+"""Figures of comparisons and diagnoses; they draw the contents of results and compute nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...base.sentences import unit_at_axis
+from ...diagnose.comparison import Comparison, residual_data
+from ..registry import shows
+from .style import house_style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...diagnose.arms.diagnosis import ArmRung
+    from ...diagnose.diagnosis import Diagnosis
+    from ...diagnose.rung import Rung
+
+MEASURED, BEFORE, AFTER = "0.55", "#D55E00", "#0072B2"
+FORWARD, BACKWARD, UNTOLD = "#009E73", "#CC79A7", "0.6"
+#: most points drawn in a panel; more are not visible and make files large
+POINTS = 6000
+
+
+def check_rows(data: Any) -> Any:
+    """Counted samples of the check records (of all records if there is none), of the first body.
+
+    At most about 2 POINTS samples remain.
+    """
+    first = data["body"].values == data["body"].values[0]
+    check = first & (data["use"].values == "check")
+    chosen = data.isel(sample=(check if check.any() else first) & data["counts"].values)
+    return chosen.isel(sample=slice(None, None, max(1, chosen.sizes["sample"] // POINTS)))
+
+
+def label_of(data: Any, name: str) -> str:
+    """Name and unit of a variable of residual data, for an axis."""
+    return f"{name} ({unit_at_axis(data[name].attrs['units'])})"
+
+
+def draw_by_direction(ax: Axes, data: Any, over: str) -> None:
+    """The residual over a variable of the data, a colour for each direction of motion."""
+    for way, color, label in (
+        (0, UNTOLD, "near rest"),
+        (1, FORWARD, "forward"),
+        (-1, BACKWARD, "backward"),
+    ):
+        chosen = data["direction"].values == way
+        ax.plot(
+            data[over].values[chosen],
+            data["residual"].values[chosen],
+            ".",
+            ms=1.0,
+            color=color,
+            label=label,
+            rasterized=True,
+        )
+    ax.axhline(0, color="k", lw=0.5)
+    ax.locator_params(axis="x", nbins=5)  # two such axes side by side: labels of 0.00025 are long
+    ax.set_xlabel(label_of(data, over))
+    ax.set_ylabel(label_of(data, "residual"))
+
+
+def _runs(data: Any) -> list[slice]:
+    """Slices of consecutive samples of one record and segment; no line joins two segments."""
+    segment = data["segment"].values
+    edges = [0, *(np.flatnonzero(np.diff(segment)) + 1), len(segment)]
+    return [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+
+
+def draw_over_time(ax: Axes, data: Any, name: str, color: str, label: str, width: float) -> None:
+    """A variable of the data over time; width: line width (points)."""
+    for i, run in enumerate(_runs(data)):
+        ax.plot(
+            data["time"].values[run],
+            data[name].values[run],
+            color=color,
+            lw=width,
+            label=label if i == 0 else None,
+        )
+
+
+@shows("figure")
+def plot_comparison(comparison: Comparison) -> Figure:
+    """Measured and modelled force, and the residual over time, velocity and position."""
+    import matplotlib.pyplot as plt
+
+    data = check_rows(comparison.data)
+    with plt.style.context(house_style()):
+        figure, axes = plt.subplots(2, 2, figsize=(7.16, 4.6))
+        draw_over_time(axes[0, 0], data, "measured", MEASURED, "measured", 1.4)
+        draw_over_time(axes[0, 0], data, "model", AFTER, "model", 0.7)
+        _force_axes(axes[0, 0], data)
+        draw_over_time(axes[0, 1], data, "residual", AFTER, "residual", 0.7)
+        axes[0, 1].set(xlabel=label_of(data, "time"), ylabel=label_of(data, "residual"))
+        draw_by_direction(axes[1, 0], data, "velocity")
+        draw_by_direction(axes[1, 1], data, "position")
+        direction_legend(axes[1, 0])
+    return figure
+
+
+def direction_legend(ax: Axes) -> None:
+    """A legend of the directions above the panel, so that it covers no points."""
+    ax.legend(
+        markerscale=6,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        borderaxespad=0.1,
+        ncols=3,
+        columnspacing=0.8,
+        handletextpad=0.1,
+    )
+
+
+def _force_axes(ax: Axes, data: Any) -> None:
+    force = label_of(data, "measured").replace("measured", "force")
+    ax.set(xlabel=label_of(data, "time"), ylabel=force)
+    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=3)
+
+
+@shows("figure")
+def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
+    """Forces and residual before and after, residual over velocity and position, the ladder.
+
+    The curves are low-passed forces of the check records (of the fit records if there is no check
+    record).
+    """
+    import matplotlib.pyplot as plt
+
+    before = check_rows(residual_data(diagnosis.before.model, diagnosis.prepared))
+    after = check_rows(residual_data(diagnosis.model, diagnosis.prepared))
+    changed = len(diagnosis.rungs) > 1
+    with plt.style.context(house_style()):
+        figure, axes = plt.subplot_mosaic(
+            [
+                ["force", "force"],
+                ["time", "time"],
+                ["v0", "x0"],
+                ["v1", "x1"],
+                ["ladder", "ladder"],
+            ],
+            figsize=(7.16, 8.6),
+            height_ratios=[1.1, 1.0, 1.1, 1.1, 0.35 + 0.22 * len(diagnosis.rungs)],
+        )
+        ax = axes["force"]
+        draw_over_time(ax, before, "measured", MEASURED, "measured", 1.6)
+        draw_over_time(ax, before, "model", BEFORE, "your model", 0.6)
+        if changed:
+            draw_over_time(ax, after, "model", AFTER, "with what was missing", 0.6)
+        _force_axes(ax, before)
+        # anybody's text: no formula in it
+        figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
+        ax = axes["time"]
+        draw_over_time(ax, before, "residual", BEFORE, "before", 0.7)
+        if changed:
+            draw_over_time(ax, after, "residual", AFTER, "after", 0.7)
+        ax.set(xlabel=label_of(before, "time"), ylabel=label_of(before, "residual"))
+        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
+        _residual_maps(axes, before, after, changed=changed)
+        floor = diagnosis.floor.value
+        draw_ladder(axes["ladder"], diagnosis.rungs, floor, of="the measured force")
+    return figure
+
+
+def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None:
+    for over, first, second in (("velocity", "v0", "v1"), ("position", "x0", "x1")):
+        draw_by_direction(axes[first], before, over)
+        axes[first].set_ylabel(label_of(before, "residual").replace("residual", "residual before"))
+        if changed:
+            draw_by_direction(axes[second], after, over)
+            axes[second].set_ylim(axes[first].get_ylim())
+            left = label_of(after, "residual").replace("residual", "residual after")
+            axes[second].set_ylabel(left)
+        else:
+            axes[second].set_axis_off()
+    direction_legend(axes["v0"])
+
+
+def draw_ladder(ax: Axes, rungs: Sequence[Rung | ArmRung], floor: float, *, of: str) -> None:
+    """Check errors of the rungs as bars, with the noise floor.
+
+    floor: noise floor, relative like the errors;  of: words for what the errors are relative to
+    """
+    names = ["your model, re-estimated" if r.added is None else f"+ {r.title}" for r in rungs]
+    errors = [100 * r.fit.check_error for r in rungs]
+    rows = np.arange(len(names))
+    colors = [BEFORE] + [AFTER] * (len(names) - 1)
+    ax.barh(rows, errors, height=0.62, color=colors)
+    floor = 100 * floor
+    for y, error in zip(rows, errors, strict=True):
+        # the label stands clear of the floor's line
+        end = max(error, floor) if error > floor - 0.12 * max(errors) else error
+        ax.annotate(
+            f"{error:.2f} %", (end, y), xytext=(3, 0), textcoords="offset points", va="center"
+        )
+    ax.axvline(floor, color="k", lw=0.8, ls="--")
+    ax.annotate(
+        f"noise floor {floor:.2f} %",
+        (floor, 1.0),
+        xycoords=("data", "axes fraction"),
+        xytext=(2, 2),
+        textcoords="offset points",
+        va="bottom",
+    )
+    ax.set_yticks(rows, names)
+    ax.invert_yaxis()
+    ax.set_xlim(0, 1.15 * max(*errors, floor))
+    ax.set_xlabel(f"check error (% of {of})")

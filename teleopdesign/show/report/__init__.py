@@ -1,0 +1,15 @@
+"""The report of a diagnosis: one self-contained HTML page; this folder computes no physics."""
+
+from typing import TYPE_CHECKING
+
+from ...base.folders import lazy_face
+
+if TYPE_CHECKING:
+    from .arm import ArmPage as ArmPage
+    from .arm import arm_page_of as arm_page_of
+    from .arm import write_arm_report as write_arm_report
+    from .page import Page as Page
+    from .page import page_of as page_of
+    from .write import write_report as write_report
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

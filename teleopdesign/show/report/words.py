@@ -1,0 +1,96 @@
+"""Verdicts in words, as a report prints them."""
+
+from __future__ import annotations
+
+from ...base.sentences import join_names
+from ...base.sentences import number_on_page as number
+from ...base.sentences import percent_on_page as percent
+from ...diagnose.criteria import CRITERIA
+from ...diagnose.diagnosis import Diagnosis
+from ...diagnose.ladder_text import floors_apart
+from ...diagnose.rung import Rung
+from ...measurement.experiment import Experiment
+
+
+def sentence_of(entry: object | None) -> str:
+    """The text of an entry of a diagnosis as a sentence; "" without an entry."""
+    text = "" if entry is None else str(entry)
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
+def step_name(rung: Rung) -> str:
+    """The effect that a rung adds, with equally good ones: "stribeck at device"."""
+    if rung.added is None:
+        return "your model, re-estimated"
+    return " or ".join((rung.title, *map(str, rung.alternatives)))
+
+
+def describe_judgement(experiment: Experiment) -> str:
+    """The records on which the errors are reported."""
+    if experiment.check_records:
+        return "records that were not fitted"
+    return "blocks of the records that were held out of the fit"
+
+
+def _floors(left: float) -> str:
+    """An error in noise floors; no number where the floor is next to zero."""
+    return number(left, 2) if left <= CRITERIA.countable else f"more than {CRITERIA.countable:g}"
+
+
+def verdict(diagnosis: Diagnosis) -> str:
+    """The verdict in one or two sentences."""
+    before, after = diagnosis.before.check_error, diagnosis.after.check_error
+    floor, left = percent(diagnosis.floor.value), _floors(diagnosis.left)
+    fell = f"the force error on {describe_judgement(diagnosis.experiment)} falls from "
+    fell += f"{percent(before)} to {percent(after)}"
+    added = [step_name(r) for r in diagnosis.rungs if r.added is not None]
+    more = diagnosis.more_is_missing
+    rest = (
+        f"The remaining error is {left} times what sensor noise alone would leave: more is missing."
+        if more
+        else f"The remaining error is near what sensor noise alone would leave, {floor}."
+    )
+    if diagnosis.may_be_noise:
+        rest = (
+            f"The remaining error is {left} times the noise floor of {floor}. With this model "
+            f"sensor errors leave {percent(diagnosis.floor.drawn)}: these records do not show "
+            "whether more is missing."
+        )
+    if (moment := diagnosis.moment) is not None:
+        whole, without = floors_apart(diagnosis.left, moment.without)
+        rest = (
+            f"The remaining error is {whole} times what sensor noise alone would leave, "
+            f"{without} times without one moment ({moment})."
+        )
+    if diagnosis.verdict == "model_adequate":
+        return (
+            f"Your model is adequate: it leaves {percent(after)} of the force unexplained, and "
+            f"sensor noise alone would leave {floor}." + (f" {rest}" if moment is not None else "")
+        )
+    if diagnosis.verdict == "effects_missing":
+        named = [step_name(r) for r in diagnosis.rungs if r.added in diagnosis.missing]
+        less = [step_name(r) for r in diagnosis.rungs[1:] if r.added not in diagnosis.missing]
+        helps = "helps, but is" if len(less) == 1 else "help, but each is"
+        others = f" {join_names(less)} {helps} less likely than not." if less else ""
+        added_words = "this effect" if len(added) == 1 else "all added effects"
+        return f"Your model lacks {join_names(named)}. With {added_words}, {fell}.{others} {rest}"
+    if silent := diagnosis.why_silent:
+        return f"Undecided. {silent}"
+    if not added:
+        return (
+            "Undecided: something is missing, but no candidate effect explains the remaining "
+            f"force. The force error is {percent(after)}, {left} times what sensor noise alone "
+            "would leave."
+        )
+    if diagnosis.unlikely:
+        each = "it is" if len(added) == 1 else "each is"
+        return (
+            f"Undecided: with {join_names(added)} {fell}, but {each} less likely than not. {rest}"
+        )
+    if all(r.alternatives for r in diagnosis.rungs[1:]):
+        names = join_names(added)
+        return f"Undecided, {names}: these records do not decide. Either way {fell}. {rest}"
+    helps = "helps, but explains" if len(added) == 1 else "help, but explain"
+    return (
+        f"Undecided: {join_names(added)} {helps} less than half of what is missing: {fell}. {rest}"
+    )

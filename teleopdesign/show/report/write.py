@@ -1,0 +1,194 @@
+"""Write the report of a diagnosis: one self-contained HTML file."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import re
+from base64 import b64encode
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from ...base.files import write_text
+from ...base.finding import Finding
+from ...base.sentences import (
+    number_on_page as number,
+)
+from ...base.sentences import (
+    percent_on_page as percent,
+)
+from ...base.sentences import (
+    short_on_page as short,
+)
+from ...base.sentences import (
+    typeset,
+)
+from ...base.sentences import (
+    unit_on_page as unit_text,
+)
+from ...base.sentences import (
+    with_error_on_page as with_error,
+)
+from ...diagnose import Diagnosis
+from .figures import WIDE, colour_scale, graph_figure, ladder_figure, step_figure
+from .page import Page, page_data, page_of
+
+TEMPLATES = Path(__file__).with_name("templates")
+
+
+@dataclass(frozen=True)
+class Figures:
+    """The pictures of a page; scales, steps etc. by body, findings by (section, row)."""
+
+    ladder: Markup
+    scales: tuple[Markup, ...]
+    steps: tuple[tuple[Markup, ...], ...]
+    over_velocity: tuple[Markup, ...]
+    excerpts: tuple[Markup, ...]
+    findings: dict[tuple[str, int], Markup]
+
+
+def write_report(
+    diagnosis: Diagnosis,
+    path: str | Path,
+    *,
+    soundness: Sequence[Finding] = (),
+    unexplained: Sequence[Finding] = (),
+    next_steps: Sequence[Finding] = (),
+) -> None:
+    """Write the page of a diagnosis; the same diagnosis gives the same bytes.
+
+    soundness: findings on the recording;  unexplained: findings on the last residual
+    next_steps: findings on what to measure next; a section without findings is left out
+    """
+    page = page_of(diagnosis, soundness=soundness, unexplained=unexplained, next_steps=next_steps)
+    html = render(page, figures_of(page), page_data(page, diagnosis))
+    write_text(path, html)
+
+
+def render(page: Page, figures: Figures, data: dict[str, Any]) -> str:
+    """The page as HTML, with all its texts escaped."""
+    return render_page("report.html.jinja", page, figures, data)
+
+
+def render_page(name: str, page: object, figures: object, data: dict[str, Any]) -> str:
+    """A page from the named template, with embedded data; its texts are escaped."""
+    template = _environment().get_template(name)
+    script = figure_script()
+    text = template.render(
+        page=page,
+        figures=figures,
+        data=embedded_json(data),
+        script=script,
+        script_digest=_digest_of(script),
+    )
+    return text + "\n"
+
+
+def figure_script() -> Markup:
+    """The only script of the page, which opens figures; it contains no text from a file."""
+    return Markup((TEMPLATES / "figures.js.jinja").read_text(encoding="utf-8"))
+
+
+def _digest_of(script: str) -> str:
+    """Digest of the only script that the policy of the page allows to run."""
+    digest = b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii")
+    return f"sha256-{digest}"
+
+
+def embedded_json(data: dict[str, Any]) -> Markup:
+    """JSON for a <script> element, in which no text can end the element."""
+    text = json.dumps(data, allow_nan=False, separators=(",", ":"))
+    for character in "<>&":
+        text = text.replace(character, f"\\u{ord(character):04x}")
+    return Markup(text)
+
+
+def figures_of(page: Page) -> Figures:
+    """Draw every picture of the page."""
+    sections = {
+        "cannot-tell": page.cannot_tell,
+        "unexplained": page.unexplained,
+        "next": page.next_steps,
+        "soundness": page.soundness,
+    }
+    return Figures(
+        ladder=ladder_figure(page.ladder, page.floor),
+        scales=tuple(colour_scale(v) for v in page.views),
+        steps=tuple(tuple(step_figure(v, k) for k in range(len(v.steps))) for v in page.views),
+        over_velocity=tuple(
+            graph_figure(
+                v.over_velocity,
+                _describe_figure(v.body, "mean residual over velocity"),
+                width=WIDE,
+            )
+            for v in page.views
+        ),
+        excerpts=tuple(
+            graph_figure(
+                v.excerpt,
+                _describe_figure(v.body, "measured and modelled force"),
+                width=WIDE,
+            )
+            for v in page.views
+        ),
+        findings={
+            (section, i): graph_figure(f.graph, f"{f.topic}: {f.sentence}")
+            for section, rows in sections.items()
+            for i, f in enumerate(rows)
+            if f.graph is not None
+        },
+    )
+
+
+def _describe_figure(body: str, what: str) -> str:
+    return f"{body}: {what}, before and after."
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "number": number,
+        "short": short,
+        "with_error": with_error,
+        "percent": percent,
+        "unit": unit_text,
+        "finite": math.isfinite,
+        "share": _share,
+        "named": _emphasise_names,
+        "soft": _soft,
+        "typeset": typeset,
+    }
+    return environment
+
+
+def _soft(text: str) -> Markup:
+    """A name, escaped, with possible line breaks after underscores, points and slashes."""
+    parts = re.split(r"(?<=[_./])", text)
+    return Markup("<wbr>").join(parts)
+
+
+def _emphasise_names(text: str, names: Iterable[str]) -> Markup:
+    """A sentence, escaped, with the whole words among `names` in bold."""
+    known = set(names)
+    parts = re.split(r"(\w+)", text)
+    return Markup("").join(Markup("<b>{}</b>").format(p) if p in known else p for p in parts)
+
+
+def _share(whole: float, part: float) -> str:
+    """Part of a whole in percent, 0 to 100, as the length of a bar."""
+    return f"{min(max(100 * part / whole, 0.0), 100.0) if whole > 0 else 0.0:.1f}"

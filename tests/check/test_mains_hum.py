@@ -1,0 +1,123 @@
+"""A hum of the mains in a force is told, what moves at that frequency is not called one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from check.made_channels import ask
+
+import teleopdesign as td
+from teleopdesign.measurement.hum import hum_of, without_hum
+from teleopdesign.measurement.motion import without_mains
+
+
+@pytest.fixture(scope="module")
+def rod():
+    return td.load_experiment(td.example("rod"))
+
+
+def humming(rod, key, frequency, share):
+    first = rod.fit_records[0]
+    y = first.signals[key]
+    tone = np.sqrt(2) * share * y.std() * np.sin(2 * np.pi * frequency * first.time + 1)
+    record = replace(first, signals={**first.signals, key: y + tone})
+    return replace(rod, records=(record,))
+
+
+def hums(experiment):
+    return ask("force_readings", experiment, "hum")
+
+
+@pytest.mark.parametrize("frequency", [50.0, 60.0, 49.93])
+@pytest.mark.parametrize("key", ["device.interaction_force", "device.actuator_force"])
+def test_a_tenth_of_hum_is_reported_with_its_size(rod, key, frequency):
+    (one,) = hums(humming(rod, key, frequency, 0.1))
+    y = rod.fit_records[0].signals[key]
+    assert one.concern == "warning"
+    assert one.numbers["rms"] == pytest.approx(0.1 * y.std(), rel=0.25)  # the window's scallop
+
+
+def test_a_weak_hum_is_a_note_and_taken_off_too(rod):
+    """Of a hundredth of the force, which is about the noise of this one."""
+    spoilt = humming(rod, "device.interaction_force", 50.0, 0.01)
+    (one,) = hums(spoilt)
+    assert one.concern == "note" and "% of the channel" in one.sentence
+    clean = rod.fit_records[0].signals["device.interaction_force"]
+    left = without_mains(spoilt.records[0], "device.interaction_force") - clean
+    # what the force itself has at that frequency goes with it
+    assert np.sqrt(np.mean(left**2)) < 0.2 * 0.01 * clean.std()
+
+
+def test_no_hum_is_reported_where_there_is_none(rod):
+    assert hums(rod) == []
+    assert hums(humming(rod, "device.actuator_force", 35.0, 0.1)) == []
+
+
+def test_a_motion_of_fifty_hertz_is_no_hum(rod):
+    one = humming(rod, "device.actuator_force", 50.0, 0.1)
+    record = one.records[0]
+    x = record.signals["device.position"]
+    moved = x + 0.02 * x.std() * np.sin(2 * np.pi * 50 * record.time)
+    record = replace(record, signals={**record.signals, "device.position": moved})
+    assert hums(replace(one, records=(record,))) == []
+
+
+@pytest.mark.parametrize("frequency", [50.0, 60.0, 49.93])
+@pytest.mark.parametrize("key", ["device.interaction_force", "device.actuator_force"])
+def test_a_hum_is_taken_off_the_force_and_nothing_else_is(rod, key, frequency):
+    first = rod.fit_records[0]
+    clean, spoilt = first.signals[key], humming(rod, key, frequency, 0.1).records[0]
+    left = without_mains(spoilt, key) - clean
+    # ends are off by what the force itself has at that frequency
+    assert np.sqrt(np.mean(left**2)) < 0.02 * 0.1 * clean.std()
+    assert without_mains(first, key) is clean
+
+
+@pytest.mark.parametrize("frequency", [49.93, 50.0, 60.04])
+def test_a_tone_is_reported_with_its_frequency_and_rms_and_taken_off_whole(frequency):
+    """Beside noise of a hundredth of it, and a constant force that is no part of it."""
+    h, n = 1e-3, 8000
+    random = np.random.default_rng(1)
+    noise = 0.02 * random.standard_normal(n) + 7.0
+    tone = 2.0 * np.sin(2 * np.pi * frequency * h * np.arange(n) + 0.4)
+    hum = hum_of(noise + tone, [random.standard_normal(n)], h)
+    assert hum.mains == round(frequency, -1)
+    assert hum.frequency == pytest.approx(frequency, abs=1e-3)
+    # between two lines of the spectrum the higher one holds 15 % less: 8 s have a line each 1/8 Hz
+    assert hum.rms == pytest.approx(2.0 / 2**0.5, rel=0.16) and hum.rms < 1.01 * 2.0 / 2**0.5
+    left = without_hum(noise + tone, hum, h) - noise
+    assert np.sqrt(np.mean(left**2)) < 0.005
+
+
+@pytest.mark.parametrize(("size", "is_reported"), [(0.5, False), (2.0, True)])
+def test_a_tone_that_a_position_shows_or_that_is_a_tiny_part_of_the_force_is_none(
+    size, is_reported
+):
+    h, t = 1e-3, 1e-3 * np.arange(8000)
+    random = np.random.default_rng(1)
+    tone = np.sin(2 * np.pi * 50.0 * t)
+    rest = 1e-4 * random.standard_normal(8000) + np.sin(2 * np.pi * 0.8 * t)
+    # 0.2 % of the rms of a sine of one: of the tone, its amplitude over that of the force
+    force = rest + size * 0.002 * tone
+    assert (hum_of(force, [], h) is not None) == is_reported
+    still = random.standard_normal(8000)
+    assert (hum_of(force, [still], h) is not None) == is_reported
+    assert hum_of(force, [still + tone], h) is None
+    assert hum_of(force[:1900], [], h) is None, "too short to part it from what is beside it"
+    assert hum_of(force[::10], [], 10 * h) is None, "the samples do not tell so high a frequency"
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("frequency", [50.0, 59.94])
+def test_a_hum_is_reported_with_frequency_and_share_in_any_unit(unit, frequency):
+    t = 1e-3 * np.arange(8000)
+    random = np.random.default_rng(0)
+    motion = np.sin(2 * np.pi * 1.3 * t) + 0.01 * random.normal(size=8000)
+    for share, is_reported in ((0.03, True), (0.003, False)):
+        tone = np.sqrt(2) * share * motion.std() * np.sin(2 * np.pi * frequency * t + 1)
+        hum = hum_of(unit * (motion + tone), [np.sin(2 * np.pi * 1.3 * t)], 1e-3)
+        assert (hum is not None) == is_reported
+        if hum:
+            assert hum.mains == round(frequency, -1)
+            assert hum.frequency == pytest.approx(frequency, abs=2e-3)
+            assert hum.rms == pytest.approx(share * unit * motion.std(), rel=0.2)

@@ -1,0 +1,539 @@
+"""Findings about channels and clock: none on a sound record, the right one on a spoilt record."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from check.made_channels import (
+    ask,
+    channel,
+    clock_errors,
+    interruptions,
+    record_of,
+    strange_velocity,
+    swing,
+)
+from clock import takes_less_than
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shared_data import shared_folder
+
+from teleopdesign import example, load_experiment
+from teleopdesign.check import CheckedRecording, findings_of
+from teleopdesign.check.flat_channels import visits
+from teleopdesign.check.outliers import jumps, lone_samples
+from teleopdesign.check.velocity import factor_cause, shift_and_factor
+from teleopdesign.measurement.encoder import sampling_jitter
+from teleopdesign.measurement.reading import ReadingStep
+from teleopdesign.measurement.repeated_rows import repeats, stuck_stretches
+
+RATE = 1000.0
+T = np.arange(12_000) / RATE
+STEP = 1e-5
+
+
+@pytest.fixture(scope="module")
+def rod():
+    return load_experiment(example("rod"))
+
+
+def spoilt(experiment, quantity, change):
+    """The experiment with one channel of its first record changed."""
+    first, *others = experiment.records
+    key = f"device.{quantity}"
+    values = change(first.signals[key].copy())
+    record = replace(first, signals={**first.signals, key: values})
+    return replace(experiment, records=(record, *others))
+
+
+def put(places, values):
+    def change(x):
+        x[places] = values(x) if callable(values) else values
+        return x
+
+    return change
+
+
+def check_signals(experiment):
+    """What needs no comparison with a model."""
+    return findings_of(CheckedRecording(experiment))
+
+
+def warnings(experiment, topic=None):
+    findings = [f for f in check_signals(experiment) if f.concern != "fine"]
+    return [f for f in findings if topic is None or f.topic == topic]
+
+
+def the_only(experiment, topic):
+    findings = warnings(experiment)
+    assert [f.topic for f in findings] == [topic], list(map(str, findings))
+    return findings[0]
+
+
+def motion(seed=0):
+    """A smooth motion of several sines, as a body makes it."""
+    rng = np.random.default_rng(seed)
+    return sum(
+        rng.uniform(0.2, 1.0) * 0.01 / f * np.sin(2 * np.pi * f * T + rng.uniform(0, 6))
+        for f in (0.7, 1.9, 5.3, 11.0)
+    )
+
+
+def read(x):
+    return STEP * np.round(x / STEP)
+
+
+@pytest.mark.parametrize(("rows", "is_lost"), [(1, True), (3, True), (8, False)])
+def test_a_force_that_is_mostly_zero_for_rows_at_a_time_is_a_log_without_its_readings(
+    rod, rows, is_lost
+):
+    rest = np.ones(len(rod.records[0].signals["device.actuator_force"]), dtype=bool)
+    for first in range(0, len(rest) - rows, 20):
+        rest[first : first + rows] = False
+    findings = warnings(spoilt(rod, "actuator_force", put(rest, 0.0)), "force steps")
+    assert bool(findings) == is_lost
+    assert all("% of the rows" in f.sentence for f in findings)
+
+
+def test_a_sound_record_gives_no_warning_and_no_note(rod):
+    assert warnings(rod) == []
+    assert {f.concern for f in check_signals(rod)} == {"fine"}
+
+
+def test_a_lone_force_sample_of_ten_sigma_is_detected_where_it_is(rod):
+    off = 10 * 0.0116  # the stated noise
+    finding = the_only(
+        spoilt(rod, "interaction_force", put(4321, lambda x: x[4321] + off)), "outliers"
+    )
+    assert finding.numbers["time"] == 4.321
+    assert finding.numbers["row"] == 4322
+    assert "at 4.321 s (row 4322)" in finding.sentence
+    # noise of the sample itself and of the four that its course is read from: 1.4 sigma
+    assert finding.numbers["size"] == pytest.approx(off, abs=4 * 1.4 * 0.0116)
+
+
+def test_a_lone_position_sample_of_ten_sigma_is_detected_where_it_is(rod):
+    off = 10 * 0.29 * 7.2e-6  # a step scatters by 0.29 of itself: three steps
+    spoiled = spoilt(rod, "position", put(5000, lambda x: x[5000] + 3 * 7.2e-6))
+    finding = the_only(spoiled, "outliers")
+    assert finding.numbers["row"] == 5001
+    assert finding.numbers["size"] == pytest.approx(off, rel=0.7)  # rounding: 1.3 steps at most
+    assert "one sample lies" in finding.sentence
+
+
+def test_several_lone_samples_are_counted_in_the_sentence(rod):
+    def two(x):
+        x = x.copy()
+        x[[3000, 5000]] += 10 * 7.2e-6
+        return x
+
+    finding = the_only(spoilt(rod, "position", two), "outliers")
+    assert finding.numbers["count"] == 2 and "2 samples lie" in finding.sentence
+
+
+def test_steps_and_kinks_are_no_outliers():
+    rng = np.random.default_rng(1)
+    noise = 0.01 * rng.standard_normal(len(T))
+    step = np.where(T > 4.0, 1.0, 0.0)
+    ramp = np.where(T > 6.0, 60.0 * (T - 6.0), 0.0)
+    for shape in (step, ramp, np.convolve(step, np.full(3, 1 / 3), mode="same")):
+        inside = slice(0, -10)  # the convolution falls off at the end
+        assert len(lone_samples((shape + noise)[inside], 1e-4)[0]) == 0
+
+
+@settings(max_examples=30)
+@given(seed=st.integers(0, 2**31), row=st.integers(50, 11_900), size=st.floats(8.0, 1e4))
+def test_every_lone_sample_is_detected_and_nothing_else(seed, row, size):
+    rng = np.random.default_rng(seed)
+    x = motion(seed) + 1e-5 * rng.standard_normal(len(T))
+    # 8 sigma beyond what makes a sample odd: 5.3 standard deviations of 1.4 sigma
+    x[row] += (size + 7.4) * 1e-5
+    at, _ = lone_samples(x, 1e-9)
+    assert row in at
+    assert len(at) <= 2  # one in a thousand records has another by chance
+
+
+def test_a_smooth_motion_read_in_steps_has_no_outliers_jumps_or_holds():
+    for seed in range(10):
+        x = read(motion(seed))
+        assert len(lone_samples(x, STEP)[0]) == 0
+        assert len(jumps(x, STEP)[0]) == 0
+        assert len(repeats(x, STEP)) == 0
+        assert stuck_stretches(x, STEP, "position") == []
+        assert sampling_jitter(x, STEP, 1 / RATE) == 0.0
+
+
+def test_lost_samples_are_counted_where_a_position_leaps(rod):
+    first, *others = rod.records
+    x = first.signals["device.position"]
+    fastest = int(np.argmax(np.abs(np.gradient(x))))
+    kept = np.delete(np.arange(len(x)), np.arange(fastest, fastest + 12))
+    record = replace(
+        first,
+        time=first.time[: len(kept)],
+        segments=(slice(0, len(kept)),),
+        signals={k: v[kept] for k, v in first.signals.items()},
+    )
+    findings = warnings(replace(rod, records=(record, *others)), "jumps")
+    assert len(findings) == 1
+    assert findings[0].numbers["samples"] == pytest.approx(12, abs=1.5)  # speed before and after
+    assert findings[0].numbers["time"] == pytest.approx(fastest / 1000, abs=2e-3)
+
+
+def test_a_wrapped_angle_is_called_a_whole_turn():
+    turning = load_experiment(example("rod"))
+    bodies = {n: replace(b, axis="revolute") for n, b in turning.bodies.items()}
+    unwrapped = 4.0 * T + 0.2 * np.sin(9 * T)
+    wrapped = np.angle(np.exp(1j * unwrapped))
+    spoiled = spoilt(replace(turning, bodies=bodies), "position", lambda x: wrapped)
+    findings = warnings(spoiled, "jumps")
+    assert "unwrap" in findings[0].sentence
+    assert abs(findings[0].numbers["size"]) == pytest.approx(2 * np.pi, rel=0.01)
+
+
+def test_a_clipped_force_sensor_is_detected_with_its_limit_and_share(rod):
+    x = rod.records[0].signals["device.interaction_force"]
+    limit = float(np.round(np.quantile(x, 0.97), 4))
+    spoiled = spoilt(rod, "interaction_force", lambda x: np.minimum(x, limit))
+    findings = warnings(spoiled, "clipped channels")
+    assert [f.concern for f in findings] == ["warning"]
+    assert findings[0].numbers["value"] == limit
+    assert findings[0].numbers["part"] == pytest.approx(0.03, abs=0.002)
+
+
+def test_a_clipped_position_is_detected_but_a_body_that_rests_is_not(rod):
+    x = rod.records[0].signals["device.position"]
+    limit = x[np.argsort(x)[int(0.9 * len(x))]]
+    findings = warnings(spoilt(rod, "position", lambda x: np.minimum(x, limit)), "clipped channels")
+    assert findings[0].numbers["value"] == limit
+    resting = np.repeat(np.tile([0.0, 0.01], 6), 1000)  # held at its ends, moved gently
+    smooth = np.convolve(resting, np.hanning(400) / np.hanning(400).sum(), mode="same")
+    assert warnings(spoilt(rod, "position", lambda x: read(smooth)), "clipped channels") == []
+
+
+@pytest.mark.parametrize("quantity", ["position", "interaction_force"])
+def test_a_channel_that_sticks_is_detected_from_when_to_when(rod, quantity):
+    x = rod.records[0].signals["device.position"]
+    speed = np.abs(np.gradient(x))
+    start = 2000 + int(np.argmax(speed[2000:6000]))
+    spoiled = spoilt(rod, quantity, put(slice(start, start + 600), lambda x: x[start]))
+    findings = [f for f in warnings(spoiled, "stuck channels")]
+    assert len(findings) == 1
+    assert findings[0].numbers["from"] == pytest.approx(start / RATE, abs=2e-3)
+    assert findings[0].numbers["duration"] == pytest.approx(0.6, abs=2e-3)
+
+
+def test_a_channel_that_never_changes_is_named(rod):
+    findings = warnings(spoilt(rod, "interaction_force", lambda x: 0 * x), "stuck channels")
+    assert findings[0].numbers["value"] == 0.0
+    assert "throughout" in findings[0].sentence
+
+
+def test_an_averaged_log_of_a_coarse_encoder_neither_repeats_samples_nor_runs_flat(rod):
+    """Near its turns the body stays within a step; averages lie between the encoder's steps."""
+    rate, averaged_over = 50.0, 4
+    t = np.arange(averaged_over * len(T)) / (averaged_over * rate)
+    position = read(40 * STEP * np.sin(2 * np.pi * 0.5 * t)).reshape(len(T), -1).mean(axis=1)
+    first = rod.records[0]
+    channel = replace(rod.channels["device.position"], resolution=STEP)
+    experiment = replace(
+        rod,
+        records=(
+            replace(
+                first,
+                time=np.arange(len(T)) / rate,
+                sample_time=1 / rate,
+                segments=(slice(0, len(T)),),
+                signals={"device.position": position, "device.actuator_force": np.cos(t[::4])},
+            ),
+        ),
+        channels={k: c for k, c in rod.channels.items() if k != "time"}
+        | {"device.position": channel},
+    )
+    assert [f for f in check_signals(experiment) if f.concern == "warning"] == []
+
+
+def test_samples_that_repeat_while_the_body_goes_on_are_counted():
+    rng = np.random.default_rng(3)
+    x = read(5 * motion())
+    held = np.sort(rng.choice(np.arange(20, 11_900, 5), 200, replace=False))
+    spoiled = x.copy()
+    spoiled[held] = x[held - 1]
+    rows = repeats(spoiled, STEP)
+    assert set(rows) <= set(held)
+    # where it moves less than six steps a sample, a repeat may be the encoder's
+    fast = held[np.abs(x[held + 8] - x[held - 8]) / 16 > 6 * STEP]
+    assert len(set(fast) - set(rows)) <= 0.05 * len(fast)
+
+
+def test_a_force_sampled_at_a_tenth_of_the_rate_is_noticed(rod):
+    spoiled = spoilt(rod, "interaction_force", lambda x: np.repeat(x[::10], 10))
+    findings = warnings(spoiled, "held samples")
+    assert findings[0].numbers["rate"] == pytest.approx(100.0)
+
+
+def rounded(part):
+    """To steps of that part of the largest value."""
+
+    def change(x):
+        step = part * np.abs(x).max()
+        return np.round(x / step) * step
+
+    return change
+
+
+@pytest.mark.parametrize("quantity", ["actuator_force", "interaction_force"])
+def test_a_force_that_is_logged_in_coarse_steps_is_reported_with_the_step(rod, quantity):
+    (finding,) = warnings(spoilt(rod, quantity, rounded(0.1)), "force steps")
+    largest = np.abs(rod.records[0].signals[f"device.{quantity}"]).max()
+    assert finding.numbers["step"] == pytest.approx(0.1 * largest, rel=1e-9)
+    assert finding.numbers["error"] == pytest.approx(0.1 * largest / np.sqrt(12), rel=1e-9)
+    assert quantity in finding.sentence and finding.concern == "warning"
+
+
+def test_fine_steps_and_a_relay_are_no_coarse_steps(rod):
+    assert warnings(spoilt(rod, "actuator_force", rounded(0.01)), "force steps") == []
+    relay = np.random.default_rng(1).integers(-3, 4, 40).repeat(1000).astype(float)
+    for levels in (relay, np.sign(relay)):
+        experiment = spoilt(rod, "actuator_force", lambda x, y=levels: np.resize(y, len(x)))
+        assert warnings(experiment, "force steps") == []
+
+
+def test_fine_steps_of_a_smooth_force_are_no_coarse_steps(rod):
+    """Every level is passed through, and still nothing is lost."""
+    smooth = np.round(np.sin(2 * np.pi * 0.5 * T), 2)
+    experiment = spoilt(rod, "interaction_force", lambda x: np.resize(smooth, len(x)))
+    assert warnings(experiment, "force steps") == []
+
+
+def test_a_lone_sample_on_a_fast_motion_is_detected_though_it_is_less_than_a_step_of_the_motion():
+    x = np.arange(1000.0) + 0.01 * np.random.default_rng(1).normal(size=1000)
+    x[500] += 0.5
+    at, size = lone_samples(x, 0.0)
+    assert list(at) == [500] and size[0] == pytest.approx(0.5, abs=0.05)
+
+
+def with_channel(experiment, quantity, **changes):
+    key = f"device.{quantity}"
+    channel = replace(experiment.channels[key], **changes)
+    return replace(experiment, channels={**experiment.channels, key: channel})
+
+
+def test_an_encoder_coarser_than_stated_is_detected_with_its_step(rod):
+    findings = warnings(with_channel(rod, "position", resolution=7.2e-6 / 4), "encoder steps")
+    assert findings and all(f.concern == "warning" for f in findings)
+    assert findings[0].numbers["seen"] == pytest.approx(7.2e-6, rel=1e-9)
+    findings = warnings(with_channel(rod, "position", resolution=7.2e-9), "encoder steps")
+    assert findings[0].numbers["seen"] == pytest.approx(7.2e-6, rel=1e-9)
+
+
+@pytest.mark.parametrize("factor", [0.3, 3.0])
+def test_noise_that_is_not_the_stated_one_is_measured(rod, factor):
+    findings = warnings(with_channel(rod, "interaction_force", noise=factor * 0.0116), "noise")
+    # half a second of samples tells a scatter to 6 %, the median of forty pieces better
+    assert findings[0].numbers["seen"] == pytest.approx(0.0116, rel=0.1)
+    assert findings[0].numbers["ratio"] == pytest.approx(1 / factor, rel=0.1)
+
+
+def test_columns_swapped_between_a_noisy_and_a_quiet_force_are_suspected(rod):
+    def swap(record):
+        u, f = "device.actuator_force", "device.interaction_force"
+        signals = {**record.signals, u: record.signals[f], f: 0.3 * np.sin(2 * np.pi * record.time)}
+        return replace(record, signals=signals)
+
+    findings = warnings(replace(rod, records=tuple(map(swap, rod.records))), "noise")
+    assert "actuator_force has it: are the two columns swapped?" in findings[0].sentence
+
+
+def test_positions_taken_early_or_late_show_the_jitter_of_the_clock():
+    rng = np.random.default_rng(4)
+    late = 1e-4 * rng.standard_normal(len(T))
+    x = read(np.interp(T + late, T, 10 * motion()))
+    # a median over the fast quarter of pieces of 64 samples; the pieces' own speed varies
+    assert sampling_jitter(x, STEP, 1 / RATE) == pytest.approx(1e-4, rel=0.2)
+
+
+def test_a_clock_that_jitters_is_reported_with_its_size_in_time_and_place(rod):
+    rng = np.random.default_rng(4)
+    late, moves = 1e-4 * rng.standard_normal(len(T)), 10 * motion()
+    jitters = spoilt(rod, "position", lambda x: read(np.interp(T + late, T, moves)))
+    (finding,) = (f for f in ask("sample_clock", jitters) if f.concern == "warning")
+    assert finding.numbers["jitter"] == pytest.approx(1e-4, rel=0.2)
+    assert finding.numbers["part"] == pytest.approx(finding.numbers["jitter"] * RATE)
+    speed = np.sqrt(np.mean(np.gradient(moves, T) ** 2))
+    # the jitter itself adds to the speed of the readings
+    assert finding.numbers["position"] == pytest.approx(1e-4 * speed, rel=0.3)
+    assert "rms early or late" in finding.sentence
+
+
+def test_clocks_in_order_say_whether_stamps_or_samples_are_counted(rod):
+    (stamped,), (counted,) = ask("sample_clock", rod), clock_errors(record_of(100))
+    assert stamped.sentence.startswith("the time stamps are uniform, 1000 Hz")
+    assert counted.sentence.startswith("samples are counted at the stated rate, 1000 Hz")
+    assert stamped.numbers == {"rate": pytest.approx(1000.0)}
+
+
+def rewritten(folder, stamps):
+    """The rod in a folder of its own, its first record with these time stamps."""
+    import gzip
+    import shutil
+
+    shutil.copytree(example("rod"), folder, dirs_exist_ok=True)
+    path = folder / "fit.csv.gz"
+    head, *lines = gzip.open(path, "rt").read().splitlines()
+    column = head.split(",").index("t")
+    out = [head]
+    for line, stamp in zip(lines, stamps, strict=True):
+        parts = line.split(",")
+        parts[column] = f"{stamp:.7f}"
+        out.append(",".join(parts))
+    with gzip.open(path, "wt") as file:
+        file.write("\n".join(out) + "\n")
+    return load_experiment(folder)
+
+
+def test_stamps_that_jitter_are_measured(tmp_path):
+    jitter = 1e-4 * np.random.default_rng(5).uniform(-0.9, 0.9, 12_000)
+    finding = the_only(rewritten(tmp_path, np.arange(12_000) / RATE + jitter), "sample clock")
+    assert finding.concern == "note"
+    assert finding.numbers["jitter"] == pytest.approx(0.9e-4 / np.sqrt(3), rel=0.05)
+    assert finding.numbers["rate"] == pytest.approx(RATE, rel=1e-6)
+
+
+def test_segments_and_what_is_too_short_to_be_compared_are_counted(rod):
+    first, *others = rod.records
+    time = first.time + np.where(np.arange(12_000) >= 6000, 3.0, 0.0)
+    segments = (slice(0, 6000), slice(6000, 6300), slice(6300, 12_000))
+    record = replace(first, time=time, segments=segments)
+    # in a folder without files no stamps can be read again
+    apart = replace(rod, folder=Path("nowhere"), records=(record, *others))
+    finding = the_only(apart, "gaps")
+    assert finding.numbers["longest_gap"] == pytest.approx(3.0, abs=1e-9)
+    assert finding.numbers["too_short"] == 1
+    assert finding.numbers["left_out"] == pytest.approx(0.3)
+    assert finding.concern == "note"  # a fortieth of the record
+
+
+@pytest.mark.parametrize(("factor", "shift"), [(1.0, 0.0), (0.999, 0.004), (57.3, -0.011)])
+def test_factor_and_lag_of_a_velocity_channel_are_reported(factor, shift):
+    rng = np.random.default_rng(6)
+    velocity = factor * np.interp(T - shift, T, np.gradient(motion(), T))
+    estimate = shift_and_factor(read(motion()), velocity + 1e-3 * rng.standard_normal(len(T)), 1e-3)
+    assert estimate[0] == pytest.approx(shift, abs=2e-4)  # a fifth of a sample
+    assert estimate[1] == pytest.approx(factor, rel=2e-3)
+
+
+@pytest.mark.slow
+def test_an_hour_at_a_kilohertz_is_checked_in_bounded_time(rod):
+    n = 3_600_000
+    first = rod.records[0]
+    signals = {k: np.resize(np.concatenate([v, v[::-1]]), n) for k, v in first.signals.items()}
+    record = replace(
+        first, file="long", time=np.arange(n) / RATE, segments=(slice(0, n),), signals=signals
+    )
+    with takes_less_than(60.0):  # s; about 6 on a free core
+        check_signals(replace(rod, records=(record,)))
+
+
+@pytest.mark.slow
+def test_the_known_oddities_of_real_recordings_are_detected_and_no_others():
+    """What their READMEs say: jitter of psm and mtm, rows twice in mtm, a finer emps file."""
+    data = shared_folder("data")
+    findings = {
+        name: {(f.topic, f.where) for f in warnings(load_experiment(data / name))}
+        for name in ("emps", "hsm150", "mtm_wrist", "psm_insertion")
+    }
+    assert findings["emps"] == {("encoder steps", "emps_pulses.csv.gz")}
+    assert findings["hsm150"] == set()
+    topics = ("gaps", "held samples", "lost rows", "reading")
+    assert findings["mtm_wrist"] == {(topic, "mtm_joint4_sweep.csv.gz") for topic in topics}
+    (repeated, *_) = load_experiment(data / "mtm_wrist").reading
+    assert "rows the same as the one before" in repeated.observed
+    runs = [f"psm1_fourier{k}.csv.gz" for k in (1, 2, 3)]
+    sparse = {(topic, run) for topic in ("lost rows", "reading", "sample clock") for run in runs}
+    assert sparse <= findings["psm_insertion"]
+    more = {topic for topic, _ in findings["psm_insertion"] - sparse}
+    assert more <= {"held samples", "outliers"}
+
+
+@pytest.mark.slow
+def test_simulated_measurements_raise_no_warning():
+    cases = shared_folder("hidden/cases")
+    assert {f.name: w for f in sorted(cases.iterdir()) if (w := warnings(load_experiment(f)))} == {}
+
+
+@pytest.mark.parametrize(("size", "concern"), [(0.02, "note"), (0.021, "warning")])
+def test_a_step_of_reading_that_adds_over_two_percent_to_the_force_error_needs_care(
+    rod, size, concern
+):
+    step = ReadingStep("fit.csv", "3 rows are lost", "filled", "none", size=size, topic="gaps")
+    with_effect = replace(step, effect="0.3 N at most")
+    record = replace(rod.records[0], reading=(step, with_effect))
+    first, second = ask("log_reading", replace(rod, records=(record,)))
+    assert (first.concern, first.topic) == (concern, "gaps")
+    assert first.sentence == "3 rows are lost: filled."
+    assert second.sentence == "3 rows are lost: filled (0.3 N at most)."
+
+
+def test_a_body_that_rests_is_not_held_against_its_velocity_channel():
+    position = channel(np.zeros(2000))
+    assert strange_velocity(position, channel(np.sin(np.arange(2000)), "velocity")) == []
+
+
+@pytest.mark.parametrize(("lasts", "stays"), [(2, 0), (3, 6)])
+@pytest.mark.parametrize("noisy", [False, True])
+def test_a_stay_at_a_limit_lasts_three_samples_after_four_of_approach(lasts, stays, noisy):
+    once = [0.0, 1.0, 2.0, 3.0, *[4.0] * lasts]
+    assert visits(np.array(once * 6), 4.0, 0.1, noisy=noisy) == stays
+
+
+@pytest.mark.parametrize(
+    ("approach", "stays"), [([0.0, 2.0, 2.6, 3.0], 0), ([3.0, 2.0, 1.0, 0.0], 0), ([0, 1, 2, 3], 1)]
+)
+@pytest.mark.parametrize("unit", [1.0, 1e3, 1e-3])
+def test_a_signal_that_comes_to_rest_or_turned_away_did_not_run_into_a_limit(approach, stays, unit):
+    x = unit * np.array([*approach, 4.0, 4.0, 4.0], dtype=float)
+    assert visits(x, unit * 4.0, unit * 0.1, noisy=False) == stays
+
+
+@pytest.mark.parametrize(
+    ("axis", "factor", "cause"),
+    [
+        ("prismatic", 1000.0, "the time is in ms"),
+        ("prismatic", 1000.0, "the velocity is in mm/s"),
+        ("prismatic", 1e6, "the time is in us"),
+        ("prismatic", 0.001, "the position is in mm"),
+        ("revolute", 2 * np.pi, "the position is in turns"),
+        ("revolute", np.pi / 180, "the position is in deg"),
+        ("revolute", 180 / np.pi, "the velocity is in deg/s"),
+        ("revolute", 30 / np.pi, "the velocity is in rpm"),
+        ("revolute", -30 / np.pi, "the velocity is in rpm"),
+        ("prismatic", -1.0, "one of the two is turned"),
+        ("prismatic", 3.0, "units, sign or clock disagree"),
+    ],
+)
+def test_a_factor_of_a_velocity_names_the_unit_that_makes_it(rod, axis, factor, cause):
+    position = replace(channel(swing()), axis=axis)
+    sentence = factor_cause(factor, position, replace(position, name="velocity"))
+    assert cause in sentence
+    assert ("sign = -1" in sentence) == (factor < 0)
+
+
+def test_segments_of_which_over_a_tenth_is_too_short_need_care(rod):
+    segments = tuple(slice(k, k + 100) for k in range(0, 2000, 100))
+    record = replace(rod.records[0], segments=(*segments, slice(2000, 12_000)))
+    (finding,) = interruptions(record)
+    assert finding.concern == "warning" and finding.numbers["left_out"] == pytest.approx(2.0)
+
+
+def test_what_is_in_order_is_reported_beside_what_is_not_and_never_of_the_same(rod, tmp_path):
+    def topics(experiment):
+        return sorted((f.topic, f.concern) for f in check_signals(experiment))
+
+    assert topics(rod) == [("channels", "fine"), ("sample clock", "fine")]
+    lone = spoilt(rod, "position", put(5000, lambda x: x[5000] + 3e-4))
+    assert topics(lone) == [("outliers", "warning"), ("sample clock", "fine")]
+    jitter = 1e-4 * np.random.default_rng(5).uniform(-0.9, 0.9, 12_000)
+    late = rewritten(tmp_path, np.arange(12_000) / RATE + jitter)
+    assert topics(late) == [("channels", "fine"), ("sample clock", "note")]

@@ -1,0 +1,408 @@
+"""The check before fitting: signs, units, timing, swapped columns, and what a record can show."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from check.made_channels import ask
+from clock import takes_less_than
+from fitted_checks.asking import ask_fitted, disagreements
+from shared_data import shared_folder
+
+import teleopdesign as td
+from teleopdesign import Model, example, load_experiment
+from teleopdesign.cli import main
+from teleopdesign.diagnose.effort import EFFORTS
+from teleopdesign.diagnose.fit import estimate
+from teleopdesign.effects import catalogue
+from teleopdesign.fitted_checks import check_experiment
+from teleopdesign.fitted_checks.bandwidth import check_bandwidth
+from teleopdesign.measurement.excerpt import excerpt
+from teleopdesign.measurement.prepare import prepare
+
+#: effects that stand for each way of being seen; all of them take longer
+SOME = ("bias", "coulomb", "coulomb_asymmetry", "viscous", "stribeck", "spring", "actuation_delay")
+
+
+@pytest.fixture(scope="module")
+def rod():
+    return load_experiment(example("rod"))
+
+
+@pytest.fixture(scope="module")
+def few():
+    known = catalogue()
+    return {n: known[n] for n in SOME}
+
+
+def changed(experiment, quantity, change, body="device"):
+    """The experiment with one channel of every record changed."""
+    key = f"{body}.{quantity}"
+    records = tuple(
+        replace(r, signals={**r.signals, key: change(r.signals[key])}) for r in experiment.records
+    )
+    return replace(experiment, records=records)
+
+
+def shifted(samples):
+    """Later by so many samples; the ends repeat."""
+
+    def change(x):
+        return x[np.clip(np.arange(len(x)) - samples, 0, len(x) - 1)]
+
+    return change
+
+
+def plausible(experiment):
+    return disagreements(Model.from_experiment(experiment), prepare(experiment))
+
+
+def the_one(experiment, topic):
+    findings = [f for f in plausible(experiment) if f.concern != "fine"]
+    assert [f.topic for f in findings] == [topic], list(map(str, findings))
+    return findings[0]
+
+
+# signs and units
+
+
+def test_a_right_record_agrees_with_its_model(rod):
+    (finding,) = plausible(rod)
+    assert finding.concern == "fine"
+    # Stribeck is missing in this model: 6 % of the force, which the inertia takes part of
+    assert finding.numbers["inertia"] == pytest.approx(0.19, rel=0.1)
+    assert finding.numbers["gain"] == pytest.approx(1.0, abs=0.03)
+
+
+@pytest.mark.parametrize("quantity", ["actuator_force", "interaction_force", "position"])
+def test_the_channel_whose_sign_is_turned_is_named(rod, quantity):
+    finding = the_one(changed(rod, quantity, np.negative), "signs")
+    assert finding.concern == "warning"
+    assert finding.sentence.startswith(f"{quantity} has the opposite sign")
+    assert (finding.numbers["gain"] < 0) == (quantity != "position")
+
+
+@pytest.mark.parametrize(("factor", "slip"), [(1e3, "in mm, given as m"), (1e2, "in cm, given")])
+def test_a_position_in_another_unit_than_stated_is_detected_by_the_model(rod, factor, slip):
+    finding = the_one(changed(rod, "position", lambda x: factor * x), "units")
+    assert slip in finding.sentence
+    assert finding.numbers["ratio.inertia"] == pytest.approx(1 / factor, rel=0.15)
+    assert finding.numbers["ratio.coulomb.level"] == pytest.approx(1.0, rel=0.15)
+
+
+def test_an_inertia_in_grams_given_as_kilograms_is_distinguished_from_a_wrong_position(rod):
+    model = Model.from_experiment(rod)
+    heavy = model.with_values({"device.inertia": 186.6})
+    (finding,) = disagreements(heavy, prepare(rod))
+    assert "inertia is meant in g, given as kg" in finding.sentence
+
+
+@pytest.mark.parametrize("quantity", ["actuator_force", "interaction_force"])
+def test_one_force_in_another_unit_is_named_by_the_inertia(rod, quantity):
+    finding = the_one(changed(rod, quantity, lambda x: 1e3 * x), "units")
+    assert f"{quantity} is in another unit" in finding.sentence
+    factor = max(finding.numbers["gain"], 1 / finding.numbers["gain"])
+    assert factor == pytest.approx(1e3, rel=0.05)
+
+
+# timing
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("quantity", "samples", "concern"),
+    [
+        ("interaction_force", 5, "warning"),
+        ("interaction_force", -7, "warning"),
+        ("actuator_force", 5, "warning"),  # an effect before its cause
+        ("actuator_force", -5, "note"),  # a delay of the actuator does that too
+        ("position", 5, "warning"),
+        ("position", -60, "warning"),
+    ],
+)
+def test_a_channel_shifted_by_whole_samples_is_named_with_the_time(rod, quantity, samples, concern):
+    finding = the_one(changed(rod, quantity, shifted(samples)), "time shift")
+    assert finding.concern == concern
+    # three standard errors of the interaction force's shift, 0.4 ms; of the others' 0.1 ms
+    error = 1.2e-3 if quantity == "interaction_force" else 3e-4
+    assert finding.numbers[f"{quantity}.lag"] == pytest.approx(samples * 1e-3, abs=error)
+    assert set(finding.numbers) & {"left", "unshifted"}
+
+
+@pytest.mark.parametrize(("other", "concern"), [(0.0, "note"), (1.0, "warning")])
+def test_a_shift_by_a_radian_and_more_is_no_delay_on_a_motion_of_one_frequency(other, concern):
+    """A hand's force 0.29 s late at 0.8 Hz: its phase is that of another force, or of a gain."""
+    t = np.arange(0.0, 20.0, 5e-3)
+
+    def moved(t):
+        return np.sin(5.0 * t) + other * np.sin(2.1 * t + 1.0) + other * 0.1 * np.sin(23.0 * t)
+
+    v, a = np.gradient(moved(t), t), np.gradient(np.gradient(moved(t), t), t)
+    hand = 0.5 * np.sin(3.3 * t) + 0.3 * np.sin(9.1 * t + 0.4)
+    late = np.interp(t - 0.29, t, hand)
+    noise = 1e-3 * np.random.default_rng(1).standard_normal(len(t))
+    data = {
+        "t": t,
+        "x": moved(t),
+        "F": 0.1 * a + 0.4 * np.sign(v) + 0.2 * v - hand + noise,
+        "f": late,
+    }
+    experiment = td.experiment(
+        data,
+        axis="prismatic",
+        time="t",
+        position={"column": "x", "resolution": 1e-4},
+        actuator_force="F",
+        interaction_force="f",
+        inertia=0.1,
+        bandwidth=10.0,
+        effects=["coulomb", "viscous"],
+    )
+    finding = the_one(experiment, "time shift")
+    assert finding.concern == concern and finding.numbers["interaction_force.lag"] == pytest.approx(
+        0.29, abs=0.02
+    )
+    assert ("no delay before you know it" in finding.sentence) == (concern == "note")
+
+
+# teleoperators
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("quantity", ["position", "actuator_force", "interaction_force"])
+def test_columns_of_master_and_slave_that_are_swapped_are_named(quantity):
+    experiment = load_experiment(shared_folder("hidden/cases") / "007")
+    one, two = f"master.{quantity}", f"slave.{quantity}"
+    records = tuple(
+        replace(r, signals={**r.signals, one: r.signals[two], two: r.signals[one]})
+        for r in experiment.records
+    )
+    finding = the_one(replace(experiment, records=records), "swapped columns")
+    assert one in finding.sentence and two in finding.sentence
+    assert finding.numbers["swapped"] < 0.1 < finding.numbers["as_given"]
+
+
+# what a record can show
+
+
+def shows(experiment, known):
+    model = Model.from_experiment(experiment, known)
+    findings = ask_fitted("excitation", model, prepare(experiment))
+    return {f.topic: f for f in findings}
+
+
+def test_a_rich_record_shows_every_candidate_and_from_which_size(rod, few):
+    findings = shows(rod, few)
+    numbers = findings["what the record can show"].numbers
+    assert all(numbers[n] < 0.1 for n in SOME if n not in ("coulomb", "viscous"))
+    assert "stribeck (extra_static_level from 0.0" in findings["what the record can show"].sentence
+    assert "bias and coulomb_asymmetry" in findings["look-alikes"].sentence
+    assert findings["motion"].concern == "fine"
+
+
+def test_effects_that_can_be_shown_stand_in_rows_that_fit_the_terminal(rod, few, monkeypatch):
+    from teleopdesign.commands.check import text_of
+
+    finding = shows(rod, few)["what the record can show"]
+    count = len(finding.sentence.split("Can show\n")[1].split("\n")[0].split("), "))
+    for columns in ("100", "60", "40"):
+        monkeypatch.setenv("COLUMNS", columns)
+        lines = text_of([finding]).split("\n")
+        assert max(map(len, lines)) <= int(columns)
+        assert sum(f"{n} (" in " ".join(lines) for n in finding.numbers if n in few) > count
+    monkeypatch.setenv("COLUMNS", "100")
+    rows = [line for line in text_of([finding]).split("\n") if line.startswith(" " * 11)]
+    assert len(rows) > 1 and all(row.rstrip().endswith((",", ".")) for row in rows)
+
+
+def test_the_least_size_that_shows_is_where_the_error_reaches_the_bound(rod, few):
+    """Planted at that size, an effect raises a fitted model's error to 1.8 noise floors."""
+    from teleopdesign.diagnose.candidates import candidates
+    from teleopdesign.diagnose.criteria import CRITERIA
+    from teleopdesign.fitted_checks._visibility import visibilities
+
+    model = Model.from_experiment(rod, few).with_effect("stribeck")
+    prepared = prepare(rod)
+    base = estimate(model, prepared, effort=EFFORTS.rough)
+    spring = [c for c in candidates(base.model) if c.effect.name == "spring"]
+    floor = base.fit_error
+    (visibility,) = visibilities(base, prepared, spring, floor)
+    stiffness = visibility.strength["stiffness"]
+    # a spring that the machine has and the model lacks: its force is missing from the command
+    planted = replace(
+        rod,
+        records=tuple(
+            replace(
+                r,
+                signals={
+                    **r.signals,
+                    "device.actuator_force": r.signals["device.actuator_force"]
+                    + stiffness * r.signals["device.position"],
+                },
+            )
+            for r in rod.records
+        ),
+    )
+    after = estimate(model, prepare(planted), effort=EFFORTS.rough)
+    # the size is found to 20 %, and what is left of Stribeck is in the floor used here
+    assert after.fit_error / floor == pytest.approx(CRITERIA.adequate, rel=0.2)
+
+
+def one_way(experiment):
+    """A motion that only ever goes on, and the force that a friction of 0.5 N and 0.2 kg take."""
+    record = experiment.records[0]
+    t = record.time
+    v = 0.1 + 0.05 * np.sin(2 * np.pi * 1.3 * t)
+    x = 0.1 * t - 0.05 / (2 * np.pi * 1.3) * np.cos(2 * np.pi * 1.3 * t)
+    force = 0.2 * np.gradient(v, t) + 0.5 + 1.0 * v
+    noise = 1e-3 * np.random.default_rng(0).standard_normal(len(t))
+    signals = {
+        "device.position": 7.2e-6 * np.round(x / 7.2e-6),
+        "device.actuator_force": force + noise,
+    }
+    channels = {k: c for k, c in experiment.channels.items() if c.quantity != "interaction_force"}
+    return replace(experiment, channels=channels, records=(replace(record, signals=signals),))
+
+
+def test_a_motion_one_way_cannot_show_what_needs_both_and_says_so(rod, few):
+    findings = shows(one_way(rod), few)
+    summary = findings["what the record can show"]
+    assert math.isinf(summary.numbers["coulomb_asymmetry"])
+    assert math.isinf(summary.numbers["bias"]), "one way, friction is a constant force"
+    assert "same force as coulomb.level" in summary.sentence
+    assert "it moves in one direction only" in summary.sentence
+    assert "spring (it never returns to an earlier position)" in summary.sentence
+    motion = findings["motion"]
+    assert motion.numbers["forth"] > 0.99 and motion.numbers["reversals"] == 0
+    assert "no interaction force is measured" in motion.sentence
+
+
+def test_an_effect_of_the_user_is_judged_like_any_other(rod, few, tmp_path):
+    path = tmp_path / "magnet.py"
+    path.write_text(
+        '"""Magnet: pulls towards the middle, ever less far away."""\n'
+        "from teleopdesign.effects import Effect, FitSearch, Parameter\n"
+        "def law(now, p):\n"
+        "    return p.pull * now.position / (p.reach**2 + now.position**2)\n"
+        "EFFECT = Effect(role='force', law=law, absent={'pull': 0.0}, parameters={\n"
+        "    'pull': Parameter('dimensionless', 'pull'),\n"
+        "    'reach': Parameter('position', 'reach', search=FitSearch(starts=(0.3, 1.0)))})\n"
+    )
+    known = {**few, "magnet": catalogue([path])["magnet"]}
+    numbers = shows(rod, known)["what the record can show"].numbers
+    assert 0.0 < numbers["magnet"] < 0.1
+
+
+def test_a_limit_that_the_command_never_reaches_would_show_below_the_largest_command(rod):
+    known = {n: catalogue()[n] for n in ("coulomb", "viscous", "actuator_saturation")}
+    sentence = shows(rod, known)["what the record can show"].sentence
+    commands = np.abs(rod.records[0].signals["device.actuator_force"])
+    limit = float(sentence.split("actuator_saturation (limit below ")[1].split()[0])
+    assert 0.3 * commands.max() < limit < commands.max()
+
+
+# the whole, long records, the command
+
+
+def test_what_a_record_can_show_is_not_asked_while_signs_disagree(rod):
+    findings = check_experiment(changed(rod, "position", np.negative))
+    assert str(findings).count("\n") == len(findings) - 1, "printed, a line for each"
+    assert findings._repr_html_().count("<tr>") == len(findings) + 1
+    assert findings[-1].sentence.startswith("not checked which effects the record can show")
+    assert [f.topic for f in findings if f.concern == "warning"] == ["signs"]
+
+
+def test_a_body_that_never_moves_is_reported_as_at_rest(rod):
+    findings = check_experiment(changed(rod, "position", np.zeros_like))
+    assert "device never moves" in findings[-1].sentence
+
+
+def test_a_long_record_is_judged_on_windows_of_itself(rod):
+    short = excerpt(rod, most=16_000)
+    assert sum(s.stop - s.start for r in short.records for s in r.segments) == 16_000
+    assert short.records[0].segments[0].start == 0
+    assert short.records[0].segments[-1].stop == 12_000
+    assert short.records[0].signals is rod.records[0].signals
+    assert excerpt(rod) is rod
+
+
+@pytest.mark.parametrize("length", [1000, 4500])
+def test_of_many_short_segments_every_nth_is_taken(rod, length):
+    (record, *_) = rod.records
+    rows = len(record.time) // length * length
+    repeated = {n: np.tile(v[:rows], 60) for n, v in record.signals.items()}
+    time = np.arange(60 * rows) * record.sample_time
+    pieces = tuple(slice(a, a + length) for a in range(0, 60 * rows, length))
+    long = replace(record, time=time, signals=repeated, segments=pieces)
+    short = excerpt(replace(rod, records=(long,)), most=60_000)
+    (selection,) = short.records
+    # a window of 4 s more or less
+    assert sum(s.stop - s.start for s in selection.segments) == pytest.approx(60_000, abs=4000)
+    starts = np.array([s.start for s in selection.segments])
+    assert starts[0] < 0.1 * len(time) and starts[-1] > 0.9 * len(time)
+    assert np.diff(starts).max() < 3 * np.diff(starts).min() + 2 * length
+
+
+def test_the_command_prints_findings_and_writes_them(tmp_path, capsys):
+    path = tmp_path / "findings.json"
+    assert main(["check", str(example("rod")), "--json", str(path)]) == 0
+    printed = capsys.readouterr().out
+    assert "no warnings." in printed
+    assert printed.index("note ") < printed.index("fine ")
+    answer = json.loads(path.read_text())["findings"]
+    assert {f["concern"] for f in answer} == {"note", "fine"}
+    assert {f["topic"] for f in answer} >= {"sample clock", "signs and units", "motion"}
+
+
+def test_the_command_refuses_a_file_that_it_could_not_write(tmp_path, capsys):
+    assert main(["check", str(example("rod")), "--json", str(tmp_path / "no" / "f.json")]) == 2
+    assert "there is no folder" in capsys.readouterr().err
+
+
+@pytest.mark.benchmark
+@pytest.mark.slow
+def test_twenty_seconds_of_records_are_checked_within_two(rod):
+    check_experiment(rod)  # compiles
+    with takes_less_than(2.0):  # s; 0.8 were measured
+        check_experiment(rod)
+
+
+@pytest.mark.slow
+def test_shared_measurements_raise_no_false_warning():
+    """Of simulated cases none; a delayed command is a note, for physics does that too."""
+    topics = {}
+    for folder in sorted(shared_folder("hidden/cases").iterdir()):
+        warned = [f for f in plausible(load_experiment(folder)) if f.concern == "warning"]
+        if warned:
+            topics[folder.name] = list(map(str, warned))
+    assert topics == {}
+
+
+def test_a_bandwidth_that_hides_the_motion_in_the_steps_of_the_encoder_is_doubted():
+    rate, step = 200.0, 1e-4
+    t = np.arange(6000) / rate
+    position = step * np.round(0.004 * np.sin(2 * np.pi * 0.3 * t) / step)
+    force = np.sign(np.cos(2 * np.pi * 0.3 * t))
+    data = {"t": t, "x": position, "F": force}
+
+    def recorded_below(bandwidth):
+        return td.experiment(
+            data,
+            axis="prismatic",
+            time="t",
+            position={"column": "x", "resolution": step},
+            actuator_force="F",
+            inertia=0.1,
+            bandwidth=bandwidth,
+        )
+
+    model = Model.from_experiment(recorded_below(40.0))
+    (doubt,) = ask("hidden_motion", recorded_below(40.0))
+    assert doubt.topic == "bandwidth" and doubt.concern == "warning"
+    assert doubt.numbers["seen"] < 0.5 * doubt.numbers["could"]
+    assert 'write bandwidth = { value = 10, unit = "Hz" } at comparison' in doubt.sentence
+    # what the finding says to type is taken
+    mended = recorded_below(doubt.numbers["proposed"])
+    assert ask("hidden_motion", mended) == [] == list(check_bandwidth(model, prepare(mended)))

@@ -1,0 +1,121 @@
+"""Numbers and verdicts in words."""
+
+from dataclasses import replace
+
+from teleopdesign.base.sentences import (
+    number_on_page,
+    percent_on_page,
+)
+from teleopdesign.diagnose import ladder_text
+from teleopdesign.diagnose.one_moment import Moment
+from teleopdesign.diagnose.ranking import Ranking
+from teleopdesign.show.report.words import sentence_of, verdict
+
+
+def test_the_verdict_names_the_effect_and_both_errors(diagnosis):
+    text = verdict(diagnosis)
+    assert text.startswith(
+        "Your model lacks stribeck at device. With this effect, the force error on records"
+    )
+    before, after = diagnosis.before.check_error, diagnosis.after.check_error
+    assert f"from {100 * before:.2f}\u202f% to {100 * after:.2f}\u202f%" in text
+
+
+def test_look_alikes_are_named_together(diagnosis):
+    first, second = diagnosis.rungs
+    other = next(r.candidate for r in second.ranking.ranked if r.candidate.key != second.added.key)
+    alike = replace(
+        diagnosis, verdict="undecided", rungs=(first, replace(second, alternatives=(other,)))
+    )
+    text = verdict(alike)
+    assert text.startswith(f"Undecided, stribeck at device or {other}: these records do not")
+
+
+def test_an_adequate_model_and_an_unexplained_rest_are_reported_as_such(diagnosis):
+    only = replace(diagnosis, rungs=diagnosis.rungs[:1], last=Ranking(diagnosis.before, ()))
+    assert "Your model is adequate" in verdict(replace(only, verdict="model_adequate"))
+    undecided = verdict(replace(only, verdict="undecided"))
+    assert "no candidate effect explains the remaining force" in undecided
+    assert only.left > 5.0
+    assert f"{only.left:.1f} times what sensor noise" in undecided
+
+
+def test_effects_that_help_too_little_are_reported_as_such(diagnosis):
+    first, second = diagnosis.rungs
+    little = replace(second.fit, check_error=0.9 * first.fit.check_error)
+    rungs = (first, replace(second, fit=little))
+    text = verdict(replace(diagnosis, verdict="undecided", rungs=rungs, named=()))
+    assert "stribeck at device helps, but explains less than half" in text
+
+
+def test_effects_that_explain_most_but_are_unlikely_are_reported_as_such(diagnosis):
+    text = verdict(replace(diagnosis, verdict="undecided", named=()))
+    assert text.startswith("Undecided: with stribeck at device the force error")
+    assert "less likely than not" in text
+
+
+def two_added(diagnosis):
+    """A ladder whose second effect is not probable enough to be named."""
+    first, second = diagnosis.rungs
+    other = next(r.candidate for r in second.ranking.ranked if r.candidate.key != second.added.key)
+    rungs = (first, second, replace(second, added=other))
+    return replace(diagnosis, rungs=rungs, named=(second.added,)), other
+
+
+def test_an_effect_that_helps_and_is_not_named_is_reported_beside_those_that_are(diagnosis):
+    both, other = two_added(diagnosis)
+    text = verdict(both)
+    assert text.startswith(
+        "Your model lacks stribeck at device. With all added effects, the force error"
+    )
+    assert f" {other} helps, but is less likely than not." in text
+    each = verdict(replace(both, verdict="undecided", named=()))
+    assert f"with stribeck at device and {other} the force error" in each
+    assert "but each is less likely than not" in each
+    little = replace(both.rungs[2].fit, check_error=0.95 * diagnosis.before.check_error)
+    rungs = (*both.rungs[:2], replace(both.rungs[2], fit=little))
+    text = verdict(replace(both, verdict="undecided", rungs=rungs, named=()))
+    assert f"stribeck at device and {other} help, but explain less than half" in text
+
+
+def with_floor(diagnosis, *, floors, drawn=1.0, held=False):
+    """The diagnosis with a floor of which the last model leaves so many."""
+    value = diagnosis.after.check_error / floors
+    floor = replace(diagnosis.floor, value=value, drawn=drawn * value, held=held, at_command=1.0)
+    return replace(diagnosis, floor=floor)
+
+
+def test_what_is_left_is_near_noise_or_more_is_missing_or_may_hide_in_a_floor_that_was_held(
+    diagnosis,
+):
+    near = verdict(with_floor(diagnosis, floors=1.5))
+    assert "The remaining error is near what sensor noise alone would leave, " in near
+    far = with_floor(diagnosis, floors=4.0, drawn=3.0)
+    assert f"error is {number_on_page(far.left, 2)} times what sensor noise" in verdict(far)
+    assert "more is missing." in verdict(far)
+    held = with_floor(diagnosis, floors=4.0, drawn=3.0, held=True)
+    assert f"the noise floor of {percent_on_page(held.floor.value)}" in verdict(held)
+    assert f"sensor errors leave {percent_on_page(held.floor.drawn)}" in verdict(held)
+    assert "more is missing" in verdict(with_floor(diagnosis, floors=4.0, drawn=1.1, held=True))
+
+
+def test_what_is_left_at_one_moment_is_reported_with_the_rest_of_the_record(diagnosis):
+    moment = Moment("fit.csv", "device", 1.0, 1.5, 1.25)
+    one = replace(with_floor(diagnosis, floors=4.0), moment=moment)
+    sentence = f"1.2 times without one moment ({moment})"
+    assert sentence.replace("1.2 ", f"{number_on_page(1.25, 2)} ") in verdict(one)
+    only = replace(one, rungs=one.rungs[:1], verdict="model_adequate")
+    assert "Your model is adequate" in verdict(only) and f"({moment})" in verdict(only)
+    close = with_floor(diagnosis, floors=1.806)
+    close = replace(close, moment=replace(moment, without=1.768))
+    for text in (verdict(close), ladder_text.sentence(close)):
+        assert "1.81 " in text and " 1.77 " in text, "not: 1.8, but 1.8 without one moment"
+    plain = replace(only, moment=None)
+    assert verdict(plain).endswith(
+        "sensor noise alone would leave " + percent_on_page(plain.floor.value) + "."
+    )
+
+
+def test_an_entry_of_a_diagnosis_is_a_sentence_and_nothing_is_none():
+    assert sentence_of("what is left") == "What is left."
+    assert sentence_of(None) == sentence_of("") == ""
