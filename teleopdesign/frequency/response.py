@@ -97,7 +97,7 @@ class FrequencyResponse(Shown, ByValue):
 
     def as_frd(self, case: str = "") -> control.FrequencyResponseData:
         """A case (default: the first) as python-control frequency response data, in rad/s."""
-        import control
+        from ..base import python_control as control
 
         return control.frd(self.values(case), 2 * np.pi * self.frequency)
 
