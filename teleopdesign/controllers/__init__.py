@@ -30,6 +30,7 @@ from ._from_control import from_control, invert_plant, matrices_of, unit_state
 from ._from_file import load_controller
 from ._measured import measured_frequencies, measured_plant
 from ._opaque import calls_in, is_call, opaque_laws
+from ._state_space import is_of_matrices, sides_of
 
 __all__ = [
     "CONTROLLERS",
@@ -54,6 +55,8 @@ __all__ = [
     "laws_that_declare",
     "load_controller",
     "matrices_of",
+    "is_of_matrices",
+    "sides_of",
     "measured_frequencies",
     "measured_plant",
     "opaque_laws",

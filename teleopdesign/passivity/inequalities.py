@@ -9,9 +9,9 @@ from itertools import product
 import sympy as sp
 
 from ..base.errors import ModelError
+from ..derive.polynomials import has_positive_root, is_non_negative
 from ..realise.enclosure import enclosure_of
 from ..realise.extremes import least_value
-from .linear.polynomials import has_positive_root, is_non_negative
 
 Ranges = Mapping[sp.Symbol, tuple[float, float]]
 #: range of a symbol that may be any number, and of one that may be any number above 0

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from fractions import Fraction
-
-from ..checker.absolute_stability import Ratio
-from ..checker.polynomials import Polynomial
+from math import isqrt
+from typing import Any
 
 #: a complex number: real and imaginary part
 Gaussian = tuple[Fraction, Fraction]
@@ -32,16 +31,24 @@ def short(x: Fraction, digits: int) -> Fraction:
     return round(x / unit) * unit
 
 
-def value_at(one: Ratio, at: Gaussian) -> Gaussian | None:
-    """Exact value of a rational function at a complex number; None at a pole."""
-    p, q = (_horner(r, at) for r in one)
-    return None if q == ZERO else divide(p, q)
+def square_root(x: Fraction, digits: int) -> Fraction:
+    """A rational number near the square root of x; relative error below 10^-digits."""
+    ten = 10**digits
+    return Fraction(isqrt(x.numerator * x.denominator * ten**2), x.denominator * ten)
 
 
-def _horner(p: Polynomial, at: Gaussian) -> Gaussian:
-    total = ZERO
-    for c in reversed(p):
-        total = add(multiply(total, at), (c, Fraction(0)))
+def value_at(p: Any, q: Any, at: Gaussian) -> Gaussian | None:
+    """Exact value of p/q, polynomials in s, at a complex number; None at a pole."""
+    above, below = (value(side, at) for side in (p, q))
+    return None if below == ZERO else divide(above, below)
+
+
+def value(p: Any, at: Gaussian) -> Gaussian:
+    """Exact value of a polynomial, an element of a ring of s alone, at a complex number."""
+    total, powers = ZERO, {k[0]: c for k, c in p.items()}
+    for k in range(max(powers, default=-1), -1, -1):
+        c = powers.get(k, 0)
+        total = add(multiply(total, at), (Fraction(int(c.numerator), int(c.denominator)), ZERO[0]))
     return total
 
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from fractions import Fraction
 from math import gcd, lcm
+from typing import Any
 
+import numpy as np
 import sympy as sp
 
 #: the symbol x, the square of the angular frequency, omega^2
 X = sp.Symbol("x")
+#: the ring of exact polynomials in s
+RING, *_ = sp.ring("s", sp.QQ)
 
 
 def is_hurwitz(polynomial: sp.Poly) -> bool:
@@ -29,6 +33,21 @@ def is_hurwitz(polynomial: sp.Poly) -> bool:
         common = gcd(*row) or 1
         upper, lower = lower, [c // common for c in row]
     return True
+
+
+def is_free_of_growth(polynomial: sp.Poly) -> bool:
+    """Whether no root has a positive real part; roots on the axis are allowed.
+
+    Roots on the axis are among those that the polynomial shares with its mirror image, r and -r.
+    """
+    plain = polynomial.sqf_part()
+    shared = sp.gcd(plain, plain.compose(sp.Poly(-plain.gen, plain.gen)))
+    if shared.degree() > 0:
+        even, odd = (as_poly(half, X) for half in halves(element(shared)))
+        on_axis = 2 * len(positive_roots(sp.gcd(even, odd))) + int(shared.eval(0) == 0)
+        if on_axis < shared.degree():
+            return False
+    return is_hurwitz(plain.quo(shared))
 
 
 def is_non_negative(polynomial: sp.Poly) -> bool:
@@ -135,16 +154,51 @@ def fraction(number: sp.Expr) -> Fraction:
 
 def even_part(p: sp.Poly, q: sp.Poly) -> sp.Poly:
     """Re p(j w) conj q(j w) as a polynomial in x = w^2."""
-    (pe, po), (qe, qo) = halves(p), halves(q)
-    return pe * qe + sp.Poly(X, X) * po * qo
+    return as_poly(cross(element(p), element(q))[0], X)
 
 
-def halves(p: sp.Poly) -> tuple[sp.Poly, sp.Poly]:
-    """(a, b) with p(j w) = a(w^2) + j w b(w^2)."""
-    rising = p.all_coeffs()[::-1]
-    return _alternate_signs(rising[::2]), _alternate_signs(rising[1::2])
+def element(p: sp.Poly) -> Any:
+    """A polynomial of one variable as an element of the ring of `halves`."""
+    return RING({k: sp.QQ(int(c.p), int(c.q)) for k, c in p.terms() if c})
 
 
-def _alternate_signs(rising: Sequence[sp.Expr]) -> sp.Poly:
-    signed = [(-1) ** k * c for k, c in enumerate(rising)]
-    return sp.Poly(signed[::-1] or [0], X, domain="QQ")
+def as_poly(p: Any, variable: sp.Symbol) -> sp.Poly:
+    """An element of a ring, of its first generator alone, as a polynomial in that variable."""
+    return sp.Poly({k[:1]: c for k, c in p.items()} or {(0,): 0}, variable, domain="QQ")
+
+
+def halves(p: Any) -> tuple[Any, Any]:
+    """(a, b) with p(j w) = a(w^2) + j w b(w^2), in the ring of p; its first generator is s."""
+    parts: tuple[dict[Any, Any], dict[Any, Any]] = ({}, {})
+    for k, c in p.items():
+        parts[k[0] % 2][(k[0] // 2, *k[1:])] = -c if k[0] // 2 % 2 else c
+    return p.ring(parts[0]), p.ring(parts[1])
+
+
+def cross(p: Any, q: Any) -> tuple[Any, Any]:
+    """(a, b) with p(j w) conj q(j w) = a(w^2) + j w b(w^2), in the ring of `halves`."""
+    (a, b), (c, d) = halves(p), halves(q)
+    return a * c + p.ring.gens[0] * b * d, b * c - a * d
+
+
+def roots_of(p: Any) -> np.ndarray:
+    """Roots of an element of a ring, of its first generator alone, in floats, near their size."""
+    top = max((k[0] for k in p), default=-1)
+    most = max((abs(c) for c in p.values()), default=1)
+    rising = np.zeros(top + 1)
+    for k, c in p.items():
+        share = c / most
+        rising[k[0]] = float(Fraction(int(share.numerator), int(share.denominator)))
+    return roots(rising[::-1])
+
+
+def roots(falling: np.ndarray) -> np.ndarray:
+    """Roots of a polynomial in floats, highest power first, computed near size 1, (n,)."""
+    p = np.trim_zeros(np.asarray(falling, dtype=float), "f")
+    kept = np.trim_zeros(p, "b")
+    zeros = np.zeros(len(p) - len(kept), dtype=complex)
+    if len(kept) < 2:
+        return zeros
+    scale = abs(kept[-1] / kept[0]) ** (1 / (len(kept) - 1))
+    powers = scale ** -np.arange(len(kept), dtype=float)
+    return np.concatenate([np.roots(kept * powers / kept[0]) * scale, zeros])

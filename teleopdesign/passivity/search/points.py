@@ -1,73 +1,82 @@
-"""Points s at which a two-port may grow between passive terminations, the most likely ones first.
-
-The choice of points is numerical. `growing_mode` then confirms a point in exact arithmetic.
-"""
+"""Points s of the right half plane at which a search for growing motions looks, 1/s."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
-from ..checker.absolute_stability import Entries, Ratio
-from ..checker.polynomials import Polynomial
-from .two_port import stable_margin
+from ...derive.polynomials import roots_of
+from ..linear.family import Family
 
 #: powers of 1/2 by which points approach the axis or a pole, or (reversed) go far out
 _CLOSER = tuple(range(1, 34, 2))
+#: places across a resonance, in half widths from its frequency: the real part of an entry changes
+#: its sign within the first half width
+_ACROSS = (-30.0, -10.0, -3.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 3.0, 10.0, 30.0)
 
 
-def points_of_growth(z: Entries) -> np.ndarray:
-    """Points s of the right half plane at which a search for growth looks, 1/s, (n,).
+def zeros_and_poles(family: Family) -> tuple[np.ndarray, np.ndarray]:
+    """Zeros and poles of the parts of all entries, one part for each dead time; without values."""
+    above, below = [np.zeros(0)], [np.zeros(0)]
+    whole = _parts(family.d)
+    for row in family.n:
+        for entry in row:
+            for p in _parts(entry):
+                for q in whole:
+                    top, bottom = p.cancel(q)
+                    above.append(roots_of(top))
+                    below.append(roots_of(bottom))
+    return np.concatenate(above), np.concatenate(below)
 
-    The points lie beside the axis where an inequality fails, beside poles, and on a grid over the
-    quadrant with imaginary part >= 0.
 
-    z: z11, z12, z21, z22 as coprime numerators and denominators
+def _parts(p: Any) -> list[Any]:
+    """Coefficients of the powers of dead times, polynomials in s alone."""
+    made: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
+    for k, c in p.items():
+        made.setdefault(k[1:], {})[(k[0], *(0 for _ in k[1:]))] = c
+    return [p.ring(part) for part in made.values()]
+
+
+def resonances(family: Family) -> np.ndarray:
+    """Frequencies across the width of each resonance, Hz, (n,): a grid alone may miss one.
+
+    Poles on the axis have no width and are left out.
     """
-    return np.array([*_points_near_axis(z), *points_near_poles(z)])
+    _, poles = zeros_and_poles(family)
+    poles = poles[poles.real < -1e-12 * np.abs(poles)]
+    across = poles.imag[:, None] + poles.real[:, None] * np.array(_ACROSS)
+    f = across.ravel() / (2 * np.pi)
+    return np.asarray(f[(f > 0) & np.isfinite(f)])
 
 
-def _points_near_axis(z: Entries) -> Iterator[complex]:
-    """Points beside the axis, at some of the frequencies where Llewellyn's margin is negative."""
-    sizes = np.abs([r for p, q in z for r in (*roots_of(p), *roots_of(q)) if r != 0] or [1.0])
-    w = np.unique(np.r_[np.geomspace(sizes.min() / 1e3, sizes.max() * 1e3, 400), sizes])
-    value = np.stack([evaluate_at(one, 1j * w) for one in z], axis=1).reshape(-1, 2, 2)
-    with np.errstate(all="ignore"):
-        margin = stable_margin(value)
-    negative = np.flatnonzero(margin < 0)
-    if not len(negative):
-        return
-    chosen = {int(negative[np.argmin(margin[negative])]), *negative[:: len(negative) // 8 + 1]}
-    for k in chosen:
-        yield from (complex(w[k] * 2.0**-n, w[k]) for n in (*_CLOSER, *range(35, 68, 4)))
-
-
-def roots_of(p: Polynomial) -> np.ndarray:
-    """Roots of a polynomial (lowest power first) in floating point, (n,)."""
-    return np.roots([float(c / p[-1]) for c in reversed(p)]) if len(p) > 1 else np.array([])
-
-
-def points_near_poles(z: Sequence[Ratio]) -> Iterator[complex]:
-    """Points s beside poles, and on a grid from below the slowest root to above the fastest, 1/s.
-
-    z: coprime numerators and denominators of the entries of any matrix
-    """
-    poles = [r for _, q in z for r in roots_of(q)]
-    roots = [*poles, *(r for p, _ in z for r in roots_of(p))]
-    sizes = [abs(r) for r in roots if r != 0] or [1.0]
-    low, high = min(sizes), max(sizes)
+def near_poles(family: Family) -> np.ndarray:
+    """Points beside poles, and on a grid from below the slowest root to above the fastest, (n,)."""
+    zeros, poles = zeros_and_poles(family)
+    sizes = np.abs([r for r in (*poles, *zeros) if r != 0] or [1.0])
+    low, high = sizes.min(), sizes.max()
     turns = np.exp(1j * np.pi / 4 * np.arange(8))
-    candidates = [p + abs(p) * 2.0**-k * turn for p in poles for k in _CLOSER for turn in turns]
+    points = [p + abs(p) * 2.0**-k * turn for p in poles for k in _CLOSER for turn in turns]
     for k in _CLOSER:
         for turn in np.exp(1j * np.pi / 2 * np.array([0, 0.5, 0.9])):
-            candidates += [low * 2.0**-k * turn, high * 2.0**k * turn]
+            points += [low * 2.0**-k * turn, high * 2.0**k * turn]
     for size in np.geomspace(low / 4, high * 4, 25):
-        candidates += list(size * np.exp(1j * np.linspace(0, 0.46 * np.pi, 12)))
-    for s in candidates:
-        imaginary = s.imag if abs(s.imag) > 1e-9 * abs(s) else 0.0  # rounding: growth without swing
+        points += list(size * np.exp(1j * np.linspace(0, 0.46 * np.pi, 12)))
+    return np.array(list(_growing(points)))
+
+
+def _growing(points: Sequence[complex]) -> Iterator[complex]:
+    for s in points:
+        imaginary = s.imag if abs(s.imag) > 1e-9 * abs(s) else 0.0  # rounding: no swing
         if s.real > 1e-12 * abs(s) and imaginary >= 0:
             yield complex(s.real, imaginary)
+
+
+def near_axis(frequencies: Sequence[float], closer: Sequence[int]) -> np.ndarray:
+    """Points beside the axis at frequencies (Hz), at these powers of 1/2 of their frequency."""
+    w = 2 * np.pi * np.asarray(frequencies, dtype=float)
+    return np.asarray((w[:, None] * (2.0 ** -np.array(closer, dtype=float) + 1j)).ravel())
 
 
 def candidates(
@@ -107,9 +116,8 @@ def _score_points(
         size = np.where(z22 == 0, 1, np.abs(z22))[:, None, None] * sizes[None, :, None]
         grid = size * np.exp(1j * half[:, None, None] * turns[None, None, :])
         # the plain ones stand first: of equals, the first is taken
-        held = np.column_stack(
-            [0 * points, _best_far(loop, z22, points), grid.reshape(len(points), -1)]
-        )
+        best = _best_far(loop, z22, points)
+        held = np.column_stack([0 * points, best, grid.reshape(len(points), -1)])
         near = np.column_stack([-z11, loop[:, None] / (z22[:, None] + held) - z11[:, None]])
         second = np.column_stack([np.full(len(points), np.inf), held])
         inside = np.where(half[:, None] > 0, 1 - np.abs(np.angle(near)) / half[:, None], near.real)
@@ -135,10 +143,3 @@ def _best_far(loop: np.ndarray, z22: np.ndarray, s: np.ndarray) -> np.ndarray:
         r = z22.real + np.abs(r * slope - z22.imag) * share
     second = r - z22.real + 1j * (r * slope - z22.imag)
     return np.where(np.isfinite(second) & (s.imag > 0), second, 0)
-
-
-def evaluate_at(one: Ratio, s: np.ndarray) -> np.ndarray:
-    """Values of a rational function at points s, (n,), in floating point; not finite at a pole."""
-    p, q = ([float(c) for c in reversed(r)] or [0.0] for r in one)
-    with np.errstate(all="ignore"):  # a point may be a pole
-        return np.asarray(np.polyval(p, s) / np.polyval(q, s))
