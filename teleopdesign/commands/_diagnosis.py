@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..base.errors import ExperimentError, ModelError, did_you_mean
+from ..base.errors import ExperimentError, ModelError, unknown
 from ._arms import inertia_line, joint_of, place_at_pose
 from ._progress import Reporter
 from ._terminal import print_styled
@@ -227,7 +227,5 @@ def _place(bodies: list[str], source: Path, body: str | None) -> str:
     if body is None and len(bodies) > 1:
         raise ExperimentError(f"{source}: bodies {', '.join(bodies)}: choose one with --body")
     if body is not None and body not in bodies:
-        raise ExperimentError(
-            f'--body: no body "{body}", has {", ".join(bodies)}{did_you_mean(body, bodies)}'
-        )
+        raise ExperimentError(f"--body: {unknown('body', body, bodies)}")
     return body or bodies[0]

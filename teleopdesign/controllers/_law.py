@@ -18,7 +18,7 @@ from typing import Any, Literal, get_args
 import sympy as sp
 
 from ..base.arguments import check_types
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, did_you_mean, unknown
 from ..base.frozen import Frozen
 from ..base.recipes import recipe
 from ..effects import Parameter
@@ -157,10 +157,7 @@ class Stage:
         law, declared = self.law, self.law.parameters
         for name in self.values:
             if name not in declared:
-                raise ModelError(
-                    f'{law.name}: no parameter "{name}", has {", ".join(declared)}'
-                    f"{did_you_mean(name, declared)}"
-                )
+                raise ModelError(f"{law.name}: {unknown('parameter', name, declared)}")
         for name, parameter in declared.items():
             if name not in self.values:
                 raise ModelError(f'{law.name}: parameter "{name}" has no value')

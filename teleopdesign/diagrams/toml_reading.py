@@ -12,9 +12,9 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, cast, get_args
 
-from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
+from ..base.errors import ExperimentError, ModelError
 from ..base.toml import Table, describe_toml_value, read_toml
 from ..base.units import AXES, QUANTITIES
 from ..blocks import Body, with_block_effects
@@ -78,7 +78,7 @@ def _read_short_form(root: Table, head: Table, known: _Known) -> Diagram:
     """Read a diagram whose wiring the package knows: the file states only blocks."""
     root.allow(("diagram", "blocks"))
     head.allow(("kind", "name"))
-    kind = _one_of(head, "kind", KINDS)
+    kind = head.choice("kind", KINDS)
     form, tables = KINDS[kind], root.table("blocks")
     tables.allow((*form.bodies, *form.controls))
     blocks: dict[str, Content] = {}
@@ -109,7 +109,7 @@ def _read_free_diagram(root: Table, head: Table, known: _Known) -> Diagram:
         _string(head, "name"),
         tuple(_block(name, tables.table(name), known) for name in tables.content),
         tuple(Junction(name, _terms(junctions, name)) for name in junctions.content),
-        {name: _one_of(outside, name, QUANTITIES) for name in outside.content},
+        {name: outside.choice(name, QUANTITIES) for name in outside.content},
         tuple(_strings(head, "measured")),
         {name: _string(texts, name) for name in texts.content},
         tuple(_kinematics(kinematics, name) for name in kinematics.content),
@@ -134,7 +134,7 @@ def _motions(block: Table) -> list[object]:
 
 
 def _block(name: str, table: Table, known: _Known) -> Block:
-    kind = _one_of(table, "kind", WIRING)
+    kind = table.choice("kind", WIRING)
     content = {"control": LAW, "linked": MATRICES}.get(kind, BODY)
     table.allow(("kind", *WIRING[kind], *content))
     if kind == "control":
@@ -176,7 +176,8 @@ def _role(name: str, table: Table) -> PortRole:
             stacklevel=2,
         )
         return role
-    return _one_of(table, "role", get_args(PortRole)) if "role" in table.content else "part"  # type: ignore[return-value]
+    stated = table.choice("role", get_args(PortRole)) if "role" in table.content else "part"
+    return cast(PortRole, stated)
 
 
 def _terms(table: Table, key: str) -> dict[str, Weight]:
@@ -202,7 +203,7 @@ def _kinematics(table: Table, name: str) -> Kinematics:
     entry = table.table(name)
     entry.allow(("expression", "axis"))
     where = read_expression(entry.text("expression"), where=entry.where("expression"))
-    return Kinematics(name, where, _one_of(entry, "axis", AXES))
+    return Kinematics(name, where, entry.choice("axis", AXES))
 
 
 def _body(table: Table, known: _Known) -> Body | AnyBlock:
@@ -232,7 +233,7 @@ def _controller(table: Table, known: _Known) -> Controller | AnyBlock:
 
 
 def _stage(table: Table, known: _Known) -> Stage:
-    law = known.laws[_one_of(table, "law", known.laws)]
+    law = known.laws[table.choice("law", known.laws)]
     parameters = table.table("parameters")
     parameters.allow(law.parameters)
     values = {name: parameters.number(name) for name in law.parameters}
@@ -240,16 +241,6 @@ def _stage(table: Table, known: _Known) -> Stage:
         return Stage(law, values)
     except ModelError as error:
         raise ExperimentError(f"{parameters.where()}: {error}") from error
-
-
-def _one_of(table: Table, key: str, known: Any) -> str:
-    value = _string(table, key)
-    if value not in known:
-        raise ExperimentError(
-            f"{table.where(key)}: found {quote(value)}, expected {', '.join(known)}"
-            f"{did_you_mean(value, known)}"
-        )
-    return value
 
 
 def _string(table: Table, key: str) -> str:
