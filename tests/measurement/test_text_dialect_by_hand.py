@@ -146,9 +146,9 @@ def rows_of(tmp_path, lines):
 
 def test_messages_repeated_headers_and_comments_are_left_out(tmp_path):
     lines = ["t;x\n", "0;1\n", "\n", "# note;a\n", "t;x\n", "1;2\n", "stop\n", "2;3\n"]
-    said = ("2 lines that are no rows, the first one before row 2: left out",)
-    assert rows_of(tmp_path, lines) == ([0.0, 1.0, 2.0], said)
-    assert rows_of(tmp_path, [*lines, "3"]) == ([0.0, 1.0, 2.0], said), "a last row was cut off"
+    left_out = ("2 lines that are no rows, the first one before row 2: left out",)
+    assert rows_of(tmp_path, lines) == ([0.0, 1.0, 2.0], left_out)
+    assert rows_of(tmp_path, [*lines, "3"]) == ([0.0, 1.0, 2.0], left_out), "a last row was cut off"
 
 
 @pytest.mark.parametrize("wrong", ["0;1;;\n", "0;1;2\n"])

@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.errors import ExperimentError, quote
-from ._cells import column_of, is_empty, part_of_column, parts_thousands
+from ._cell_shapes import LineShape
+from ._cells import column_of, part_of_column, parts_thousands
 from ._dialect import (
     COMMENTS,
     LOOKED_AT,
@@ -27,12 +28,12 @@ from ._dialect import (
     cells_of,
     dialect_of,
     first_lines,
-    is_value,
     open_bytes,
     without_end,
 )
-from ._line_shapes import LINE_SHAPES, LineShape
-from ._log import MOST_BYTES, Array, Log, join_names, refuse_size
+from ._line_shapes import LINE_SHAPES
+from ._log import MOST_BYTES, Array, Log, refuse_size
+from ._stray_lines import is_header_again, is_text, ragged_row_error, text_without_name
 from .shapes import best_shape, table_of
 from .shapes._table import MOST_ROWS
 
@@ -43,7 +44,6 @@ _ROWS = 200_000
 FEW_STRAYS, MOST_STRAYS = 10, 0.01
 #: what stands for bytes that are no letter, as at the end of a file that was cut within a letter
 CUT_LETTER = "\ufffd"
-_BEGINS_A_NUMBER = (*'0123456789+-.,;|\t"',)
 
 
 @dataclass(frozen=True)
@@ -236,8 +236,8 @@ def _read_cell_by_cell(text: _Text, names: Sequence[str], strays: list[int]) -> 
     columns = {}
     for name, column in zip(names, blocks, strict=True):
         columns[name] = column_of(column, comma=comma)
-        if comma and (found := parts_thousands(columns[name])):
-            row, cell = found
+        if comma and (where := parts_thousands(columns[name])):
+            row, cell = where
             raise ExperimentError(
                 f"{text.file}: column {quote(name)}, row {row}: found {quote(cell)}, expected a "
                 "number with a decimal comma, for that of other cells is one: is the point a "
@@ -270,23 +270,23 @@ def _rows(stream: Iterable[str], text: _Text, strays: list[int]) -> Iterator[str
             if bytes_read > MOST_BYTES:
                 raise ExperimentError(f"{file}: found over {MOST_BYTES:.2g} bytes of text")
         line = without_end(line, separator)
-        if dialect.labels and _is_header_again(line, dialect):
+        if dialect.labels and is_header_again(line, dialect):
             strays.append(count + 1)
             again, cut = again + 1, False
             continue
         count += 1
         cells = len(line.split()) if separator == " " else line.count(separator) + 1
         quoted_cells = '"' in line and separator != " "
-        if cut := cells < width and not quoted_cells or _is_text(line, dialect):
+        if cut := cells < width and not quoted_cells or is_text(line, dialect):
             strays.append(count)
             count -= 1
             if len(strays) - again > max(FEW_STRAYS, MOST_STRAYS * count):
-                raise _ragged_row_error(file, strays[0], cells, width)
+                raise ragged_row_error(file, strays[0], cells, width)
             continue
         if cells > width and not quoted_cells and separator != " ":
             if cells > width + 1 or not line.rstrip("\r\n").endswith(separator):
-                nameless = _text_without_name(line, dialect) if count == 1 else ""
-                raise _ragged_row_error(file, count, cells, width, nameless)
+                nameless = text_without_name(line, dialect) if count == 1 else ""
+                raise ragged_row_error(file, count, cells, width, nameless)
             line = line.rstrip("\r\n")[:-1] + "\n"
         yield line
     if cut:
@@ -307,36 +307,3 @@ def _with_points(lines: Iterator[str], separator: str, places: Sequence[int]) ->
 def _pick(cells: Sequence[str], places: Sequence[int]) -> list[str]:
     """The cells of a row at some places; "" where the row is shorter."""
     return [cells[k] if k < len(cells) else "" for k in places]
-
-
-def _is_text(line: str, dialect: Dialect) -> bool:
-    """Whether a line holds no number at all: a repeated header or a message of the logger."""
-    if line.lstrip()[:1] in _BEGINS_A_NUMBER:
-        return False
-    cells = [c for c in cells_of(line, dialect.separator) if c]
-    return not any(is_value(c, dialect.comma) or is_empty(c) for c in cells)
-
-
-def _is_header_again(line: str, dialect: Dialect) -> bool:
-    """Whether a line is one of a header that repeats: before each block of rows, as of LabVIEW."""
-    if line.lstrip()[:1] in _BEGINS_A_NUMBER:
-        return False
-    return cells_of(line, dialect.separator)[0] in dialect.labels
-
-
-def _ragged_row_error(
-    file: str, row: int, cells: int, width: int, more: str = ""
-) -> ExperimentError:
-    return ExperimentError(
-        f"{file}: row {row}: found {cells} cells, expected {width} as in the header{more}"
-    )
-
-
-def _text_without_name(line: str, dialect: Dialect) -> str:
-    """What to do about the first row's texts, such as a tag before its numbers; "" without one."""
-    cells = cells_of(line, dialect.separator)
-    texts = [k for k, c in enumerate(cells) if not is_value(c, dialect.comma) and not is_empty(c)]
-    if not texts or len(cells) != len(dialect.header) + 1:
-        return ""
-    where = join_names([f"{quote(cells[k])} in cell {k + 1}" for k in texts], most=3)
-    return f"; the header may leave out the name of a text ({where}): write it there"

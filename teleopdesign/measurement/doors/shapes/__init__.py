@@ -23,32 +23,32 @@ from ...time_grid import DATE
 from ...wrapped_stamps import unwrap_stamps
 from .._cells import is_column_of_texts
 from .._log import Array, Log, join_names
-from ._table import FEWEST, LongTable, Signal, Table, as_text
+from ._table import FEWEST, CellTable, LongSignal, LongTable, as_text
 from .clock_before_signals import clock_before_signals
 from .columns import columns
 from .machines import machines_by_time, machines_in_turn
 from .reading_in_each_row import reading_in_each_row
-from .times_of_their_own import times_of_their_own
+from .separate_clocks import separate_clocks
 from .two_part_time import two_part_time
 
 #: part of the shortest signal's time that signals share: else their clocks count apart
 SHARED = 0.5
 #: how regular rows without a clock are held to be: as regular as a clock with half of its steps
 WITHOUT_A_CLOCK = 0.5
-Shape = Callable[[Table], LongTable | None]
+TableShape = Callable[[CellTable], LongTable | None]
 #: all shapes. Of equally good readings the last one counts: it says more of the table
-SHAPES: tuple[Shape, ...] = (
+SHAPES: tuple[TableShape, ...] = (
     columns,
     two_part_time,
     machines_by_time,
     machines_in_turn,
-    times_of_their_own,
+    separate_clocks,
     clock_before_signals,
     reading_in_each_row,
 )
 
 
-def score(long: LongTable, table: Table) -> float:
+def score(long: LongTable, table: CellTable) -> float:
     """Cells of a table that a reading makes numbers of, weighted by how regular its clocks are.
 
     Cells of the long table that stay empty count against it, as do rows too few for a recording.
@@ -68,7 +68,7 @@ def score(long: LongTable, table: Table) -> float:
     return numbers * regular * numbers / max(numbers + empty, 1.0)
 
 
-def best_shape(table: Table) -> tuple[Shape, float]:
+def best_shape(table: CellTable) -> tuple[TableShape, float]:
     """The shape that reads some rows best, and its score."""
     best, most = SHAPES[0], -1.0
     for shape in SHAPES:
@@ -90,7 +90,7 @@ def with_best_shape(log: Log) -> Log:
     return log if long is None or _apart_in_time(long) else _log_of(long, log)
 
 
-def table_of(columns: Mapping[str, Any], units: Mapping[str, str]) -> Table:
+def table_of(columns: Mapping[str, Any], units: Mapping[str, str]) -> CellTable:
     """A table of columns as they were read, with texts where they are no numbers or dates."""
     out: dict[str, NDArray[Any]] = {}
     dated = set()
@@ -103,7 +103,7 @@ def table_of(columns: Mapping[str, Any], units: Mapping[str, str]) -> Table:
         if holds_dates(cells):
             dated.add(name)
     longest = max(map(len, out.values()), default=0)
-    return Table({n: x for n, x in out.items() if len(x) == longest}, units, frozenset(dated))
+    return CellTable({n: x for n, x in out.items() if len(x) == longest}, units, frozenset(dated))
 
 
 def _log_of(long: LongTable, log: Log) -> Log:
@@ -135,7 +135,7 @@ def _log_of(long: LongTable, log: Log) -> Log:
     return replace(log, names=(*arrays,), read=read, units=units, notes=tuple(notes), clocks=clocks)
 
 
-def _seconds_of(signals: Iterable[Signal]) -> dict[str, Array]:
+def _seconds_of(signals: Iterable[LongSignal]) -> dict[str, Array]:
     """The times of each clock in s, by the unit that the file states, or by their steps.
 
     One program wrote all clocks without a unit, in one unit: steps of 0.1 alone would be seconds,

@@ -20,7 +20,7 @@ FEWEST, FEWEST_ROWS = 64, 10
 
 
 @dataclass(frozen=True)
-class Table:
+class CellTable:
     """Rows of cells.
 
     columns: name -> numbers (n,), NaN where a cell is empty, or cells (n,) of which some are texts
@@ -46,7 +46,7 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Signal:
+class LongSignal:
     """One signal of a long table.
 
     name: of the signal;  values, times: (n,);  unit: "" without one
@@ -68,12 +68,12 @@ class LongTable:
     labels: cells that only tell to which signal a row belongs;  note: on the shape, "" for columns
     """
 
-    signals: tuple[Signal, ...]
+    signals: tuple[LongSignal, ...]
     labels: int = 0
     note: str = ""
 
 
-def time_of(table: Table) -> str:
+def time_of(table: CellTable) -> str:
     """The column that is called time; "" without one."""
     numeric = table.numeric
     best = max(numeric, key=lambda n: likeness(n, "time"), default="")

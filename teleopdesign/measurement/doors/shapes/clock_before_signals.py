@@ -17,33 +17,33 @@ import numpy as np
 from ....base.units import measures
 from ...column_names import likeness, unit_of_text
 from .._log import Array, bare_column, join_names
-from ._table import LongTable, Signal, Table, rises
+from ._table import CellTable, LongSignal, LongTable, rises
 
 #: part of its usual step by which each step of a clock without a name of one may differ: the
 #: coordinates of a body that is seen by a camera also rise for a while, but not so evenly
 AS_EVEN_AS_A_CLOCK = 0.02
 
 
-def clock_before_signals(table: Table) -> LongTable | None:
+def clock_before_signals(table: CellTable) -> LongTable | None:
     """A time before each signal or group of signals: "time, Force, time, Position"."""
     clock_of = _clocks_before(table)
-    signals, single, found = _short_names(clock_of), [], []
+    short, single, signals = _short_names(clock_of), list[str](), list[LongSignal]()
     for name, clock in clock_of.items():
         rows = np.isfinite(table.numeric[clock])
         if int(rows.sum()) < 2:  # a trace may hold a constant in one row
-            single.append(signals[name])
+            single.append(short[name])
             continue
         times, values = table.numeric[clock][rows], table.columns[name][rows]
         unit, time_unit = table.units.get(name, ""), table.unit_of_time(clock)
-        new = signals[name]
-        found.append(Signal(new, values, f"time of {new}", times, unit, time_unit))
-    if not found:
+        new = short[name]
+        signals.append(LongSignal(new, values, f"time of {new}", times, unit, time_unit))
+    if not signals:
         return None
     left = f"signals of one row, left out: {join_names(single, most=4)}" if single else ""
-    return LongTable(tuple(found), note=left)
+    return LongTable(tuple(signals), note=left)
 
 
-def _clocks_before(table: Table) -> dict[str, str]:
+def _clocks_before(table: CellTable) -> dict[str, str]:
     """Signal -> clock in the nearest such column before it; empty: any other table."""
     names, numeric = table.names, table.numeric
     word = bare_column(names[0]) if names else ""

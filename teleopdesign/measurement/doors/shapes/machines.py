@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ...column_names import words_of
 from .._log import Array, join_names
-from ._table import FEWEST_ROWS, LongTable, Signal, Table, as_text, time_of
+from ._table import FEWEST_ROWS, CellTable, LongSignal, LongTable, as_text, time_of
 
 #: words of the name of a column that names or numbers machines, and most machines of a table
 NUMBERS_MACHINES = frozenset(
@@ -33,7 +33,7 @@ SMOOTHER, EACH_ROW = 0.5, 0.7
 GOES_ON, FEWEST_RETURNS = 5.0, 3
 
 
-def machines_in_turn(table: Table) -> LongTable | None:
+def machines_in_turn(table: CellTable) -> LongTable | None:
     """Rows of several machines in turn, named in a column: "hip, 0.0, 0.1", "knee, 0.0, 2.3".
 
     Trials follow each other, machines run together. The state of one machine lasts for some rows,
@@ -52,7 +52,7 @@ def machines_in_turn(table: Table) -> LongTable | None:
     return None
 
 
-def machines_by_time(table: Table) -> LongTable | None:
+def machines_by_time(table: CellTable) -> LongTable | None:
     """Batches of rows of several machines: the time is set back to where an earlier part ended."""
     time = time_of(table)
     if not time or not np.all(np.isfinite(table.numeric[time])):
@@ -103,20 +103,20 @@ def _leaps_between(signal: Array, rows: Sequence[NDArray[np.intp]]) -> bool:
 
 
 def _apart(
-    table: Table, time: str, key: str, labels: tuple[list[str], NDArray[np.intp]], how: str
+    table: CellTable, time: str, key: str, labels: tuple[list[str], NDArray[np.intp]], how: str
 ) -> LongTable:
     """The signals of each machine, with its own clock: "hip.position" at "hip.time"."""
     names, machine = labels
-    found = []
+    signals = []
     for k, name in enumerate(names):
         rows = machine == k
         clock, times = f"{name}.{time}", table.numeric[time][rows]
         for n in (n for n in table.names if n not in (time, key)):
             unit, time_unit = table.units.get(n, ""), table.unit_of_time(time)
             values = table.columns[n][rows]
-            found.append(Signal(f"{name}.{n}", values, clock, times, unit, time_unit))
+            signals.append(LongSignal(f"{name}.{n}", values, clock, times, unit, time_unit))
     note = f"rows of {len(names)} machines in turn, {how}"
-    return LongTable(tuple(found), len(machine) if key else 0, note)
+    return LongTable(tuple(signals), len(machine) if key else 0, note)
 
 
 def parts_by_time(stamps: Array) -> tuple[NDArray[np.intp], int]:

@@ -19,7 +19,7 @@ from ....base.units import si_factor
 from ...column_names import likeness
 from ...wrapped_stamps import unwrap_stamps
 from .._log import Array
-from ._table import LongTable, Signal, Table
+from ._table import CellTable, LongSignal, LongTable
 
 #: last words of the names of whole seconds, and of their part with its unit; part of a second that
 #: the parts must reach
@@ -32,7 +32,7 @@ PARTS = {
 REACH = 0.5
 
 
-def two_part_time(table: Table) -> LongTable | None:
+def two_part_time(table: CellTable) -> LongTable | None:
     """Whole seconds, and the part of the second beside them: "stamp.sec, stamp.nanosec".
 
     Either column alone would be a wrong time: the seconds stand still, and their part is set back
@@ -50,13 +50,13 @@ def two_part_time(table: Table) -> LongTable | None:
             time = stem or "time"
             time = f"{first} + {second}" if time in table.names else time
             times = np.asarray(unwrap_stamps(whole)[0] + second_in * part)
-            found = tuple(
-                Signal(n, x, time, times, table.units.get(n, ""), "s")
+            signals = tuple(
+                LongSignal(n, x, time, times, table.units.get(n, ""), "s")
                 for n, x in table.columns.items()
                 if n not in (first, second)
             )
             note = f"a time in two columns: {first!r} in s, and {second!r} in {unit}"
-            return LongTable(found, len(whole), note)
+            return LongTable(signals, len(whole), note)
     return None
 
 

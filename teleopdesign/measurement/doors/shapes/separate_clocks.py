@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...column_names import likeness
-from ._table import LongTable, Signal, Table
+from ._table import CellTable, LongSignal, LongTable
 
 #: a column with numbers in less than this part of the rows has a clock of its own: a channel that
 #: loses more readings than it keeps could not be used either
 SELDOM = 0.5
 
 
-def times_of_their_own(table: Table) -> LongTable | None:
+def separate_clocks(table: CellTable) -> LongTable | None:
     """Signals with numbers only at their own times, as viewers export topics: "0.1, , 1.5"."""
     filled = {n: _is_filled(x) for n, x in table.columns.items()}
     share = {n: float(mask.mean()) if len(mask) else 0.0 for n, mask in filled.items()}
@@ -33,13 +33,13 @@ def times_of_their_own(table: Table) -> LongTable | None:
     if not (any(share[n] < SELDOM for n in partial) or _never_share_a_row([*partial.values()])):
         return None
     time, groups = full[0], dict[bytes, str]()
-    found = []
+    signals = []
     for name, mask in partial.items():
         first = groups.setdefault(mask.tobytes(), name)
         clock, times = f"{time} of {first}", table.numeric[time][mask]
         unit, time_unit = table.units.get(name, ""), table.unit_of_time(time)
-        found.append(Signal(name, table.columns[name][mask], clock, times, unit, time_unit))
-    return LongTable(tuple(found))
+        signals.append(LongSignal(name, table.columns[name][mask], clock, times, unit, time_unit))
+    return LongTable(tuple(signals))
 
 
 def _is_filled(column: NDArray[Any]) -> NDArray[np.bool_]:
