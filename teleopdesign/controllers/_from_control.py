@@ -17,7 +17,7 @@ from ._opaque import wrap_code
 from ._state_space import Array
 
 if TYPE_CHECKING:
-    import control
+    from ..base import python_control as control
 
 
 def from_control(system: control.InputOutputSystem, *, name: str = "state_space") -> Controller:
@@ -38,7 +38,7 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
     frequencies, by linear interpolation.
     raises ModelError: several inputs or outputs, improper, no system
     """
-    import control
+    from ..base import python_control as control
 
     check_name(name, where="from_control")
     if not isinstance(system, control.InputOutputSystem):
@@ -110,7 +110,7 @@ def invert_plant(system: control.LTI, *, bandwidth: float, name: str = "inverse"
     bandwidth: f_c in Hz
     raises ModelError: T is zero or has a zero that is not in the left half-plane, discrete time
     """
-    import control
+    from ..base import python_control as control
 
     whole = control.tf(system)
     if whole.isdtime(strict=True) or (whole.ninputs, whole.noutputs) != (1, 1):

@@ -31,7 +31,7 @@ from .late_loop import LateRatio, count_growing, crossings, late_ratio
 from .sampled_loop import SampledLoop, sampled_loop
 
 if TYPE_CHECKING:
-    import control
+    from ..base import python_control as control
 
 
 #: order of the Pade approximation in the stability test of a loop with several sampled parts
@@ -187,7 +187,7 @@ def _ratio_of(system: control.TransferFunction) -> LateRatio:
 
 def _grows_by_pade(loop: LoopGain) -> bool:
     """Stability of a held loop by Pade: below half the sampling rate the approximation is good."""
-    import control
+    from ..base import python_control as control
 
     whole = loop.transfer_function(delay_order=_PADE)
     return bool((np.real(control.feedback(whole, 1).poles()) >= 0).any())

@@ -23,8 +23,9 @@ from ..realise.lti import linear_blocks, numerical
 from ..realise.parted import linear_parted
 
 if TYPE_CHECKING:
-    import control
     import xarray
+
+    from ..base import python_control as control
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +44,7 @@ class MatrixResponse(Shown, ByValue):
 
     def frd(self) -> control.FRD:
         """The response as a python-control frequency response."""
-        import control
+        from ..base import python_control as control
 
         values = np.moveaxis(self.data.values, 0, -1)
         return control.frd(values, 2 * np.pi * self.data["frequency"].values)

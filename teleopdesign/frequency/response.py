@@ -21,9 +21,10 @@ from ..realise.lti import numerical
 from ..realise.tips import linear_tips
 
 if TYPE_CHECKING:
-    import control
     import matplotlib.figure
     import xarray
+
+    from ..base import python_control as control
 
 
 Array = NDArray[np.float64]
@@ -97,7 +98,7 @@ class FrequencyResponse(Shown, ByValue):
 
     def as_frd(self, case: str = "") -> control.FrequencyResponseData:
         """A case (default: the first) as python-control frequency response data, in rad/s."""
-        import control
+        from ..base import python_control as control
 
         return control.frd(self.values(case), 2 * np.pi * self.frequency)
 

@@ -22,7 +22,7 @@ from ..diagrams import Control, Diagram, Linked, Moving
 from ..diagrams.second_input import acts_along_another, without_motion
 
 if TYPE_CHECKING:
-    import control
+    from ..base import python_control as control
 
 S = sp.Symbol("s")
 
@@ -137,7 +137,7 @@ def as_transfer_function(expression: sp.Expr, *, delay_order: int = 4) -> contro
     delay_order: of the Pade approximation
     raises ModelError: the expression holds a measured frequency response
     """
-    import control
+    from ..base import python_control as control
 
     def rational(power: sp.Expr) -> sp.Expr:
         tau = float(-sp.diff(power, S))
