@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTEST_ARGS ?=
 FUZZ ?= 2000
+FAULT_ARGS ?= --warm
 MUTATE ?= teleopdesign/effects tests/effects --number 10
 STUDY_ARGS ?=
 STUDY_OUTPUT ?= studies/output
@@ -20,7 +21,7 @@ GOLDEN_PARTS ?=
 WHOLE ?=
 PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input
 
-.PHONY: help demo test slow lint types imports docs studies golden size benchmarks fuzz mutants lowest lock licences wheel ci clean
+.PHONY: help demo test slow lint types imports docs studies golden size benchmarks fuzz mutants faults lowest lock licences wheel ci clean
 # what one process has compiled to bytecode, hundreds of others need not compile again: collecting the
 # tests takes each process 5.6 s of processor time, 9.5 s without
 unexport PYTHONDONTWRITEBYTECODE
@@ -77,6 +78,9 @@ golden: $(VENV)/installed-test  ## what the package answers against golden/froze
 
 size:  $(VENV)/installed-core  ## lines, files, thresholds, importers, modules loaded
 	@$(BIN)/python golden/size.py
+faults: $(VENV)/installed-test  ## planted faults that the plain tests do not notice; hours (FAULT_ARGS="--anchors-only")
+	@echo "== Planted faults"
+	@$(BIN)/python golden/faults.py $(FAULT_ARGS)
 
 benchmarks: $(VENV)/installed-test  ## times against their bounds, one at a time
 	@echo "== Benchmarks"

@@ -8,8 +8,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from teleopdesign.show.figures.design import CASES, TWO_COLUMNS
-from teleopdesign.show.figures.letters import house_style
+from teleopdesign.show.figures.style import CASES, TWO_COLUMNS, house_style
 
 BLACK, GREY, BLUE, ORANGE, GREEN = "#000000", "#999999", "#0072B2", "#D55E00", "#009E73"
 BANDS = {"no compensation": BLACK, "force feedback": ORANGE}

@@ -9,8 +9,7 @@ from _late_inertia import DAMPING
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from teleopdesign.show.figures.design import TWO_COLUMNS
-from teleopdesign.show.figures.letters import house_style
+from teleopdesign.show.figures.style import TWO_COLUMNS, house_style
 
 BLACK, GREY = "#000000", "#999999"
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", BLACK)

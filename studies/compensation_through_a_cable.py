@@ -30,6 +30,7 @@ from collections.abc import Callable
 
 import numpy as np
 import xarray
+from _passivity_figures import plot_cable_limits
 from _study import write_study
 
 from teleopdesign.passivity import (
@@ -42,7 +43,6 @@ from teleopdesign.passivity import (
     largest_passive_level,
     symmetric_cycle,
 )
-from teleopdesign.show.figures.passivity import plot_cable_limits
 
 MOTOR, LINK, CABLE = 1.0, 2.0, 1e4  # f_1, f_2 in N; k in N/m
 MOTOR_PRESLIDING, LINK_PRESLIDING = 1e5, 1e5  # N/m, both ten times the cable's

@@ -23,11 +23,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from _normalised_force_figure import plot_normalised_force
 
 from teleopdesign import EFFECTS, Body, Value
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.show import save_figure
-from teleopdesign.show.figures.normalised_force import plot_normalised_force
 from teleopdesign.simulate import ForceVelocity, force_velocity, simulate, sine
 
 NAME = "force_against_velocity_of_a_slave"

@@ -20,11 +20,11 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 import xarray
+from _passivity_figures import plot_forward_euler
 from _study import write_study
 
 from teleopdesign.papers import dahl_euler
 from teleopdesign.passivity import Dahl
-from teleopdesign.show.figures.passivity import plot_forward_euler
 
 LEVEL, STIFFNESS, PERIOD = 1.0, 1e4, 1e-3  # N, N/m, s: bristle length 0.1 mm
 SHOWN = (0.5, 1.0, 1.5, 2.1)

@@ -22,13 +22,13 @@ import math
 
 import numpy as np
 import xarray
+from _passivity_figures import plot_largest_compensation
 from _study import values_over, write_study
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.passivity import largest_ratio
-from teleopdesign.show.figures.passivity import plot_largest_compensation
 from teleopdesign.simulate import simulate
 
 FRICTION, AMPLITUDE, MASS = 1.0, 1e-2, 1.0  # N, m, kg

@@ -25,6 +25,7 @@ import math
 
 import numpy as np
 import xarray
+from _onset_figures import plot_delay_and_stiffness
 from _study import values_over, write_study
 
 import teleopdesign as td
@@ -32,7 +33,6 @@ from teleopdesign.base.errors import GrowsWithoutBound
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, teleoperator
 from teleopdesign.passivity import Claim, delayed_spring, region, sampled_coupling
-from teleopdesign.show.figures.onset import plot_delay_and_stiffness
 from teleopdesign.simulate import Sampling, simulate
 from teleopdesign.studies import find_onset
 

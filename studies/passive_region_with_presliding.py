@@ -21,13 +21,13 @@ from __future__ import annotations
 
 import numpy as np
 import xarray
+from _passivity_figures import plot_passive_region
 from _study import values_over, write_study
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Diagram, haptic_interface
 from teleopdesign.passivity import Claim, Strokes, confirmed_motion, dahl_compensation, region
-from teleopdesign.show.figures.passivity import plot_passive_region
 
 FRICTION, PRESLIDING = 1.0, 1e4  # N, N/m: bristle length 0.1 mm
 LENGTH = FRICTION / PRESLIDING

@@ -21,10 +21,10 @@ from __future__ import annotations
 
 import numpy as np
 import xarray
+from _passivity_figures import plot_passive_walls
 from _study import write_study
 
 from teleopdesign.passivity import Claim, quantised_spring, region, stiffest_spring
-from teleopdesign.show.figures.passivity import plot_passive_walls
 
 FRICTION, STEP = 0.5, 1e-4  # N, m
 DAMPING, PERIOD = 5.0, 1e-3  # N s/m, s: of the map that does not vary them

@@ -28,6 +28,7 @@ from functools import partial
 
 import numpy as np
 import xarray
+from _onset_figures import plot_period_and_stiffness
 from _study import values_over, write_study
 
 import teleopdesign as td
@@ -36,7 +37,6 @@ from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Diagram, haptic_interface
 from teleopdesign.passivity import Claim, region, required_damping, sampled_passivity
 from teleopdesign.passivity.theorems.sampled_data import Z
-from teleopdesign.show.figures.onset import plot_period_and_stiffness
 from teleopdesign.simulate import Sampling, simulate
 from teleopdesign.studies import find_onset
 

@@ -25,13 +25,13 @@ import math
 
 import numpy as np
 import xarray
+from _onset_figures import plot_teleoperator_onset
 from _study import values_over, write_study
 
 import teleopdesign as td
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Diagram, teleoperator
 from teleopdesign.passivity import largest_ratio
-from teleopdesign.show.figures.onset import plot_teleoperator_onset
 from teleopdesign.simulate import Trajectory, simulate
 
 FRICTION, MASTER, SLAVE = 1.0, 0.1, 0.3  # N, kg, kg

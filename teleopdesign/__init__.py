@@ -71,7 +71,9 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from .base.folder_calls import let_folders_be_called
+from .base.arguments import type_imports
+from .base.errors import did_you_mean
+from .base.folders import let_folders_be_called
 
 if TYPE_CHECKING:
     from . import app as app
@@ -95,262 +97,145 @@ if TYPE_CHECKING:
     from . import studies as studies
     from . import tuning as tuning
     from . import unexplained as unexplained
-    from .base.errors import ExperimentError, ModelError
+    from .base.errors import ExperimentError as ExperimentError
+    from .base.errors import ModelError as ModelError
     from .base.errors import TeleopDesignError as TeleopDesignError
-    from .blocks import Body, hand
+    from .blocks import Body as Body
     from .blocks import Value as Value
-    from .controllers import CONTROLLERS, controller, from_control
+    from .blocks import hand as hand
+    from .controllers import CONTROLLERS as CONTROLLERS
     from .controllers import Controller as Controller
+    from .controllers import controller as controller
+    from .controllers import from_control as from_control
     from .controllers import load_controller as load_controller
     from .derive import all_transfers as derive_transfers
-    from .derive import transfer_functions
+    from .derive import transfer_functions as transfer_functions
     from .design import Assumptions as Assumptions
     from .design import Design as Design
     from .design import design as design_compensation
     from .diagnose import Comparison as Comparison
     from .diagnose import Diagnosis as Diagnosis
     from .diagnose import Ranking as Ranking
-    from .diagnose import compare, find_missing, fit, load_answer, rank
+    from .diagnose import compare as compare
+    from .diagnose import find_missing as find_missing
+    from .diagnose import fit as fit
+    from .diagnose import load_answer as load_answer
+    from .diagnose import rank as rank
     from .diagrams import ANY as ANY
-    from .diagrams import Diagram, haptic_interface, read_diagram, teleoperator, write_diagram
-    from .effects import EFFECTS, load_effect
+    from .diagrams import Diagram as Diagram
+    from .diagrams import haptic_interface as haptic_interface
+    from .diagrams import read_diagram as read_diagram
+    from .diagrams import teleoperator as teleoperator
+    from .diagrams import write_diagram as write_diagram
+    from .effects import EFFECTS as EFFECTS
     from .effects import Effect as Effect
     from .effects import FitSearch as FitSearch
     from .effects import Parameter as Parameter
     from .effects import State as State
-    from .examples import example
-    from .fitted_checks import check_experiment
-    from .frequency import bode
+    from .effects import load_effect as load_effect
+    from .examples import example as example
+    from .fitted_checks import check_experiment as check_experiment
+    from .frequency import bode as bode
     from .frequency import measured_impedance as measured_impedance
-    from .measurement import Experiment, load_experiment
+    from .measurement import Experiment as Experiment
     from .measurement import Record as Record
-    from .measurement.from_arrays import experiment
+    from .measurement import load_experiment as load_experiment
+    from .measurement.from_arrays import experiment as experiment
     from .measurement.recordings import fetch as fetch
-    from .model import Model
+    from .model import Model as Model
     from .next_experiment import propose as propose_experiment
     from .passivity import Certificate as Certificate
     from .passivity import Claim as Claim
-    from .passivity import diagram_claims, positive_real
+    from .passivity import diagram_claims as diagram_claims
+    from .passivity import positive_real as positive_real
     from .realise.iosystem import to_iosystem as to_iosystem
-    from .simulate import Sampling, simulate_many, sine
+    from .simulate import Sampling as Sampling
     from .simulate import Simulation as Simulation
     from .simulate import simulate as simulate_diagram
+    from .simulate import simulate_many as simulate_many
+    from .simulate import sine as sine
     from .studies import MEASURES as MEASURES
     from .studies import Study as Study
     from .studies import latin_hypercube as latin_hypercube
-    from .studies import measure, study
+    from .studies import measure as measure
     from .studies import random_samples as random_samples
     from .studies import read_study as read_study
     from .studies import sensitivities as sensitivities
     from .studies import sensitivity_samples as sensitivity_samples
     from .studies import sobol as sobol
+    from .studies import study as study
     from .tuning import fit_simulation as fit_simulation
     from .tuning import limit as limit
     from .tuning import trade_off as trade_off
-    from .tuning import tune
-    from .unexplained import describe
+    from .tuning import tune as tune
+    from .unexplained import describe as describe
 
-__all__ = [
-    "Body",
-    "CONTROLLERS",
-    "Diagram",
-    "EFFECTS",
-    "Experiment",
-    "ExperimentError",
-    "Model",
-    "ModelError",
-    "Sampling",
-    "bode",
-    "check_experiment",
-    "compare",
-    "controller",
-    "derive_transfers",
-    "describe",
-    "design_compensation",
-    "diagram_claims",
-    "example",
-    "experiment",
-    "find_missing",
-    "fit",
-    "from_control",
-    "hand",
-    "haptic_interface",
-    "load_answer",
-    "load_effect",
-    "load_experiment",
-    "measure",
-    "positive_real",
-    "propose_experiment",
-    "rank",
-    "read_diagram",
-    "simulate_diagram",
-    "simulate_many",
-    "sine",
-    "study",
-    "teleoperator",
-    "transfer_functions",
-    "tune",
-    "write_diagram",
-]
-
-#: group -> public name -> its folder, and its name in this folder if the two names differ. Python
-#: looks up a name at its first use, so that `import teleopdesign` is instant
-GROUPS: dict[str, dict[str, str]] = {
-    "experiments": {
-        "Experiment": "measurement",
-        "experiment": "measurement.from_arrays",
-        "load_experiment": "measurement",
-        "check_experiment": "fitted_checks",
-        "example": "examples",
-    },
-    "models": {
-        "Model": "model",
-        "Body": "blocks",
-    },
-    "effects": {
-        "EFFECTS": "effects",
-        "load_effect": "effects",
-    },
-    "diagnosis": {
-        "fit": "diagnose",
-        "compare": "diagnose",
-        "rank": "diagnose",
-        "find_missing": "diagnose",
-        "load_answer": "diagnose",
-        "describe": "unexplained",
-        "propose_experiment": "next_experiment:propose",
-    },
-    "diagrams": {
-        "Diagram": "diagrams",
-        "haptic_interface": "diagrams",
-        "teleoperator": "diagrams",
-        "hand": "blocks",
-        "read_diagram": "diagrams",
-        "write_diagram": "diagrams",
-    },
-    "controllers": {
-        "CONTROLLERS": "controllers",
-        "controller": "controllers",
-        "from_control": "controllers",
-    },
-    "responses": {
-        "derive_transfers": "derive:all_transfers",
-        "transfer_functions": "derive",
-        "bode": "frequency",
-        "simulate_diagram": "simulate:simulate",
-        "simulate_many": "simulate",
-        "Sampling": "simulate",
-        "sine": "simulate",
-    },
-    "design": {
-        "design_compensation": "design:design",
-    },
-    "studies": {
-        "study": "studies",
-        "measure": "studies",
-        "tune": "tuning",
-    },
-    "passivity": {
-        "diagram_claims": "passivity",
-        "positive_real": "passivity",
-    },
-    "errors": {
-        "ExperimentError": "base.errors",
-        "ModelError": "base.errors",
-    },
+# fmt: off
+#: group -> the public names that a user types
+GROUPS = {
+    "experiments": ("Experiment", "experiment", "load_experiment", "check_experiment", "example"),
+    "models": ("Model", "Body"),
+    "effects": ("EFFECTS", "load_effect"),
+    "diagnosis": (
+        "fit", "compare", "rank", "find_missing", "load_answer", "describe",
+        "propose_experiment",
+    ),
+    "diagrams": (
+        "Diagram", "haptic_interface", "teleoperator", "hand", "read_diagram", "write_diagram",
+    ),
+    "controllers": ("CONTROLLERS", "controller", "from_control"),
+    "responses": (
+        "derive_transfers", "transfer_functions", "bode", "simulate_diagram", "simulate_many",
+        "Sampling", "sine",
+    ),
+    "design": ("design_compensation",),
+    "studies": ("study", "measure", "tune"),
+    "passivity": ("diagram_claims", "positive_real"),
+    "errors": ("ExperimentError", "ModelError"),
 }
-#: the same for names that `dir` does not list: classes of results, and the parts of definitions,
-#: studies and recordings
-FURTHER: dict[str, dict[str, str]] = {
-    "results": {
-        "Comparison": "diagnose",
-        "Ranking": "diagnose",
-        "Diagnosis": "diagnose",
-        "Simulation": "simulate",
-        "Design": "design",
-        "Study": "studies",
-        "Claim": "passivity",
-        "Certificate": "passivity",
-    },
-    "parts of definitions": {
-        "Value": "blocks",
-        "ANY": "diagrams",
-        "Effect": "effects",
-        "Parameter": "effects",
-        "FitSearch": "effects",
-        "State": "effects",
-        "Controller": "controllers",
-        "load_controller": "controllers",
-        "Assumptions": "design",
-        "TeleopDesignError": "base.errors",
-    },
-    "parts of studies": {
-        "read_study": "studies",
-        "MEASURES": "studies",
-        "latin_hypercube": "studies",
-        "sobol": "studies",
-        "random_samples": "studies",
-        "sensitivity_samples": "studies",
-        "limit": "tuning",
-        "trade_off": "tuning",
-        "sensitivities": "studies",
-        "fit_simulation": "tuning",
-    },
-    "recordings": {
-        "Record": "measurement",
-        "fetch": "measurement.recordings",
-        "measured_impedance": "frequency",
-    },
-    "exchange": {
-        "to_iosystem": "realise.iosystem",
-    },
+#: group -> names that `dir` does not list: classes of results, parts of definitions, studies and
+#: recordings
+FURTHER = {
+    "results": (
+        "Comparison", "Ranking", "Diagnosis", "Simulation", "Design", "Study",
+        "Claim", "Certificate",
+    ),
+    "parts of definitions": (
+        "Value", "ANY", "Effect", "Parameter", "FitSearch", "State", "Controller",
+        "load_controller", "Assumptions", "TeleopDesignError",
+    ),
+    "parts of studies": (
+        "read_study", "MEASURES", "latin_hypercube", "sobol", "random_samples",
+        "sensitivity_samples", "limit", "trade_off", "sensitivities", "fit_simulation",
+    ),
+    "recordings": ("Record", "fetch", "measured_impedance"),
+    "exchange": ("to_iosystem",),
 }
-_HOMES = {n: home for names in (*GROUPS.values(), *FURTHER.values()) for n, home in names.items()}
-#: folders that are available as `td.NAME`, imported at their first use
-_FOLDERS = (
-    "app",
-    "arms",
-    "blocks",
-    "check",
-    "controllers",
-    "derive",
-    "design",
-    "diagnose",
-    "diagrams",
-    "effects",
-    "fitted_checks",
-    "frequency",
-    "identify",
-    "measurement",
-    "next_experiment",
-    "passivity",
-    "realise",
-    "show",
-    "simulate",
-    "studies",
-    "tuning",
-    "unexplained",
-)
+#: these have another name in their folders; type checkers see all others by their imports
+__all__ = ["derive_transfers", "design_compensation", "propose_experiment", "simulate_diagram"]
+__all__ += [name for names in GROUPS.values() for name in names if name not in __all__]
+# fmt: on
 __version__ = "0.1.0"
 let_folders_be_called(__name__)
 
 
 def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        home, _, local = _HOMES[name].partition(":")
-        value = getattr(import_module(f"{__name__}.{home}"), local or name)
-        globals()[name] = value
+    """A name of the imports above, which are for type checkers: imported at its first use."""
+    if name.startswith("__"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    homes = type_imports(__name__)
+    if name in homes:
+        home, local = homes[name]
+        if home == __name__:
+            return import_module(f"{home}.{name}")
+        globals()[name] = value = getattr(import_module(home), local)
         return value
-    if name in _FOLDERS:
-        return import_module(f"{__name__}.{name}")
-    hint = ""
-    if not name.startswith("_"):
-        from .base.errors import did_you_mean
-
-        hint = did_you_mean(name, (*_HOMES, *_FOLDERS))
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")
+    raise AttributeError(
+        f"module {__name__!r} has no attribute {name!r}{did_you_mean(name, homes)}"
+    )
 
 
 def __dir__() -> list[str]:
     """The names that a user types, and the folders."""
-    return sorted({*__all__, *_FOLDERS, *(n for n in globals() if n.startswith("__"))})
+    folders = (n for n, (home, _) in type_imports(__name__).items() if home == __name__)
+    return sorted({*__all__, *folders, *(n for n in globals() if n.startswith("__"))})

@@ -12,9 +12,9 @@ from functools import cached_property
 from .base.arguments import check_types, describe_value, instance
 from .base.errors import ExperimentError, ModelError, did_you_mean
 from .base.frozen import Frozen
-from .base.notebook import html_table
-from .base.quantity import unit_after_number
-from .base.standard_error import with_standard_error
+from .base.sentences import with_standard_error
+from .base.shown import html_table
+from .base.units import unit_after_number
 from .blocks import CONTACT, Body, Value
 from .blocks.described import free_body_of, joint_with_links, with_environment
 from .effects import CONTACT_ROLES, EFFECTS, Effect, Parameter, find_effect

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import teleopdesign as td
-from teleopdesign.base.process_copies import can_copy
+from teleopdesign.base.machine import can_copy
 
 
 def interface():

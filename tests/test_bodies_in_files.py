@@ -10,8 +10,8 @@ from measurement.rod_example import write_rod
 
 from teleopdesign import load_experiment
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.base.quantity import QUANTITIES, to_si
-from teleopdesign.base.toml_table import Table
+from teleopdesign.base.toml import Table
+from teleopdesign.base.units import QUANTITIES, to_si
 from teleopdesign.blocks import BLOCK_EFFECTS, Body, Value, with_block_effects
 from teleopdesign.blocks.described import body_of
 from teleopdesign.diagnose.model_data import body_data, model_from

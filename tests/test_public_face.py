@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 import teleopdesign as td
-from teleopdesign.base.folder_calls import INSTEAD, VERBS
+from teleopdesign.base.arguments import type_imports
+from teleopdesign.base.folders import INSTEAD, VERBS
 
 ROOT = Path(td.__file__).parent
 TOP = {p.stem for p in ROOT.glob("*.py")} | {p.parent.name for p in ROOT.glob("*/__init__.py")}
@@ -106,8 +107,9 @@ def test_both_halves_are_there():
 def test_few_names_are_shown_and_every_other_public_name_stays_within_reach():
     further = [name for names in td.FURTHER.values() for name in names]
     assert len(td.__all__) <= 40 and not set(further) & set(td.__all__)
-    for name, home in {n: h for names in td.FURTHER.values() for n, h in names.items()}.items():
-        assert getattr(td, name) is getattr(import_module(f"teleopdesign.{home}"), name)
+    for name in further:
+        home, local = type_imports("teleopdesign")[name]
+        assert getattr(td, name) is getattr(import_module(home), local)
 
 
 def test_a_misspelt_name_is_answered_with_the_nearest():

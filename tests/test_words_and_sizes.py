@@ -49,7 +49,7 @@ CELLS = ("app/notebook",)
 #: lines of a file: beyond, a second concept is looked for. What is longer says why it is one
 MOST_LINES_OF_A_FILE = 310
 WHOLE = {
-    "__init__": "the map of the package, and its names",
+    "base/units": "symbols, quantities and their units are one table",
     "app/notebook": "cells of one page, which marimo reads from one file",
     "realise/integrator": "one loop, compiled as a whole",
 }

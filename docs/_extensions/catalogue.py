@@ -25,7 +25,7 @@ from sphinx.application import Sphinx
 from sphinx.pycode import ModuleAnalyzer
 from sympy.printing.latex import LatexPrinter, latex_escape
 
-from teleopdesign.base.quantity import QUANTITIES, unit_of
+from teleopdesign.base.units import QUANTITIES, unit_of
 from teleopdesign.controllers import CONTROLLERS
 from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter
 from teleopdesign.measurement.recordings import RECORDINGS

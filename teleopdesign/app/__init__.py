@@ -6,7 +6,7 @@ in `workbench.py`, without a page, so that a script can do the same.
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .workbench import Workbench as Workbench

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..base.errors import TeleopDesignError
-from ..base.plain_data import write_beside, write_text
+from ..base.files import write_beside, write_text
 from ..diagnose import write_answer
 from .pages import propose_design
 from .workbench import Workbench

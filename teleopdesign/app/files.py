@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..base.errors import ExperimentError
-from ..base.plain_data import write_beside
+from ..base.files import write_beside
 from ..measurement.tables import DOORS, is_log
 
 #: folder for what is dropped

@@ -6,9 +6,17 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ..base.errors import TeleopDesignError
-from ..base.quantity import unit_after_number, unit_of
+from ..base.sentences import (
+    number_on_page as number,
+)
+from ..base.sentences import (
+    unit_on_page as unit_text,
+)
+from ..base.sentences import (
+    with_error_on_page as with_error,
+)
+from ..base.units import unit_after_number, unit_of
 from ..diagnose.comparison import residual_data
-from ..show.report.words import number, unit_text, with_error
 from .workbench import Workbench
 
 if TYPE_CHECKING:
@@ -133,7 +141,7 @@ def moved_residuals(bench: Workbench, parameter: str, factor: float) -> Dataset 
 
 def what_is_left(bench: Workbench) -> Figure:
     """Views of the residual of the last model, with a sentence for each dependence."""
-    from ..show.figures.unexplained import plot_unexplained
+    from ..show.unexplained.findings import plot_unexplained
     from ..unexplained import describe_residual
 
     floor = bench.state.floor if bench.is_ranked else None

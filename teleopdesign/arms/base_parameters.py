@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from .chain import INERTIAL, UNITS, Array, Chain
 from .regressor import force_columns
 

@@ -17,7 +17,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 
 Array: TypeAlias = NDArray[np.float64]
 

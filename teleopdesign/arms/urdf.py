@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base.errors import ExperimentError, did_you_mean, quote
-from ..base.whole_files import read_whole
+from ..base.files import read_whole
 from .chain import Array, Chain, Link, express_in_frame, inertia_about, rotation_of, tensor
 
 #: most bytes of a file, elements, and depth of elements: a hundred times what a large robot needs

@@ -17,6 +17,7 @@ import types
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache, wraps
 from importlib import import_module
+from importlib.util import resolve_name
 from itertools import chain, repeat
 from typing import Any, TypeVar
 
@@ -169,21 +170,30 @@ def _find_type_import(module: str, name: str) -> Any:
     The result is a class of the package, or a stand-in for a class of another package, which would
     take long to import.
     """
+    if name not in (imports := type_imports(module)):
+        return Any
+    home, local = imports[name]
+    if home.startswith(f"{_PACKAGE}."):
+        return getattr(import_module(home), local)
+    return getattr(_Outside(home), local) if local else _Outside(home)
+
+
+@cache
+def type_imports(module: str) -> dict[str, tuple[str, str]]:
+    """Name -> (module, its name there) of the imports that a module makes for type checkers.
+
+    The name there is "" for a package: `import xarray`.
+    """
     tree = ast.parse(inspect.getsource(sys.modules[module]))
+    package = getattr(sys.modules[module], "__package__", "")
+    homes = dict[str, tuple[str, str]]()
     for node in (n for block in tree.body if isinstance(block, ast.If) for n in block.body):
         if isinstance(node, ast.ImportFrom):
-            imported = next((a.name for a in node.names if (a.asname or a.name) == name), None)
-            if imported is not None and node.level:
-                package = getattr(sys.modules[module], "__package__", "")
-                return getattr(
-                    import_module("." * node.level + (node.module or ""), package), imported
-                )
-            if imported is not None:
-                return getattr(_Outside(node.module or ""), imported)
+            home = resolve_name("." * node.level + (node.module or ""), package)
+            homes |= {a.asname or a.name: (home, a.name) for a in node.names}
         elif isinstance(node, ast.Import):
-            if name in (a.name.partition(".")[0] for a in node.names):
-                return _Outside(name)
-    return Any
+            homes |= {(n := a.name.partition(".")[0]): (n, "") for a in node.names}
+    return homes
 
 
 class _Outside:

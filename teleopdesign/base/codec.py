@@ -29,8 +29,8 @@ from functools import cache
 from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin, get_type_hints
 
 from .errors import ExperimentError, quote
-from .plain_data import make_plain
-from .toml_table import describe_toml_value
+from .files import make_plain
+from .toml import describe_toml_value
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import types
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 from .errors import did_you_mean, quote
+from .sentences import join_names
 
 _LONGEST = 60  # characters of a value that a message repeats
 
@@ -170,12 +171,17 @@ def _make_any_check(parts: tuple[Any, ...]) -> TypeCheck | None:
             return deeper[0]
         words = [w for w in dict.fromkeys(w.expected for w in wrong) if w != "None"]
         hints = [w.hint for w in wrong if w.hint]
-        listed = ", ".join(words[:-1])
-        return WrongValue(
-            "", value, f"{listed} or {words[-1]}" if listed else words[-1], *hints[:1]
-        )
+        return WrongValue("", value, join_names(words, "or"), *hints[:1])
 
     return check
+
+
+def _first_mistake(parts: Iterable[tuple[str, TypeCheck | None, Any]]) -> WrongValue | None:
+    """The first mistake among parts of a value: (place, check, part)."""
+    for place, check, part in parts:
+        if check is not None and (wrong := check(part)) is not None:
+            return replace(wrong, place=f"{place}{wrong.place}")
+    return None
 
 
 def _make_mapping_check(key: Any, content: Any) -> TypeCheck:
@@ -184,32 +190,23 @@ def _make_mapping_check(key: Any, content: Any) -> TypeCheck:
     def check(value: Any) -> WrongValue | None:
         if not isinstance(value, Mapping):
             return WrongValue("", value, 'a mapping, such as {"name": ...}')
-        for name, inner in value.items():
-            if of_key is not None and (wrong := of_key(name)) is not None:
-                return WrongValue(": key", wrong.value, wrong.expected, wrong.hint)
-            if of_content is not None and (wrong := of_content(inner)) is not None:
-                place = f'["{name}"]{wrong.place}'
-                return WrongValue(place, wrong.value, wrong.expected, wrong.hint)
-        return None
+        keys = _first_mistake((": key", of_key, name) for name in value)
+        return keys or _first_mistake((f'["{n}"]', of_content, v) for n, v in value.items())
 
     return check
 
 
 def _several(kind: Any, content: Any) -> TypeCheck:
     of_content = check_of(content)
-    container: Any = tuple if kind is tuple else kind
     words = {tuple: "a tuple", list: "a list", frozenset: "a frozenset", set: "a set"}
     expected = words.get(kind, "several, as a tuple or list")
 
     def check(value: Any) -> WrongValue | None:
-        if isinstance(value, str | bytes) or not _is_container(value, container):
+        if isinstance(value, str | bytes) or not _is_container(value, kind):
             return WrongValue("", value, expected)
         if of_content is None or not isinstance(value, Collection):
             return None
-        for i, inner in enumerate(value):
-            if (wrong := of_content(inner)) is not None:
-                return WrongValue(f"[{i}]{wrong.place}", wrong.value, wrong.expected, wrong.hint)
-        return None
+        return _first_mistake((f"[{i}]", of_content, part) for i, part in enumerate(value))
 
     return check
 
@@ -226,10 +223,8 @@ def _make_tuple_check(parts: tuple[Any, ...]) -> TypeCheck:
     def check(value: Any) -> WrongValue | None:
         if not isinstance(value, tuple | list) or len(value) != len(parts):
             return WrongValue("", value, f"a tuple of {len(parts)}")
-        for i, (one, inner) in enumerate(zip(checks, value, strict=True)):
-            if one is not None and (wrong := one(inner)) is not None:
-                return WrongValue(f"[{i}]{wrong.place}", wrong.value, wrong.expected, wrong.hint)
-        return None
+        pairs = enumerate(zip(checks, value, strict=True))
+        return _first_mistake((f"[{i}]", one, part) for i, (one, part) in pairs)
 
     return check
 

@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from .by_value import ByValue
-from .notebook import html_table
+from .frozen import ByValue
+from .shown import html_table
 
 Array = NDArray[np.float64]
 #: "fine" says that all is well, "note" is worth knowing, "warning" needs care

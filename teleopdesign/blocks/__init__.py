@@ -6,8 +6,7 @@ from .body import Body
 from .body_equation import BodyEquation
 from .carried_force import solve_carried_force
 from .environment import CONTACT
-from .environments import free_space, hunt_crossley, soft_rubber, spring_damper
-from .hand import hand
+from .environments import free_space, hand, hunt_crossley, soft_rubber, spring_damper
 from .matrix_impedance import MatrixImpedance, matrix_impedance
 from .value import NINETY_FIVE, Value
 

@@ -17,8 +17,8 @@ import sympy as sp
 from ..base.arguments import check_types, instance, number
 from ..base.errors import ModelError, did_you_mean, quote
 from ..base.frozen import Frozen
-from ..base.notebook import html_table
-from ..base.quantity import AXES, unit_after_number, unit_of
+from ..base.shown import html_table
+from ..base.units import AXES, unit_after_number, unit_of
 from ..effects import EFFECTS, Effect, Parameter, sort_by_action
 from .body_equation import (
     BodyEquation,

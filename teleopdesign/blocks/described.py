@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from ..base.errors import ExperimentError, ModelError, did_you_mean
-from ..base.quantity import unit_after_number, unit_of
+from ..base.units import unit_after_number, unit_of
 from ..effects import CONTACT_ROLES, Effect, Parameter, find_effect
 from ..measurement.description import BodyDescription, Effects, EnvironmentDescription, ModelValue
 from .body import INERTIA, Body

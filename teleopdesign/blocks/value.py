@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..base.arguments import instance, number
-from ..base.by_value import ByValue
-from ..base.notebook import html_table
+from ..base.frozen import ByValue
+from ..base.shown import html_table
 
 #: half width of a 95 % interval in standard errors, for a normal distribution
 NINETY_FIVE = 1.96

@@ -14,7 +14,7 @@ a recording without a fit. `fitted_checks` holds checks of the same kind that fi
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from ._list import CHECKS as CHECKS

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from ..base.finding import Finding
-from ..base.shelves import Shelf
+from ..base.folders import Shelf
 from ..measurement.prepare import Prepared
 from ..model import Model
 from ._recording import CheckedRecording, RecordingCheck

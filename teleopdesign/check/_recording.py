@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
 from ..base.finding import Concern, Finding, Graph, Series
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..measurement.channel import BODY_QUANTITIES, Channel
 from ..measurement.description import ONE_BODY
 from ..measurement.encoder import reading_step
@@ -129,6 +129,7 @@ class CheckedRecording:
             self._signal(record, key, values)
             for record in self.experiment.records
             for key, values in record.signals.items()
+            if key in self.experiment.channels  # of one joint of an arm, its own
         )
 
     @cached_property

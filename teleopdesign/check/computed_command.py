@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from ..base.finding import Finding
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.law_of_readings import LawOfReadings, is_copy, law_of_readings, spring_of_copy
 from ..measurement.record import Record

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..base.finding import Concern, Finding
-from ..base.quantity import si_factor
+from ..base.units import si_factor
 from ..measurement.channel import BODY_QUANTITIES
 from ..measurement.encoder import is_on_grid, reading_noise, reading_step
 from ..measurement.filtering import Array

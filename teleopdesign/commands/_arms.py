@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError, did_you_mean, quote
-from ._values import value_from
+from ._options import value_from
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis

@@ -1,13 +1,25 @@
-"""Claims with their verdicts on the terminal and as plain data."""
+"""Claims with their verdicts on the terminal and as plain data.
+
+Passivity at the ports of a diagram from a file, or of a shipped diagram.
+"""
 
 from __future__ import annotations
 
+import argparse
 import textwrap
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..base.files import write_json
+from ._options import say_written
+from .derive import diagram_of
+
 if TYPE_CHECKING:
+    from ..passivity.diagram_claims import DiagramClaims
     from ..passivity.theorems import TopicClaim
+    from ..simulate import Sampling
+
 
 #: columns of the terminal
 WIDTH = 100
@@ -45,3 +57,46 @@ def claim_data(entry: TopicClaim) -> dict[str, Any]:
         "motion": claim.record.as_dict() if claim.status == "refuted" else None,
         "replayed": None if entry.motion is None else entry.motion.as_dict(),
     }
+
+
+#: options that describe a compensator or choose a body of a diagnosis
+BESIDE_A_DIAGRAM = ("answer", "body", "dahl", "smoothed-coulomb", "wall")
+
+
+def is_diagram(source: Path) -> bool:
+    """Whether a source is a diagram: a TOML file other than experiment.toml, or a shipped name."""
+    from ..diagrams import SHIPPED
+
+    if source.suffix == ".toml":
+        return source.name != "experiment.toml"
+    return str(source) in SHIPPED and not source.exists()
+
+
+def settle_diagram(options: argparse.Namespace, computer: Sampling | None) -> int:
+    """Print the claims about a diagram's ports and write the requested file; returns 0."""
+    import numpy as np
+
+    from ..passivity.diagram_claims import Search, diagram_claims
+
+    search = Search(options.stroke, options.speed, computer=computer or "continuous")
+    diagram = diagram_of(str(options.source), options.effect, options.law)
+    claims = diagram_claims(diagram, rng=np.random.default_rng(1), search=search)
+    print(_text(claims))
+    if options.json is not None:
+        content = {
+            "diagram": repr(claims.diagram),
+            "ports": [str(port) for port in claims.ports],
+            "nonlinear": list(claims.nonlinear),
+            "claims": [claim_data(s) for s in claims.claims],
+        }
+        write_json(options.json, content)
+    say_written(options.json)
+    return 0
+
+
+def _text(claims: DiagramClaims) -> str:
+    lines = [f"{claims.diagram.name}: ports (force, motion) {', '.join(map(str, claims.ports))}"]
+    lines.append(f"not linear: {', '.join(claims.nonlinear) or 'nothing'}")
+    if claims.diagram.controls:
+        lines.append("what is proved holds for controllers in continuous time")
+    return "\n".join([*lines, *claim_lines(claims.claims)])

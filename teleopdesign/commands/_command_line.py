@@ -1,4 +1,7 @@
-"""Arguments of `teleopdesign`, and the end of a command: an exit status and at most one line."""
+"""Arguments of `teleopdesign`, and the end of a command: an exit status and at most one line.
+
+A home folder that does not exist: no library that a command imports creates it.
+"""
 
 from __future__ import annotations
 
@@ -6,16 +9,46 @@ import argparse
 import os
 import pkgutil
 import sys
+import tempfile
 import traceback
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from importlib import import_module
+from pathlib import Path
 
 from .. import __version__, commands
 from ._failures import TRACEBACK, failure
-from ._home import keep_home_absent
 from ._paths import check_paths
 from ._terminal import plain_warnings, printable_streams
+
+#: where matplotlib keeps its settings and fonts
+PLACE = "MPLCONFIGDIR"
+
+
+@contextmanager
+def keep_home_absent() -> Iterator[None]:
+    """Let matplotlib keep its files in a temporary folder if the user has no home folder.
+
+    Otherwise matplotlib would create the home folder. A user without one wants no files to be kept
+    there.
+    """
+    if PLACE in os.environ or Path(os.path.expanduser("~")).is_dir():
+        yield
+        return
+    try:
+        folder = tempfile.TemporaryDirectory(
+            prefix="teleopdesign-matplotlib-", ignore_cleanup_errors=True
+        )
+    except OSError:  # nothing can be written anywhere
+        yield
+        return
+    with folder as path:
+        os.environ[PLACE] = path
+        try:
+            yield
+        finally:
+            os.environ.pop(PLACE, None)
+
 
 EXAMPLES = """\
   teleopdesign new log.csv --output joint

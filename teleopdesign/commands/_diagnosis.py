@@ -198,7 +198,7 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
 
     returns: the body, and the range that its records reached; None without records
     """
-    from ..design.reach import reach_of
+    from ..design.stated_motion import reach_of
     from ..diagnose import load_answer
 
     if source.suffix == ".json" and not source.is_dir():

@@ -11,7 +11,8 @@ from io import StringIO
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
-from ..base.plain_data import harmless_cell, write_text
+from ..base.files import harmless_cell, write_text
+from ..base.sentences import percent
 from . import STOPPED
 from ._diagnosis import candidate_effects, effects_by_name
 from ._failures import BAD_INPUT
@@ -93,8 +94,8 @@ def _cells(row: DiagnosedFolder) -> tuple[str, ...]:
         str(row.folder),
         row.verdict,
         row.missing or "-",
-        _percent(row.before),
-        _percent(row.after),
+        percent(row.before, unknown="not told"),
+        percent(row.after, unknown="not told"),
     )
 
 
@@ -102,10 +103,6 @@ def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
     words = [f"{cell:<{width}}" for cell, width in zip(cells[:3], widths, strict=False)]
     numbers = [f"{cell:>{width}}" for cell, width in zip(cells[3:], widths[3:], strict=True)]
     return "  ".join([*words, *numbers])
-
-
-def _percent(error: float) -> str:
-    return f"{100 * error:.2f} %" if math.isfinite(error) else "not told"
 
 
 def table_csv(rows: Sequence[DiagnosedFolder]) -> str:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ..base.errors import ExperimentError
-from ..base.whole_files import read_whole
+from ..base.files import read_whole
 
 #: options that name what a command reads, and what it writes: a file or a folder
 INPUTS = ("folder", "logs", "source", "file", "diagram", "answer", "check", "effect", "law")
@@ -77,7 +77,7 @@ def _files_read(options: argparse.Namespace) -> Iterator[Path]:
 
 def _texts_of(file: Path) -> Iterator[str]:
     """Every text in a TOML file; none for an invalid file, which is reported when it is read."""
-    from ..base.toml_table import parse_toml
+    from ..base.toml import parse_toml
 
     try:
         content = parse_toml(read_whole(file).decode("utf-8-sig"))

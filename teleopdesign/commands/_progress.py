@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from ..base.rounding import duration_text
+from ..base.sentences import duration_text
 from ._options import say
 
 if TYPE_CHECKING:

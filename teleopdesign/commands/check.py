@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError
-from ..base.plain_data import write_json
+from ..base.files import write_json
 from ._diagnosis import experiment_of, folder_of, stated_model
 from ._options import add_experiment, check_output, say_written
 from ._paths import shell_word
@@ -78,7 +78,7 @@ def _unreadable(folder: Path, problem: ExperimentError) -> tuple[Finding, ...]:
     Empty if the description agrees with the logs, or if the logs cannot be read.
     """
     from ..base.finding import Finding
-    from ..base.toml_table import read_toml
+    from ..base.toml import read_toml
     from ..measurement.survey import Choices, survey_log
     from ..measurement.tables import open_log
 

@@ -9,7 +9,7 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.plain_data import write_json
+from ..base.files import write_json
 from ._options import check_output, say
 
 if TYPE_CHECKING:

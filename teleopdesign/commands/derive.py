@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ModelError, did_you_mean
-from ..base.plain_data import write_json
+from ..base.files import write_json
 from ._arms import add_body
 from ._diagnosis import body_of_source
 from ._options import add_answer, add_effect_files, add_law_files, check_output, say_written
@@ -127,7 +127,7 @@ def _draw(diagram: Diagram, path: Path) -> None:
 
 
 def _page(transfers: Transfers, speed: float) -> str:
-    from ..base.quantity import unit_of
+    from ..base.units import unit_of
     from ..diagrams.units import first_axis
 
     lines = [repr(transfers.diagram), "", transfers.text()]

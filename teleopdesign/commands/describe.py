@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ModelError
-from ..base.plain_data import write_beside, write_json
+from ..base.files import write_beside, write_json
 from ._arms import add_body
 from ._diagnosis import diagnosis_of_part, experiment_and_answer, stated_model
 from ._options import add_experiment, check_output

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError, did_you_mean
-from ..base.plain_data import write_json, write_text
+from ..base.files import write_json, write_text
 from ._arms import add_body, inertia_line, joint_of, place_at_pose
 from ._diagnosis import diagnosis_of, experiment_and_answer, print_diagnosis
 from ._options import add_experiment, check_output, make_folder, say, say_written

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ModelError
-from ..base.plain_data import write_beside
+from ..base.files import write_beside
 from ._diagnosis import (
     diagnose_experiment,
     experiment_of,

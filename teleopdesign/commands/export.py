@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ..base.plain_data import write_text
+from ..base.files import write_text
 from ._arms import add_body
 from ._diagnosis import model_of_source
 from ._options import add_experiment, check_output

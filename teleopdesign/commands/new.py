@@ -124,8 +124,8 @@ def run(options: argparse.Namespace) -> int:
     print(experiment)
     for finding in stopping_findings(CheckedRecording(experiment)):
         print(f"\nno diagnosis can answer yet: {finding.sentence}")
-    from ..show.figures.letters import explain_boxes
     from ..show.figures.log import draw_survey, save_survey
+    from ..show.figures.style import explain_boxes
 
     picture = folder / "understood.png"
     save_survey(draw_survey(survey, experiment), picture)

@@ -10,11 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError, did_you_mean
-from ..base.plain_data import write_beside, write_json
+from ..base.files import write_beside, write_json
 from ._arms import add_body
-from ._diagnosis import diagnosis_of, diagnosis_of_part, experiment_and_answer, print_diagnosis
-from ._options import add_experiment, check_output, say
-from ._values import value_from
+from ._diagnosis import (
+    diagnosis_of,
+    diagnosis_of_part,
+    experiment_and_answer,
+    print_diagnosis,
+)
+from ._options import add_experiment, check_output, say, value_from
 
 if TYPE_CHECKING:
     from ..measurement import Experiment

@@ -11,12 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
-from ..base.plain_data import write_json
-from ..base.whole_files import read_whole
+from ..base.files import read_whole, write_json
 from ._arms import add_body
-from ._claims import WIDTH, claim_data, claim_lines
+from ._claims import BESIDE_A_DIAGRAM, WIDTH, claim_data, claim_lines, is_diagram, settle_diagram
 from ._diagnosis import body_of_source
-from ._diagram_passivity import BESIDE_A_DIAGRAM, is_diagram, settle_diagram
 from ._options import add_answer, add_effect_files, add_law_files, check_output, say_written
 
 if TYPE_CHECKING:
@@ -228,7 +226,7 @@ def _make_sampling(options: argparse.Namespace) -> Sampling | None:
 def _describe_device(
     device: IdentifiedDevice, claims: Sequence[TopicClaim], limits: Sequence[Margin]
 ) -> str:
-    from ..base.quantity import unit_of
+    from ..base.units import unit_of
 
     force, stiff = device.force_unit, device.stiffness_unit
     lines = [
@@ -255,8 +253,8 @@ def _describe_device(
 
 
 def _describe_z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
-    from ..base.quantity import unit_of
-    from ..base.rounding import round_down
+    from ..base.sentences import round_down
+    from ..base.units import unit_of
     from ..passivity import z_width
 
     width = z_width(

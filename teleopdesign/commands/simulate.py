@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError
-from ._options import check_output, say_written
-from ._values import value_in
+from ._options import check_output, say_written, value_in
 from .derive import add_diagram, diagram_from
 
 if TYPE_CHECKING:

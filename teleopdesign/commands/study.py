@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError, did_you_mean
-from ..base.whole_files import read_whole
+from ..base.files import read_whole
 from . import STOPPED
 from ._failures import BAD_INPUT
 from ._options import add_effect_files, add_law_files, check_output, count_argument, say

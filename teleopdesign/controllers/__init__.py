@@ -12,8 +12,8 @@ from typing import Literal
 
 from ..base.arguments import check_arguments
 from ..base.errors import ModelError, did_you_mean
+from ..base.folders import Shelf
 from ..base.frozen import Catalogue
-from ..base.shelves import Shelf
 from ._controller import (
     SIGNALS,
     Ability,

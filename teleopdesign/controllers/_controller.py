@@ -12,7 +12,7 @@ import sympy as sp
 from ..base.arguments import check_types
 from ..base.errors import ModelError, did_you_mean
 from ..base.frozen import Frozen
-from ..base.notebook import html_table
+from ..base.shown import html_table
 from ._by_numbers import has_numbers, insert_values, is_by_numbers
 from ._law import SIGNALS, Ability, ControlLaw, ControllerState, Stage, mark_sampled_rate
 

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.errors import ModelError
-from ..base.names import check_name
+from ..base.errors import ModelError, check_name
 from ..base.recipes import remember
 from . import _state_space
 from ._controller import ControlLaw, Controller, ControllerState, Stage, mark_sampled_rate
@@ -18,7 +17,7 @@ from ._opaque import wrap_code
 from ._state_space import Array
 
 if TYPE_CHECKING:
-    import control
+    from ..base import python_control as control
 
 
 def from_control(system: control.InputOutputSystem, *, name: str = "state_space") -> Controller:
@@ -39,7 +38,7 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
     frequencies, by linear interpolation.
     raises ModelError: several inputs or outputs, improper, no system
     """
-    import control
+    from ..base import python_control as control
 
     check_name(name, where="from_control")
     if not isinstance(system, control.InputOutputSystem):
@@ -111,7 +110,7 @@ def invert_plant(system: control.LTI, *, bandwidth: float, name: str = "inverse"
     bandwidth: f_c in Hz
     raises ModelError: T is zero or has a zero that is not in the left half-plane, discrete time
     """
-    import control
+    from ..base import python_control as control
 
     whole = control.tf(system)
     if whole.isdtime(strict=True) or (whole.ninputs, whole.noutputs) != (1, 1):

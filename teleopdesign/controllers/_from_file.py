@@ -6,9 +6,8 @@ from pathlib import Path
 from types import ModuleType
 from weakref import WeakValueDictionary
 
-from ..base.errors import ModelError
-from ..base.names import check_name
-from ..base.users_files import checked_path, laws_of, load_once, run
+from ..base.errors import ModelError, check_name
+from ..base.recipes import checked_path, laws_of, load_once, run
 from ._controller import ControlLaw
 from ._declarations import broken_declarations, unknown_symbols
 

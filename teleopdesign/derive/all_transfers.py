@@ -8,19 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from ..base.by_name import ByName
 from ..base.errors import ModelError, did_you_mean
-from ..base.frozen import Frozen
+from ..base.frozen import ByName, Frozen
 from ..diagrams import AnyBlock, Attached, Control, Diagram, Moving
 from ..diagrams.short_form import kind_of
 from ..realise.tips import linear_tips
 from .printing import as_latex, as_text, block_symbol, name_as_latex, with_gamma
-from .transfer_functions import Case, named_cases
+from .transfer_functions import Case, named_cases, transfer_function
 from .two_port import has_two_sides, two_port_cases
-from .with_values import transfer_function
 
 if TYPE_CHECKING:
-    import control
+    from ..base import python_control as control
 
 SECONDS = 2.0  # longest time for the derivation of one output
 

@@ -1,21 +1,35 @@
-"""The named transfer functions and impedances of a haptic interface."""
+"""The named transfer functions and impedances of a haptic interface.
+
+With values, each block has its linear form.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from ..base.by_name import ByName
 from ..base.errors import ModelError
-from ..base.frozen import Frozen
+from ..base.frozen import ByName, Frozen
 from ..diagrams import Control, Diagram
+from ..realise.lti import LinearBlocks, as_transfer_function, linear_blocks
 from ..realise.parted import linear_parted
 from ..realise.tips import linear_tips
 from .elimination import round_trip, transfer
-from .printing import as_latex, as_text, with_gamma
+from .printing import (
+    as_latex,
+    as_text,
+    block_symbol,
+    dead_time_symbol,
+    motion_controller_symbol,
+    with_gamma,
+)
+
+if TYPE_CHECKING:
+    from ..base import python_control as control
 
 
 @dataclass(frozen=True)
@@ -141,3 +155,64 @@ def return_difference(diagram: Diagram, name: str) -> sp.Expr:
     if not isinstance(block, Control):
         raise ModelError(f"{diagram.name}: {name} is no controller, its loop cannot be opened")
     return sp.S(1) - round_trip(diagram, block)
+
+
+def with_values(
+    diagram: Diagram,
+    *,
+    output: str,
+    input: str,
+    given: str | tuple[str, ...] = "",
+    speed: float = 0.0,
+    held: bool = False,
+) -> tuple[sp.Expr, LinearBlocks]:
+    """Transfer function in `realise.lti.S` with numbers, and the linear forms of its blocks.
+
+    For one degree of freedom. Raises ModelError where a loop has no solution at its values.
+
+    given: prescribed motions
+    speed: m/s or rad/s, at which smoothed friction and schedules are frozen
+    held: whether controllers in discrete time take part, see `linear_blocks`
+    """
+    motions = given if isinstance(given, tuple) else (given,) if given else ()
+    diagram, tips = linear_parted(diagram, motions)
+    output, input = tips.get(output, output), tips.get(input, input)
+    linear = linear_blocks(diagram, speed=speed, held=held)
+    form = transfer(diagram, output, (input,), given=tuple(tips.values()))[input]
+    expression = sp.sympify(form).subs(symbol_values(linear))
+    if expression.has(sp.zoo, sp.nan, sp.oo):
+        raise ModelError(f"{output}/{input}: a loop has no solution at these values")
+    return expression, linear
+
+
+def symbol_values(linear: LinearBlocks) -> dict[sp.Symbol, sp.Expr]:
+    """Symbol of a derived expression -> transfer function of the block, stage or dead time.
+
+    Substituted into a result of `derive`, these leave a function of s; dead times are in s.
+    """
+    values = {block_symbol(n): e for n, e in linear.blocks.items()}
+    values |= {block_symbol(f"A_{n}"): e for n, e in linear.actuation.items()}
+    values |= {motion_controller_symbol(n): e for n, e in linear.along.items()}
+    return values | {dead_time_symbol(n): t for n, t in linear.dead_times.items()}
+
+
+def transfer_function(
+    diagram: Diagram,
+    *,
+    output: str = "R_M",
+    input: str = "R_D",
+    given: str | tuple[str, ...] = "",
+    speed: float = 0.0,
+    delay_order: int = 4,
+) -> tuple[control.TransferFunction, tuple[str, ...]]:
+    """The transfer function as a python-control system, and the names without linear form.
+
+    Its input and output have the names of the signals, so that `control.interconnect` can connect
+    it. Other arguments are those of `with_values`.
+
+    delay_order: of the Pade approximation of dead times
+    """
+    expression, linear = with_values(diagram, output=output, input=input, given=given, speed=speed)
+    system = as_transfer_function(expression, delay_order=delay_order)
+    system.update_names(inputs=[input], outputs=[output])
+    return system, linear.left_out

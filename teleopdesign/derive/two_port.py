@@ -3,21 +3,126 @@
     F_m = Z_mm X_m + Z_ms X_s          F_m = h_11 X_m + h_12 F_s
     F_s = Z_sm X_m + Z_ss X_s          X_s = h_21 X_m + h_22 F_s
 
-Forces of hand and environment act on master and slave; impedances are relative to position. A
-teleoperator that nobody notices has h_11 = h_22 = 0, h_21 = I, h_12 = -I: the hand holds against
-what the environment does. Hannaford, IEEE Trans. Robotics Autom. 5 (1989) 426, with positions in
-the place of velocities and the force on the slave in the place of its reaction.
+Forces of hand and environment act on master and slave; impedances are relative to position. Two-
+ports are by positions, as in the papers, or by velocities, as in the hybrid matrix of Hannaford:
+
+    position:   F_m = h_11 X_m + h_12 F_s          velocity:   F_m = h_11 v_m + h_12 F_e
+                X_s = h_21 X_m + h_22 F_s                      -v_s = h_21 v_m + h_22 F_e
+
+F_s is what the environment does to the slave, F_e = -F_s what the slave does to it. Velocities of
+both sides point the same way. So, exactly and with no approximation,
+
+    velocity h_11 = h_11/s    h_12 = -h_12    h_21 = -h_21    h_22 = s h_22    Z_ij = Z_ij/s
+
+By positions h_11 is in N/m, h_22 in m/N and Z in N/m; by velocities in N s/m, m/(N s) and N s/m
+(revolute axes: N m and rad in the place of N and m); h_12 and h_21 are numbers. A teleoperator that
+nobody notices has h_12 = -1, h_21 = 1 by positions, h_12 = 1, h_21 = -1 by velocities, and h_11 =
+h_22 = 0: the hand holds against what the environment does.
+
+Hannaford, IEEE Trans. Robotics Autom. 5 (1989) 426.
 """
 
 from __future__ import annotations
 
+from typing import Literal, get_args
+
+import sympy as sp
+
 from ..base.arguments import check_types
-from ..base.errors import ModelError
+from ..base.errors import ModelError, did_you_mean
 from ..base.frozen import Frozen
 from ..diagrams import Diagram
-from .conventions import VELOCITY_TEXTS, Convention, check_convention, convert_convention
+from ..realise.lti import S
 from .printing import block_symbol
 from .transfer_functions import Case, TransferFunctions
+
+Convention = Literal["position", "velocity"]
+#: function -> sign and power of s that take it from positions to velocities
+_TO_VELOCITY = {
+    **{f"Z_{i}{j}": (1, -1) for i in "ms" for j in "ms"},
+    "h_11": (1, -1),
+    "h_12": (-1, 0),
+    "h_21": (-1, 0),
+    "h_22": (1, 1),
+    "Z_t": (1, -1),
+    "Z_t - Z_E": (1, -1),
+}
+VELOCITY_TEXTS = {
+    "Z_mm": "v_m to F_m, slave held",
+    "Z_ms": "v_s to F_m, master held",
+    "Z_sm": "v_m to F_s, slave held",
+    "Z_ss": "v_s to F_s, master held",
+    "h_11": "v_m to F_m, slave free: impedance felt in free space",
+    "h_12": "F_e to F_m, master held: force transmission",
+    "h_21": "v_m to -v_s, slave free: velocity tracking",
+    "h_22": "F_e to -v_s, master held: admittance of the slave",
+    "Z_t": "v_m to F_m in contact: transmitted impedance",
+    "Z_t - Z_E": "transparency error",
+}
+
+
+def check_convention(convention: str) -> None:
+    """Raise ModelError, with the nearest name, for a text that is no convention."""
+    known = get_args(Convention)
+    if convention not in known:
+        near = did_you_mean(convention, known)
+        raise ModelError(f'convention: no "{convention}", has {", ".join(known)}{near}')
+
+
+def convert_convention(name: str, expression: sp.Expr, convention: Convention) -> sp.Expr:
+    """Convert a function of a two-port from the other convention into `convention`, exactly.
+
+    name: "Z_mm", "h_11", ..., "Z_t";  expression: in `s`, of blocks or numbers
+    raises ModelError: no such function or convention
+    """
+    check_convention(convention)
+    if name not in _TO_VELOCITY:
+        raise ModelError(
+            f'convention: no function "{name}", has {", ".join(_TO_VELOCITY)}'
+            f"{did_you_mean(name, _TO_VELOCITY)}"
+        )
+    sign, power = _TO_VELOCITY[name]
+    return sign * S ** (power if convention == "velocity" else -power) * expression
+
+
+def hybrid_from_impedance(z: sp.Matrix, *, convention: Convention) -> sp.Matrix:
+    """Hybrid matrix [[h_11, h_12], [h_21, h_22]] from impedances [[Z_mm, Z_ms], [Z_sm, Z_ss]].
+
+    convention: of both matrices
+    raises ModelError: no such convention, or Z_ss = 0: no force determines the motion of the slave
+    """
+    check_convention(convention)
+    _check_shape(z)
+    if z[1, 1] == 0:
+        raise ModelError("hybrid_from_impedance: Z_ss is 0: no force determines the slave's motion")
+    return _second_port_turned(z, convention)
+
+
+def impedance_from_hybrid(h: sp.Matrix, *, convention: Convention) -> sp.Matrix:
+    """Impedances [[Z_mm, Z_ms], [Z_sm, Z_ss]] from the hybrid matrix [[h_11, h_12], [h_21, h_22]].
+
+    convention: of both matrices
+    raises ModelError: no such convention, or h_22 = 0: no force moves the slave
+    """
+    check_convention(convention)
+    _check_shape(h)
+    if h[1, 1] == 0:
+        raise ModelError("impedance_from_hybrid: h_22 is 0: no force moves the slave")
+    return _second_port_turned(h, convention)
+
+
+def _second_port_turned(m: sp.Matrix, convention: Convention) -> sp.Matrix:
+    """The matrix with force and motion of port 2 exchanged; the same rule in both directions."""
+    sign = -1 if convention == "velocity" else 1
+    through, back = m[0, 1] / m[1, 1], m[1, 0] / m[1, 1]
+    corner = m[0, 0] - through * m[1, 0]
+    return sp.Matrix([[corner, sign * through], [-sign * back, 1 / m[1, 1]]])
+
+
+def _check_shape(matrix: sp.Matrix) -> None:
+    if matrix.shape != (2, 2):
+        raise ModelError(f"two-port: expected a 2x2 matrix, found {matrix.rows}x{matrix.cols}")
+
 
 _SIGNALS = ("X_m", "X_s", "F_m", "F_s")
 _TEXTS = {

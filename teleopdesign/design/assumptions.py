@@ -1,4 +1,7 @@
-"""Assumptions of a design about values that no record shows; each can be stated by the user."""
+"""Assumptions of a design about values that no record shows; each can be stated by the user.
+
+They contain the sampling of the controllers in simulation.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,8 @@ from dataclasses import dataclass
 from ..base.arguments import check_types
 from ..base.errors import ModelError
 from ..blocks import NINETY_FIVE
+from ..realise.reach import Reach
+from ..simulate import Sampling
 
 
 @check_types
@@ -54,3 +59,23 @@ class Assumptions:
             raise ModelError(
                 f"design: delay_factor: found {self.delay_factor:g}, expected 1 or more"
             )
+
+
+def sampling_of(assumptions: Assumptions, reach: Reach) -> Sampling:
+    """The sampling that the assumptions state, with the encoder of the record.
+
+    assumptions: complete: period, delay and velocity filter are numbers
+    """
+    period, delay, filtered = (
+        assumptions.sample_period,
+        assumptions.delay,
+        assumptions.velocity_bandwidth,
+    )
+    assert period is not None and delay is not None and filtered is not None
+    return Sampling(
+        period=period,
+        # in tenths of a sample, the inner steps of the simulation
+        delay=round(10 * delay / period) * period / 10,
+        encoder_step=reach.step,
+        velocity_bandwidth=filtered,
+    )

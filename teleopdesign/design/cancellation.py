@@ -3,23 +3,57 @@
 The cancelled level stays below the least level that friction may have, so that friction and
 cancellation together dissipate energy: P37 to P39 for ideal Coulomb friction, whatever the law, P43
 and P44 for friction that is a spring before it slides.
+
+A proposed controller, with a reason for each of its numbers.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 from ..base.errors import ModelError
-from ..base.quantity import unit_of
-from ..base.rounding import round_down, round_up
+from ..base.sentences import round_down, round_up
+from ..base.shown import Shown
+from ..base.units import unit_after_number, unit_of
 from ..blocks import Body
-from ..controllers import controller, laws_that_declare
+from ..controllers import Controller, controller, laws_that_declare
 from ..realise.acting_bound import largest_acting_force
 from ..realise.friction_interval import FrictionInterval
 from ..realise.reach import Reach
 from .assumptions import Assumptions
-from .chosen import ProposedController, Reason
+
+
+@dataclass(frozen=True)
+class Reason:
+    """The reason for the value (SI) of a parameter "law.parameter" of a proposed controller."""
+
+    parameter: str
+    value: float
+    unit: str
+    why: str
+
+    def __str__(self) -> str:
+        unit = unit_after_number(self.unit)
+        return f"{self.parameter} = {self.value:.4g}{unit}: {self.why}"
+
+
+@dataclass(frozen=True)
+class ProposedController(Shown):
+    """A controller and the reasons for its numbers.
+
+    controller: stages in series, parameters in SI;  reasons: one for each chosen parameter
+    """
+
+    controller: Controller
+    reasons: tuple[Reason, ...]
+
+    @property
+    def law(self) -> str:
+        """Name of the first law of the controller."""
+        return self.controller.stages[0].law.name
+
 
 #: part of the largest passive stiffness that a Dahl cancellation takes on a presliding device
 STIFFNESS_FRACTION = 0.9

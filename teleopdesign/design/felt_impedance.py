@@ -36,27 +36,6 @@ class FeltImpedance:
     predicted: ImpedanceMap | None
     missing: tuple[str, ...]
 
-    def lines(self) -> list[str]:
-        """A table of cases by frequency: magnitude and phase, predicted ones in brackets."""
-        impedance = self.simulated or self.predicted
-        if impedance is None:
-            return [f"  none: {why}" for why in self.missing]
-        frequency = impedance.data["frequency"].values
-        head = "".join(f"{f:>22.3g}" for f in frequency)
-        rows = [f"  {'at Hz':<8}{head}"]
-        for case in map(str, impedance.data["case"].values):
-            cells = (self._cell(case, i) for i in range(len(frequency)))
-            rows.append(f"  {case:<8}" + "".join(f"{cell:>22}" for cell in cells))
-        return rows + [f"  without {why}" for why in self.missing]
-
-    def _cell(self, case: str, i: int) -> str:
-        texts = [
-            f"{float(m.decibel.sel(case=case)[i]):.1f}/{float(m.phase.sel(case=case)[i]):.0f}"
-            for m in (self.simulated, self.predicted)
-            if m is not None
-        ]
-        return texts[0] if len(texts) == 1 else f"{texts[0]} ({texts[1]})"
-
 
 def felt_impedance(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> FeltImpedance:
     """Zhat_M of the device without and with compensation at the stated peak speed.

@@ -15,14 +15,14 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ..base.quantity import unit_of
-from ..base.rounding import round_down, round_up
+from ..base.sentences import round_down, round_up
+from ..base.units import unit_of
 from ..blocks import Body
 from ..controllers import scheduled_force_feedback
 from ..realise.lti import S
 from ..realise.reach import Reach
 from .assumptions import Assumptions
-from .chosen import ProposedController, Reason
+from .cancellation import ProposedController, Reason
 
 #: largest proposed gain: at this gain only a few percent of friction is left
 MOST_GAIN = 20.0

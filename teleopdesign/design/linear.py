@@ -48,7 +48,7 @@ def linear_error(hybrid: Diagram, motion: StatedMotion) -> tuple[Mapping[str, fl
         frequency=at,
         speed=mean_speed(motion),
     )
-    size = gains.data["magnitude"].values[:, 0] * motion.amplitude / math.sqrt(2)
+    size = gains.magnitude[:, 0] * motion.amplitude / math.sqrt(2)
     gone = sorted({name.partition(".")[2] or name for v in gains.left_out.values() for name in v})
     return dict(zip(gains.left_out, map(float, size), strict=True)), ", ".join(gone)
 

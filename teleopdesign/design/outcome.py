@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.plain_data import write_json
-from ..base.toml_text import comment_text
+from ..base.files import make_plain, write_json
+from ..base.frozen import ByValue
+from ..base.shown import Shown, figure_of, look
+from ..base.toml import comment_text
+from ..base.units import unit_of
 from ..blocks import Body
 from ..diagrams import ANY, Attached, Block, Diagram, Moving, haptic_interface
 from ..diagrams.toml_writing import diagram_text
@@ -19,22 +21,19 @@ from ..passivity import Claim
 from ..realise.friction_interval import FrictionInterval
 from ..realise.reach import Reach
 from ..simulate import Sampling
-from .assumptions import Assumptions
-from .chosen import ProposedController
-from .design_data import design_data
+from .assumptions import Assumptions, sampling_of
+from .cancellation import ProposedController
 from .felt_impedance import FeltImpedance
 from .force_feedback import FeedbackLoop
 from .prediction import Prediction
-from .residual_friction import ResidualFriction
-from .sampling import sampling_of
-from .sentences import design_text
+from .quasi_static import ResidualFriction
 
 if TYPE_CHECKING:
     import matplotlib.figure
 
 
 @dataclass(frozen=True, eq=False)
-class Design(ByValue):
+class Design(Shown, ByValue):
     """A compensation for the body at `place` of an experiment.
 
     body: as the diagnosis identified it;  friction: range of its level, None: no friction level
@@ -44,7 +43,8 @@ class Design(ByValue):
     impedance: Zhat_M that a hand feels, simulated and by describing functions
     residual: friction left in slow steady motion, in the middle of the travel
     transparency: T of the four cases, by linear theory, with the load in place of the hand
-    claims: case -> claims on passivity, each with its proof or evidence;  notes: warnings
+    claims: case -> claims on passivity, each with its proof or evidence
+    verdict, left: of the diagnosis, as in `Diagnosis`
     """
 
     experiment: str
@@ -63,7 +63,13 @@ class Design(ByValue):
     residual: ResidualFriction
     transparency: FrequencyResponse
     claims: Mapping[str, tuple[Claim, ...]]
-    notes: tuple[str, ...]
+    verdict: str
+    left: float
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Warnings, to be read with the numbers."""
+        return tuple(look(self, "notes"))
 
     @property
     def held(self) -> FeedbackLoop:
@@ -78,9 +84,7 @@ class Design(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Plot force error over velocity in the four cases, friction left in slow motion, and T."""
-        from ..show.figures.design_from_measurement import plot_design
-
-        return plot_design(self)
+        return figure_of(self)
 
     @property
     def diagram(self) -> Diagram:
@@ -108,15 +112,47 @@ class Design(ByValue):
         return "\n".join([*map(comment_text, comments), "", content])
 
     def as_dict(self) -> dict[str, Any]:
-        """The design as plain data; SI units."""
-        return design_data(self)
+        """The design as plain data, SI units; a number that is not finite is null."""
+        axis = self.body.axis
+        residual = self.residual
+        content = {
+            "experiment": self.experiment,
+            "place": self.place,
+            "axis": axis,
+            "units": {q: unit_of(q, axis) for q in ("force", "position", "velocity", "stiffness")},
+            "model_parameters": {
+                n: {"value": v.value, "stderr": v.stderr, "unit": self.body.unit(n)}
+                for n, v in self.body.parameters.items()
+            },
+            "assumptions": asdict(self.assumptions),
+            "recorded": asdict(self.reach),
+            "friction": _friction(self),
+            "cancellation": _chosen(self.cancellation),
+            "second_cancellation": _chosen(self.other),
+            "force_feedback": _chosen(self.force_feedback),
+            "loop": _loop(self.loop),
+            "loop_held_rigidly": _loop(self.held),
+            "motion": asdict(self.prediction.motion),
+            "prediction": {case: asdict(p) for case, p in self.prediction.cases.items()},
+            "taken_rigid_in_simulation": self.prediction.rigid,
+            "left_out_of_linear": self.prediction.left_out,
+            "felt_impedance": _impedance(self.impedance),
+            "residual_friction": {
+                "speed": residual.speeds.tolist(),
+                **{case: row.tolist() for case, row in residual.rows.items()},
+            },
+            "passivity": {
+                case: [_claim(c) for c in claims] for case, claims in self.claims.items()
+            },
+            "notes": list(self.notes),
+            "diagram_toml": self.to_toml(),
+        }
+        data: dict[str, Any] = make_plain(content)
+        return data
 
     def to_json(self, path: str | Path) -> None:
         """Write the design as JSON."""
         write_json(path, self.as_dict())
-
-    def __repr__(self) -> str:
-        return design_text(self)
 
 
 def _nameless(diagram: Diagram) -> tuple[Block, ...]:
@@ -124,3 +160,59 @@ def _nameless(diagram: Diagram) -> tuple[Block, ...]:
     return tuple(
         replace(b, body=ANY) if isinstance(b, Moving | Attached) else b for b in diagram.blocks
     )
+
+
+def _friction(design: Design) -> dict[str, Any] | None:
+    """The friction interval, and half of the travel in bristle lengths; None without friction."""
+    if design.friction is None:
+        return None
+    lengths = design.friction.bristle_lengths(design.reach.travel)
+    return {**asdict(design.friction), "bristle_lengths": lengths}
+
+
+def _impedance(felt: FeltImpedance) -> dict[str, Any]:
+    """Magnitude (dB) and phase (deg) of each case over frequency (Hz), simulated and predicted."""
+    data: dict[str, Any] = {"missing": list(felt.missing)}
+    for how, one in (("simulated", felt.simulated), ("predicted", felt.predicted)):
+        if one is None:
+            continue
+        data["frequency"] = one.data["frequency"].values.tolist()
+        data["amplitude"] = one.data["amplitude"].values.tolist()
+        data[how] = {
+            str(case): {
+                "decibel": one.decibel.sel(case=case).values.tolist(),
+                "phase": one.phase.sel(case=case).values.tolist(),
+            }
+            for case in one.data["case"].values
+        }
+    return data
+
+
+def _chosen(chosen: ProposedController | None) -> dict[str, Any] | None:
+    if chosen is None:
+        return None
+    return {
+        "laws": [stage.law.name for stage in chosen.controller.stages],
+        "parameters": {
+            r.parameter: {"value": r.value, "unit": r.unit, "why": r.why} for r in chosen.reasons
+        },
+    }
+
+
+def _loop(loop: FeedbackLoop) -> dict[str, Any]:
+    return {
+        **asdict(loop),
+        "crossover": loop.crossover,
+        "phase_margin": loop.phase_margin,
+        "largest_delay": loop.largest_delay,
+    }
+
+
+def _claim(claim: Claim) -> dict[str, Any]:
+    return {
+        "status": claim.status,
+        "holds": claim.holds,
+        "statement": claim.statement,
+        "how": str(claim.verdict),
+        "certificates": len(claim.certificates),
+    }

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.frozen import ByValue
 from ..blocks import Body
 from ..diagrams import Diagram, four_cases
 from ..realise.tips import led_motion

@@ -11,34 +11,31 @@ from ..diagnose import Diagnosis
 from ..diagrams import Diagram, four_cases, haptic_interface
 from ..model import Model
 from ..passivity import Claim
+from ..passivity.claims.axis_units import use_units_of
 from ..realise.damping_interval import small_motion_damping
 from ..realise.friction_interval import FrictionInterval, friction_interval
 from ..realise.reach import Reach
-from .assumptions import Assumptions
+from .assumptions import Assumptions, sampling_of
 from .cancellation import (
+    ProposedController,
     acting_gain,
     cancelled_level,
     dahl_cancellation,
     smoothed_cancellation,
     smoothing_name,
 )
-from .chosen import ProposedController
-from .energy import energy_claim
 from .felt_impedance import felt_impedance
 from .force_feedback import FeedbackLoop, force_feedback, identified_delay, whole_inertia
 from .linear import transparency
-from .notes import notes_on
 from .outcome import Design
 from .prediction import Prediction, predict
-from .reach import reach_of
-from .residual_friction import SHARES, residual_friction
-from .sampling import sampling_of
-from .stated_motion import StatedMotion, stated_motion
+from .quasi_static import SHARES, residual_friction
+from .stated_motion import StatedMotion, reach_of, stated_motion
 from .verdict import (
     cancellation_claims,
     compliant_claim,
+    energy_claim,
     feedback_claim,
-    use_units_of,
 )
 
 #: load of a hand over the inertia of the device, if no load is stated
@@ -89,7 +86,7 @@ def design(
     trials = [_trial(body, one, motion, reach, settings) for one in options or [None]]
     best = min(trials, key=lambda t: t.left)
     others = [t for t in trials if t is not best]
-    proposal = Design(
+    return Design(
         experiment=diagnosis.experiment.title or diagnosis.experiment.folder.name,
         place=at,
         body=body,
@@ -112,9 +109,9 @@ def design(
         ),
         transparency=transparency(_with_load(best, body, settings), motion),
         claims=_claims(best, body, friction, reach, settings),
-        notes=(),
+        verdict=diagnosis.verdict,
+        left=diagnosis.left,
     )
-    return replace(proposal, notes=notes_on(proposal, diagnosis))
 
 
 def complete_assumptions(assumptions: Assumptions, body: Body, reach: Reach) -> Assumptions:

@@ -14,8 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.frozen import ByValue
+from ..base.shown import Shown
 from ..controllers import Controller
 from .cancellation import smoothing_name
 from .outcome import Design
@@ -28,7 +29,7 @@ AT_BOUND = 0.01
 
 
 @dataclass(frozen=True, eq=False)
-class TunedControllers(ByValue):
+class TunedControllers(Shown, ByValue):
     """C and H after the search.
 
     before, after: force error of the hybrid as proposed and as tuned, N or N m, rms
@@ -42,15 +43,6 @@ class TunedControllers(ByValue):
     after: float
     at_bound: tuple[str, ...]
     simulations: int
-
-    def __repr__(self) -> str:
-        names = dict(self.cancellation.names()) if self.cancellation else {}
-        names |= self.force_feedback.names()
-        numbers = ", ".join(f"{n} = {v:.4g}" for n, v in names.items())
-        return (
-            f"Tuned by {self.simulations} simulations: force error {self.before:.4g} -> "
-            f"{self.after:.4g} rms\n  {numbers}\n  at a bound: {', '.join(self.at_bound) or 'none'}"
-        )
 
 
 def refine(design: Design, *, simulations: int = 60) -> TunedControllers:

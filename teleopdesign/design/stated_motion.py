@@ -1,4 +1,7 @@
-"""The sinusoid for which a design is predicted, within the range of the records."""
+"""The sinusoid for which a design is predicted, within the range of the records.
+
+The range of the records of an experiment: travel, speed, command, sensors, sampling.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.errors import ModelError
-from ..base.quantity import unit_of
-from ..base.rounding import round_down
+from ..base.errors import ExperimentError, ModelError
+from ..base.sentences import round_down
+from ..base.units import unit_of
+from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
+from ..measurement.motion import RARE, TRAVEL
+from ..measurement.prepare import prepare
 from ..realise.reach import Reach
 from ..simulate import Trajectory, sine
 from .assumptions import Assumptions
@@ -82,3 +88,32 @@ def stated_motion(reach: Reach, assumptions: Assumptions, axis: str) -> StatedMo
             f"{motion.peak_speed:.3g} {unit}, recorded are at most {reach.peak_speed:.3g} {unit}"
         )
     return motion
+
+
+def reach_of(experiment: Experiment, place: str) -> Reach:
+    """The recorded range of one body: travel, speed, command, sensors and sampling.
+
+    raises ExperimentError: the body does not move in the records
+    """
+    motions = [s.motion for s in prepare(experiment).stretches if s.motion.body == place]
+    position = np.concatenate([m.position for m in motions])
+    speed = np.abs(np.concatenate([m.velocity for m in motions]))
+    if not speed.any():
+        raise ExperimentError(f"{experiment.folder.name}: {place}.position: it never moves")
+    ways = np.concatenate([m.direction for m in motions])
+    records, step = experiment.records, max(m.step for m in motions)
+    acceleration = float(np.sqrt(np.mean(np.concatenate([m.acceleration**2 for m in motions]))))
+    after_reversal = acceleration / (2 * motions[0].bandwidth) ** 2 / 2
+    return Reach(
+        low=float(position.min()),
+        high=float(position.max()),
+        peak_speed=float(speed.max()),
+        rms_speed=float(np.sqrt(np.mean(speed**2))),
+        command=float(max(np.abs(m.command).max() for m in motions)),
+        duration=max(r.duration for r in records),
+        sample_period=records[0].sample_time,
+        step=step,
+        unresolved=max(TRAVEL * step, after_reversal),
+        both_ways=bool(min(np.sum(ways > 0), np.sum(ways < 0)) >= RARE * np.sum(ways != 0)),
+        measures_force=f"{place}.interaction_force" in experiment.channels,
+    )

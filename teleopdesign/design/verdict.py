@@ -1,19 +1,29 @@
-"""Claims on the passivity of the compensated device, each with its proof or evidence."""
+"""Claims on the passivity of the compensated device, each with its proof or evidence.
+
+Search for energy that the compensated device releases, over sinusoids of many sizes and speeds.
+
+The hand moves the device along a prescribed sinusoid. The energy that the hand puts in over a
+steady cycle is negative where the device releases energy. The simulation has all identified
+effects, encoder, sampling and delay. The result is evidence for the simulated motions, and no proof
+for others.
+"""
 
 from __future__ import annotations
 
-import re
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
-from ..base.rounding import round_down, round_near, round_up
+import numpy as np
+
+from ..base.errors import ModelError
+from ..base.sentences import round_down, round_near, round_up
+from ..base.units import unit_of
 from ..blocks import Body, Value
 from ..controllers import Controller
-from ..diagrams import haptic_interface
+from ..diagrams import Diagram, haptic_interface
 from ..passivity import (
     Claim,
     Evidence,
-    Proof,
-    Refutation,
     any_environment,
     bounded_compensation,
     dahl_compensation,
@@ -26,8 +36,12 @@ from ..passivity.theorems.lugre import add_bristle_damping
 from ..realise.damping_interval import damping_interval, small_motion_damping
 from ..realise.friction_interval import FrictionInterval, value_interval
 from ..realise.reach import Reach
-from .chosen import ProposedController
+from ..realise.tips import led_motion
+from ..simulate import Sampling
+from .cancellation import ProposedController
 from .linear import without_friction
+from .prediction import steady_cycle
+from .stated_motion import StatedMotion
 
 
 def compliant_claim(
@@ -150,26 +164,65 @@ def feedback_claim(body: Body, force_feedback: Controller) -> Claim:
     return replace(claim, statement=f"without friction, sampling and delay {claim.statement}")
 
 
-#: what a unit of claims is called on a revolute axis
-_REVOLUTE = {"N s/m": "N*m*s/rad", "N/m": "N*m/rad", "N": "N*m"}
-
-
-def use_units_of(axis: str, claim: Claim) -> Claim:
-    """The claim with the units of an axis; claims are stated for a prismatic axis."""
-    if axis == "prismatic":
-        return claim
-
-    def turned(text: str) -> str:
-        return re.sub(r"\bN s/m\b|\bN/m\b|\bN\b", lambda m: _REVOLUTE[m[0]], text)
-
-    verdict = claim.verdict
-    if isinstance(verdict, Proof | Evidence):
-        verdict = replace(verdict, unit=turned(verdict.unit))
-    elif isinstance(verdict, Refutation):
-        verdict = replace(verdict, method=turned(verdict.method))
-    return Claim(turned(claim.statement), verdict)
-
-
 def _decimal(value: float) -> str:
     """The number as decimal text, so that a claim holds for exactly the printed number."""
     return f"{value:.12g}"
+
+
+#: amplitudes and frequencies of the simulated motions, over those of the stated motion
+SIZES, FREQUENCIES = (0.1, 0.3, 1.0), (1.0, 3.0, 10.0, 30.0)
+
+
+@dataclass(frozen=True)
+class CycleEnergy:
+    """Energy that the hand puts in per cycle of a motion, J; -inf: signals grow without bounds."""
+
+    motion: StatedMotion
+    energy: float
+
+
+def motions_around(motion: StatedMotion, reach: Reach) -> Iterator[StatedMotion]:
+    """The stated motion, smaller and faster ones, up to the recorded speed."""
+    for size in SIZES:
+        for faster in FREQUENCIES:
+            one = replace(
+                motion, amplitude=size * motion.amplitude, frequency=faster * motion.frequency
+            )
+            if one.peak_speed <= reach.peak_speed:
+                yield one
+
+
+def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> CycleEnergy:
+    """Energy that the hand puts in over a steady cycle, from a simulation."""
+    try:
+        cycle = steady_cycle(diagram, motion, sampling)
+    except ModelError:
+        return CycleEnergy(motion, float("-inf"))
+    power = cycle["E"].values * cycle[f"{led_motion(diagram, 'L')}_velocity"].values
+    return CycleEnergy(motion, float(np.mean(power) / motion.frequency))
+
+
+def energy_claim(
+    diagram: Diagram, motion: StatedMotion, reach: Reach, sampling: Sampling, *, axis: str
+) -> Claim:
+    """Evidence, not proof, on whether the device takes energy along every simulated motion."""
+    trials = [energy_taken(diagram, m, sampling) for m in motions_around(motion, reach)]
+    supplying = [t for t in trials if t.energy < 0]
+    # where it releases energy, the slowest such motion says from where on
+    shown = min(supplying, key=lambda t: t.motion.frequency) if supplying else _least_energy(trials)
+    size, unit = shown.motion.amplitude, unit_of("position", axis)
+    frequencies = [t.motion.frequency for t in trials]
+    words = "releases energy along" if supplying else "takes least along"
+    searched = (
+        f"{len(trials)} sinusoids, {min(frequencies):.3g} to {max(frequencies):.3g} Hz, simulated "
+        f"with sampling, delay and encoder; it {words} {size:.3g} {unit} at "
+        f"{shown.motion.frequency:.3g} Hz"
+    )
+    if supplying:
+        searched += f" and {len(supplying) - 1} more"
+    statement = "the device takes energy from the hand"
+    return Claim(statement, Evidence(not supplying, searched, shown.energy, "J a cycle"))
+
+
+def _least_energy(trials: list[CycleEnergy]) -> CycleEnergy:
+    return min(trials, key=lambda t: t.energy / t.motion.amplitude)

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .answer import load_answer as load_answer

@@ -19,8 +19,7 @@ from typing import Annotated, Any, NoReturn
 from ..base.arguments import check_types
 from ..base.codec import At, DataForm, DataForms, from_data, to_data
 from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
-from ..base.plain_data import write_json
-from ..base.whole_files import read_whole
+from ..base.files import read_whole, write_json
 from ..blocks import with_block_effects
 from ..effects import EFFECTS, Effect
 from ..measurement.experiment import Experiment

@@ -22,11 +22,11 @@ from typing import Any
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError, did_you_mean, quote
-from ..base.notebook import html_table
-from ..base.plain_data import make_plain
-from ..base.quantity import unit_of
+from ..base.files import make_plain
+from ..base.frozen import ByValue
+from ..base.shown import html_table
+from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..model import Model

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.notebook import html_table
-from ..base.plain_data import write_netcdf
-from ..base.quantity import unit_of
+from ..base.files import write_netcdf
+from ..base.frozen import ByValue
+from ..base.shown import figure_of, html_table
+from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
@@ -47,9 +47,7 @@ class Comparison(ByValue):
 
     def plot(self) -> Figure:
         """Residual over time, velocity and position."""
-        from ..show.figures.diagnosis import plot_comparison
-
-        return plot_comparison(self)
+        return figure_of(self)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the data with units to a NetCDF file."""

@@ -29,8 +29,7 @@ from typing import Any, TypeVar
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from ..base.core_count import count_workers
-from ..base.process_copies import Copy, can_copy, shield_from_ctrl_c
+from ..base.machine import Copy, can_copy, count_workers, shield_from_ctrl_c
 
 T = TypeVar("T")
 #: most copies, and most threads, at a time

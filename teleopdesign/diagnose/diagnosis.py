@@ -12,9 +12,10 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from ..base.by_value import ByValue
 from ..base.codec import INLINE, NEVER, OMIT, At, Bounds, Error, Filled, InUnit
 from ..base.errors import ExperimentError
+from ..base.frozen import ByValue
+from ..base.shown import figure_of
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared
 from ..model import Model
@@ -283,9 +284,7 @@ class Diagnosis(ByValue):
 
     def plot(self) -> Figure:
         """Figure of forces, of the residual over time, velocity and position, and of the ladder."""
-        from ..show.figures.diagnosis import plot_diagnosis
-
-        return plot_diagnosis(self)
+        return figure_of(self)
 
     def _repr_html_(self) -> str:
         return ladder_html(self)

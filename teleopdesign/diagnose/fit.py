@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from ..blocks import Value
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch

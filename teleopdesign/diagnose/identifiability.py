@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.quantity import unit_after_number
-from ..base.standard_error import with_standard_error
+from ..base.sentences import with_standard_error
+from ..base.units import unit_after_number
 from ..model import Model
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria

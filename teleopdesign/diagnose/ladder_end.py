@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from .adequacy import is_adequate
 from .candidates import Candidate
 from .fit import Fit

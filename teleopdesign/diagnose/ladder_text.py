@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from ..base.notebook import html_table
-from ..base.quantity import unit_after_number
-from ..base.standard_error import with_standard_error
+from ..base.sentences import with_standard_error
+from ..base.shown import html_table
+from ..base.units import unit_after_number
 from ..blocks import Value
 from .adequacy import records_differ
 from .criteria import CRITERIA

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from ..base.codec import At, InUnit, Size
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..measurement.prepare import FOLDS, Prepared, Stretch, measured_force

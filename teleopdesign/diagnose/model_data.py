@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..base.errors import ExperimentError, did_you_mean, quote
-from ..base.toml_table import Table, describe_toml_value
+from ..base.toml import Table, describe_toml_value
 from ..blocks import Body, Value, with_block_effects
 from ..blocks.described import body_of
 from ..effects import Effect

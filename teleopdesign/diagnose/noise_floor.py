@@ -17,8 +17,8 @@ from typing import Annotated
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.codec import At, Size
+from ..base.frozen import ByValue
 from ..check.sample_clock import jitter_of
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motion_of

@@ -13,7 +13,7 @@ from typing import Annotated, Any
 
 from ..base.codec import At, Error, Filled, Size, from_data
 from ..base.errors import ExperimentError, quote
-from ..base.quantity import AXES, unit_of
+from ..base.units import AXES, unit_of
 from ..blocks import CONTACT
 from ..effects import Effect, are_alike
 from ..measurement.bandwidth import bandwidth_of

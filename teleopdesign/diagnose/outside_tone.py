@@ -21,7 +21,7 @@ import numpy as np
 from scipy import fft
 from scipy.optimize import minimize_scalar
 
-from ..base.quantity import MAINS
+from ..base.units import MAINS
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model

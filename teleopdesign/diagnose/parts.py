@@ -14,8 +14,8 @@ import numpy as np
 
 from ..arms import BaseParameters, Chain, base_parameters
 from ..arms.base_parameters import columns_with_motors
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError
+from ..base.frozen import ByValue
 from ..effects import EFFECTS
 from ..measurement.bandwidth import bandwidth_of
 from ..measurement.experiment import Experiment

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate

@@ -12,7 +12,7 @@ from typing import TextIO
 
 import numpy as np
 
-from ..base.plain_data import harmless_cell, write_beside
+from ..base.files import harmless_cell, write_beside
 from ..measurement.filtering import Array
 from ..measurement.record import Record
 from ..realise.along_motion import residual_along

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..base.by_value import ByValue
-from ..base.notebook import html_table
+from ..base.frozen import ByValue
+from ..base.shown import html_table
 from .candidates import Candidate
 from .fit import Fit
 

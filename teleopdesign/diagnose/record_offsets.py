@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..blocks import Body
 from ..effects import SIGNALS
 from ..measurement.filtering import Array

@@ -35,9 +35,9 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
 from ..base.codec import At, Error, Number, Size
-from ..base.standard_error import with_standard_error
+from ..base.frozen import ByValue
+from ..base.sentences import with_standard_error
 from ..blocks import Value
 from ..measurement.filtering import Array
 from ..measurement.logger_clock import CLOCK

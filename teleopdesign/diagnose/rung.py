@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from ..blocks import Value
 from ..model import Model
 from .candidates import Candidate

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from ..base.by_value import ByValue
 from ..base.codec import INLINE, OMIT, At, Error, Size
 from ..base.errors import ExperimentError
+from ..base.frozen import ByValue
 from ..model import Model
 from .candidates import Candidate
 from .ranking import named_instead

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from ..base.quantity import unit_after_number
+from ..base.units import unit_after_number
 from ..measurement.prepare import Prepared
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria

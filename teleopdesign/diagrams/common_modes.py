@@ -20,7 +20,7 @@ from ..base.errors import ModelError
 from ..controllers import exact_decimal
 
 if TYPE_CHECKING:
-    import control
+    from ..base import python_control as control
 
 _S = sp.Symbol("s")
 Fractions = list[list[Fraction]]
@@ -37,7 +37,7 @@ def with_common_modes(
 
     raises ModelError: a mode that grows is shared, and the matrices are no decimal numbers
     """
-    import control
+    from ..base import python_control as control
 
     ratios = [
         [_ratio(p, q) for p, q in zip(*row, strict=True)]

@@ -19,7 +19,7 @@ from .junctions import Junction
 from .parts import Control, Entry, Moving
 
 if TYPE_CHECKING:
-    import control
+    from ..base import python_control as control
 
 
 def controller_parts(
@@ -46,7 +46,7 @@ def controller_parts(
     raises ModelError: numbers of signals do not fit, an entry that `from_control` refuses, entries
         that share a mode that grows in numbers that no state space of decimals has
     """
-    import control
+    from ..base import python_control as control
 
     if (system.noutputs, system.ninputs) != (len(outputs), len(inputs)):
         raise ModelError(
@@ -107,7 +107,7 @@ def entry_of(system: control.InputOutputSystem, row: int, column: int, name: str
 
     raises ModelError: neither transfer function, state space nor measured frequency response
     """
-    import control
+    from ..base import python_control as control
 
     if isinstance(system, control.TransferFunction):
         return control.tf(system.num[row][column], system.den[row][column], system.dt)
@@ -143,7 +143,7 @@ def plant_parts(
     driver: outside force on the body, as in `Moving`;  loads: other forces on it, signal -> sign
     raises ModelError: discrete time, several axes, not two more poles than zeros, m <= 0 or b < 0
     """
-    import control
+    from ..base import python_control as control
 
     forces = {driver: 1.0, **(loads or {})}
     _check_plant(system, name)

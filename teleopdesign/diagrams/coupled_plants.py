@@ -23,7 +23,7 @@ from .junctions import Junction
 from .parts import Control, Linked, Moving
 
 if TYPE_CHECKING:
-    import control
+    from ..base import python_control as control
 
 _S = sp.Symbol("s")
 #: relative asymmetry of a mass matrix that is rounding: in mechanics a mass matrix is symmetric
@@ -49,7 +49,7 @@ def coupled_plant_parts(
     raises ModelError: numbers of signals do not fit, no regular matrix, a mass that is not positive
         definite, zeros of the plant that do not decay, because their states would be doubled
     """
-    import control
+    from ..base import python_control as control
 
     size = len(motions)
     if not (system.ninputs, system.noutputs) == (size, size) == (len(commands), len(drivers)):
@@ -117,7 +117,7 @@ def _split(
     system: control.LTI, name: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[list[control.LTI | None]]]:
     """M, B, K, and the entries of R; None for an entry that is zero."""
-    import control
+    from ..base import python_control as control
 
     size = range(system.ninputs)
     field = sp.QQ.frac_field(_S)
@@ -169,8 +169,9 @@ def _symmetric(matrix: np.ndarray) -> np.ndarray:
 
 def _undo_hold(system: control.LTI, name: str) -> control.StateSpace:
     """The plant in continuous time that has these samples behind a zero-order hold."""
-    import control
     from scipy.linalg import logm
+
+    from ..base import python_control as control
 
     sampled, n = control.ss(system), system.ninputs
     period = 0.0 if system.dt is True else float(system.dt)

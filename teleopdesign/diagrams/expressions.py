@@ -19,8 +19,7 @@ from types import MappingProxyType
 import sympy as sp
 from sympy.core.cache import clear_cache
 
-from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
-from ..base.names import check_name
+from ..base.errors import ExperimentError, ModelError, check_name, did_you_mean, quote
 from .expression_bounds import (
     DEEPEST,
     FUNCTIONS,

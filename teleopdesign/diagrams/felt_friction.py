@@ -17,8 +17,8 @@ from itertools import product
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.frozen import ByValue
 
 _MOST_RODS = 16  # 2^15 corners
 

@@ -9,9 +9,8 @@ from typing import TypeAlias
 import sympy as sp
 
 from ..base.arguments import check_types
-from ..base.errors import ModelError, quote
+from ..base.errors import ModelError, check_name, quote
 from ..base.frozen import Frozen
-from ..base.names import check_name
 
 #: a sign, a factor, or an expression of positions (on `position_symbol`), such as a lever arm
 Weight: TypeAlias = float | sp.Expr

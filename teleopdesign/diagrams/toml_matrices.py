@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ..base.errors import ExperimentError
-from ..base.toml_table import Table, describe_toml_value
+from ..base.toml import Table, describe_toml_value
 from ..blocks import MatrixImpedance, matrix_impedance
 
 #: keys of the matrices, each a list of rows (SI)

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
-from ..base.quantity import AXES, QUANTITIES
-from ..base.toml_table import Table, describe_toml_value, read_toml
+from ..base.toml import Table, describe_toml_value, read_toml
+from ..base.units import AXES, QUANTITIES
 from ..blocks import Body, with_block_effects
 from ..blocks.described import body_of
 from ..controllers import CONTROLLERS, ControlLaw, Controller, Stage

@@ -1,4 +1,7 @@
-"""A diagram as a TOML file, from which `read_diagram` reads the same diagram."""
+"""A diagram as a TOML file, from which `read_diagram` reads the same diagram.
+
+Expressions of positions as the text that `read_expression` reads.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +11,15 @@ from pathlib import Path
 from typing import Any
 
 import sympy as sp
+from sympy.printing.str import StrPrinter
 
-from ..base.errors import ModelError
-from ..base.plain_data import write_text
-from ..base.toml_text import inline_text, key_text, string_text
+from ..base.errors import ExperimentError, ModelError, quote
+from ..base.files import write_text
+from ..base.toml import inline_text, key_text, string_text
 from ..blocks import Body, Value, with_block_effects
 from ..controllers import CONTROLLERS, ControlLaw, Controller
 from ..effects import EFFECTS, Effect
-from .expression_writing import expression_text
+from .expressions import read_expression
 from .junctions import Junction, Kinematics
 from .parts import AnyBlock, Attached, Block, Control, Linked, Moving
 from .short_form import kind_of
@@ -178,3 +182,32 @@ def _number_with_marks(value: Value) -> str:
     parts |= {"fixed": "true"} if value.fixed else {}
     parts |= {} if math.isnan(value.stderr) else {"stderr": _value(value.stderr)}
     return inline_text(parts)
+
+
+class _Printer(StrPrinter):
+    """Prints like sympy, but floats with all their digits."""
+
+    def _print_Float(self, expr: sp.Float) -> str:
+        return repr(float(expr))
+
+    def _print_Abs(self, expr: sp.Abs) -> str:
+        return f"abs({self._print(expr.args[0])})"
+
+    def _print_Exp1(self, expr: sp.Expr) -> str:
+        return "exp(1)"
+
+
+def expression_text(expression: sp.Expr, *, name: str) -> str:
+    """Text that `read_expression` reads as the same expression.
+
+    name: of the part, for the message
+    raises ModelError: there is no such text, because of other functions or unusual names
+    """
+    text = str(_Printer().doprint(expression))
+    try:
+        same = read_expression(text, where=name) == expression
+    except ExperimentError as error:
+        raise ModelError(f"{error}: it has no form in a file") from None
+    if not same:
+        raise ModelError(f"{name}: {quote(text)} has no form in a file: it reads as another")
+    return text

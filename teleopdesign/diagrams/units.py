@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..blocks import Body
 from .parts import AnyBlock, Control
 from .wiring import Diagram

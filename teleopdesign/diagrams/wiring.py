@@ -13,17 +13,25 @@ from typing import TypeGuard
 import sympy as sp
 
 from ..base.arguments import check_types
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, check_name, did_you_mean
 from ..base.frozen import Frozen
-from ..base.names import check_name
-from ..base.notebook import html_table
-from ..base.quantity import QUANTITIES
+from ..base.shown import html_table
+from ..base.units import QUANTITIES
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from .junctions import Junction, Kinematics, Weight, position_symbol
 from .one_axis import require_one_axis
-from .part_text import list_laws, write_equation
-from .parts import AnyBlock, Attached, Block, Control, Linked, Moving, Part
+from .parts import (
+    AnyBlock,
+    Attached,
+    Block,
+    Control,
+    Linked,
+    Moving,
+    Part,
+    list_laws,
+    write_equation,
+)
 
 
 @check_types

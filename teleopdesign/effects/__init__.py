@@ -17,11 +17,10 @@ from types import ModuleType
 from weakref import WeakValueDictionary
 
 from ..base.arguments import check_arguments
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, check_name, did_you_mean
+from ..base.folders import Shelf
 from ..base.frozen import Catalogue
-from ..base.names import check_name
-from ..base.shelves import Shelf
-from ..base.users_files import checked_path, laws_of, load_once, run
+from ..base.recipes import checked_path, laws_of, load_once, run
 from ._effect import (
     CONTACT_ROLES,
     FURTHER,

@@ -99,4 +99,6 @@ def linear_form(effect: Effect, s: sp.Symbol, values: Mapping[str, Any] | None) 
     states_in_s = sp.solve([s * states[n] - rate for n, rate in rates.items()], *states.values())
     law = law.subs(states_in_s) if rates else law
     law = law.replace(delayed, lambda signal, delay: signal * sp.exp(-s * delay))
-    return sp.simplify(law / drive)
+    form = law / drive
+    # where the drive has cancelled, the form is simple; `simplify` would load the units of sympy
+    return sp.simplify(form) if form.has(drive) else form

@@ -28,9 +28,9 @@ from typing import Any
 import sympy as sp
 
 from ..base.arguments import check_types
-from ..base.notebook import html_table
-from ..base.quantity import unit_of
 from ..base.recipes import recipe
+from ..base.shown import html_table
+from ..base.units import unit_of
 from ._derived import channels, fix_at_zero, led_momentum, linear_form, phase, strength
 from ._facts import RecordFacts
 from ._parameter import PERIOD, FitSearch, Parameter, positive_amplitude

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ..base.arguments import check_types
 from ..base.errors import ModelError, did_you_mean
-from ..base.quantity import QUANTITIES
+from ..base.units import QUANTITIES
 
 
 def positive_amplitude(values: Mapping[str, float]) -> dict[str, float]:

@@ -23,8 +23,8 @@ import sympy as sp
 
 from ..base.arguments import check_types
 from ..base.errors import ModelError
-from ..base.quantity import MAINS
 from ..base.recipes import remember
+from ..base.units import MAINS
 from ._effect import SIGNALS, Effect, Energy, Parameter, State
 from ._facts import RecordFacts
 

@@ -7,7 +7,7 @@ then this one, as far as the records can be compared and nothing before contradi
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from ._list import check_experiment as check_experiment

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ..base.finding import Finding, Findings
-from ..base.shelves import Shelf
+from ..base.folders import Shelf
 from ..check import RecordingCheck, findings_of, in_turn, look_at, not_checked
 from ..measurement.experiment import Experiment
 from ..model import Model

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..base.finding import Finding
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..diagnose.candidates import tells_place_from_time
 from ..measurement.filtering import Array
 from ..measurement.first_guess import hardly_varies

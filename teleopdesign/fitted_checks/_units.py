@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from ..base.finding import Finding
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..blocks import Body
 from ..check import CheckedRecording
 from ._force_balance import ForceBalance

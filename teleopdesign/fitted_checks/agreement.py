@@ -12,8 +12,8 @@ from dataclasses import replace
 from itertools import combinations
 
 from ..base.finding import Finding
-from ..base.quantity import unit_of
-from ..base.standard_error import with_standard_error
+from ..base.sentences import with_standard_error
+from ..base.units import unit_of
 from ..check import CheckedRecording, RecordingCheck
 from ..check.computed_command import describe_computed
 from ..measurement.experiment import Experiment

@@ -10,9 +10,8 @@ from itertools import combinations, zip_longest
 import numpy as np
 
 from ..base.finding import Finding
-from ..base.quantity import unit_after_number, unit_of
-from ..base.rounding import round_near
-from ..base.standard_error import with_standard_error
+from ..base.sentences import round_near, with_standard_error
+from ..base.units import unit_after_number, unit_of
 from ..check import CheckedRecording, RecordingCheck
 from ..diagnose.candidates import Candidate, bodies_with_measured_force, candidates
 from ..diagnose.criteria import CRITERIA

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from ..derive import transfer_function as transfer_function
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .margins import phase_margin as phase_margin
     from .matrix_response import MatrixResponse as MatrixResponse
     from .matrix_response import matrix_response as matrix_response
-    from .measured_impedance import measured_impedance as measured_impedance
+    from .measured_response import measured_impedance as measured_impedance
     from .measured_response import measured_response as measured_response
     from .measured_response import simulated_response as simulated_response
     from .quasi_linear import quasi_linear_impedance as quasi_linear_impedance

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.plain_data import write_json, write_netcdf
+from ..base.files import write_json, write_netcdf
+from ..base.frozen import ByValue
+from ..base.shown import Shown, figure_of
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class ImpedanceMap(ByValue):
+class ImpedanceMap(Shown, ByValue):
     """Impedance relative to position over `case`, `frequency` (Hz) and, on a grid, `amplitude`.
 
     data: `impedance`, complex, force per position; spring 0, damper and friction 90, mass 180 deg
@@ -95,11 +96,9 @@ class ImpedanceMap(ByValue):
         model: drawn as lines; this map is then drawn as points
         columns: of the page, 3.5 in or 7.16 in wide
         """
-        from ..show.figures.frequency_impedance import plot_impedance
-
         more = not self.on_profile and self.data.sizes["amplitude"] > self.data.sizes["frequency"]
         chosen: Literal["frequency", "amplitude"] = "amplitude" if more else "frequency"
-        return plot_impedance(self, against=against or chosen, model=model, columns=columns)
+        return figure_of(self, against=against or chosen, model=model, columns=columns)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write all data with units to a netCDF file, the impedance as real and imaginary part."""
@@ -122,25 +121,6 @@ class ImpedanceMap(ByValue):
             for case in self.data["case"].values
         }
         write_json(path, {**written, "cases": cases})
-
-    def __repr__(self) -> str:
-        f, a = self.data["frequency"].values, self.data["amplitude"].values
-        unit = self.data["amplitude"].attrs["units"]
-        how = "following frequency" if self.on_profile else f"{len(a)} of them at each"
-        lines = [
-            f"{'Measured' if self.measured else 'Quasi-linear'} impedance, {len(f)} frequencies "
-            f"{f.min():g} to {f.max():g} Hz, amplitude {a.min():g} to {a.max():g} {unit}, {how}"
-        ]
-        for case in self.data["case"].values:
-            z, p = self.decibel.sel(case=case), self.phase.sel(case=case)
-            line = (
-                f"  {case!s:<8} {float(z.min()):.1f} to {float(z.max()):.1f} {z.attrs['units']}, "
-                f"{float(p.min()):.0f} to {float(p.max()):.0f} deg"
-            )
-            if self.measured:
-                line += f", settled to {float(self.data['unsettled'].sel(case=case).max()):.1g}"
-            lines.append(line)
-        return "\n".join(lines)
 
 
 def _parts(z: xarray.DataArray) -> dict[str, xarray.DataArray]:

@@ -13,21 +13,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 import sympy as sp
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.frozen import ByValue
+from ..base.shown import Shown
 from ..derive.elimination import rows
-from ..derive.with_values import symbol_values
+from ..derive.transfer_functions import symbol_values
 from ..diagrams import Diagram, Moving
 from ..realise.lti import linear_blocks, numerical
 from ..realise.parted import linear_parted
 
 if TYPE_CHECKING:
-    import control
     import xarray
+
+    from ..base import python_control as control
 
 
 @dataclass(frozen=True, eq=False)
-class MatrixResponse(ByValue):
+class MatrixResponse(Shown, ByValue):
     """Response of several outputs to several inputs.
 
     data: complex, over frequency (Hz), output and input;  left_out: names without linear form
@@ -42,16 +44,10 @@ class MatrixResponse(ByValue):
 
     def frd(self) -> control.FRD:
         """The response as a python-control frequency response."""
-        import control
+        from ..base import python_control as control
 
         values = np.moveaxis(self.data.values, 0, -1)
         return control.frd(values, 2 * np.pi * self.data["frequency"].values)
-
-    def __repr__(self) -> str:
-        shape = f"{len(self.data['output'])} outputs from {len(self.data['input'])} inputs"
-        f = self.data["frequency"].values
-        gone = f"; left out: {', '.join(self.left_out)}" if self.left_out else ""
-        return f"Response of {shape}, {f[0]:g} to {f[-1]:g} Hz{gone}"
 
 
 def matrix_response(

@@ -14,7 +14,7 @@ import numpy as np
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..blocks import Body
 from ..controllers import Controller
 from ..derive import block_symbol, transfer
@@ -22,10 +22,10 @@ from ..derive.printing import dead_time_symbol, motion_controller_symbol
 from ..diagrams import Control, Diagram
 from ..diagrams.units import first_axis
 from ..realise.lti import S, linear_blocks
-from .cases import cases_of
 from .describing_function import describing_function, driven_gain
 from .grid import Amplitude, Grid
 from .impedance_map import ImpedanceMap
+from .response import cases_of
 
 #: relative change at the end of the iteration for the phase of a controller's input; most
 #: iterations

@@ -4,25 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError, did_you_mean
-from ..base.plain_data import write_netcdf
+from ..base.files import write_netcdf
+from ..base.frozen import ByValue
+from ..base.shown import Shown, figure_of
 from ..derive import with_values
 from ..diagrams import Diagram
 from ..realise.lti import numerical
 from ..realise.tips import linear_tips
-from .cases import cases_of
 
 if TYPE_CHECKING:
-    import control
     import matplotlib.figure
     import xarray
 
+    from ..base import python_control as control
+
+
+Array = NDArray[np.float64]
 #: powers of frequency between which a magnitude lies, and the highest phase (deg) at its start:
 #: limits halfway between whole powers
 _STARTS = (
@@ -31,47 +36,71 @@ _STARTS = (
 
 
 @dataclass(frozen=True, eq=False)
-class FrequencyResponse(ByValue):
-    """Magnitude and phase (degrees, unwrapped) over `case` and `frequency` (Hz).
+class FrequencyResponse(Shown, ByValue):
+    """Magnitude and phase of each case over frequency.
 
     The phase of a magnitude that falls begins from -270 to 90 degrees, of one that rises from -90
     to 270, of a level one from -180 to 180: a mass has -180 degrees from force to position.
 
-    left_out: case -> names without linear form;  output, input: signals
+    frequency: Hz, (n,);  magnitude: in `unit`, (cases, n);  phase: degrees, unwrapped, (cases, n)
+    output, input: signals;  left_out: case -> names without linear form
+    speed: m/s or rad/s, at which smoothed friction and schedules are frozen
+    measured: whether the response was measured: it is drawn as points instead of lines
     """
 
-    data: xarray.Dataset
+    cases: tuple[str, ...]
+    frequency: Array
+    magnitude: Array
+    phase: Array
+    unit: str
     output: str
     input: str
     left_out: Mapping[str, tuple[str, ...]]
+    speed: float = 0.0
+    measured: bool = False
 
-    @property
-    def measured(self) -> bool:
-        """Whether the response was measured: it is drawn as points instead of lines."""
-        return bool(self.data.attrs.get("measured", 0))
+    @cached_property
+    def data(self) -> xarray.Dataset:
+        """Magnitude and phase over `case` and `frequency`, with their units."""
+        import xarray  # its import takes longer than a Bode plot
 
-    def values(self, case: str = "") -> np.ndarray:
-        """Complex response over frequency, (n,), of a case; default: the first."""
-        name = case or str(self.data["case"].values[0])
-        known = [str(c) for c in self.data["case"].values]
-        if name not in known:
+        dims = ("case", "frequency")
+        further = {"measured": 1} if self.measured else {"speed": self.speed}
+        return xarray.Dataset(
+            {
+                "magnitude": (dims, self.magnitude, {"units": self.unit}),
+                "phase": (dims, self.phase, {"units": "deg"}),
+            },
+            {"case": list(self.cases), "frequency": ("frequency", self.frequency, {"units": "Hz"})},
+            {"output": self.output, "input": self.input, **further},
+        )
+
+    def row(self, case: str = "") -> int:
+        """Row of a case (default: the first) in magnitude and phase.
+
+        raises ModelError: no case of that name
+        """
+        if case and case not in self.cases:
             raise ModelError(
-                f'frequency response: no case "{name}", has {", ".join(known)}'
-                f"{did_you_mean(name, known)}"
+                f'frequency response: no case "{case}", has {", ".join(self.cases)}'
+                f"{did_you_mean(case, self.cases)}"
             )
-        one = self.data.sel(case=name)
-        turned = np.exp(1j * np.radians(one["phase"].values))
-        return np.asarray(one["magnitude"].values * turned)
+        return self.cases.index(case) if case else 0
+
+    def values(self, case: str = "") -> NDArray[np.complex128]:
+        """Complex response over frequency, (n,), of a case; default: the first."""
+        k = self.row(case)
+        return np.asarray(self.magnitude[k] * np.exp(1j * np.radians(self.phase[k])))
 
     def is_zero(self, case: str = "") -> bool:
         """Whether a case (default: the first) is zero at every frequency: it has no decibels."""
-        return not self.values(case).any()
+        return not self.magnitude[self.row(case)].any()
 
     def as_frd(self, case: str = "") -> control.FrequencyResponseData:
         """A case (default: the first) as python-control frequency response data, in rad/s."""
-        import control
+        from ..base import python_control as control
 
-        return control.frd(self.values(case), 2 * np.pi * self.data["frequency"].values)
+        return control.frd(self.values(case), 2 * np.pi * self.frequency)
 
     def plot(
         self, *, measured: FrequencyResponse | None = None, columns: Literal[1, 2] = 1
@@ -80,32 +109,17 @@ class FrequencyResponse(ByValue):
 
         measured: drawn as points in the same plot;  columns: of the page, 3.5 in or 7.16 in wide
         """
-        from ..show.figures.frequency import plot_bode
-
-        return plot_bode(self, measured=measured, columns=columns)
+        return figure_of(self, measured=measured, columns=columns)
 
     def plot_nyquist(
         self, *, measured: FrequencyResponse | None = None, columns: Literal[1, 2] = 1
     ) -> matplotlib.figure.Figure:
         """Plot the imaginary against the real part, one line for each case; see `plot`."""
-        from ..show.figures.frequency import plot_nyquist
-
-        return plot_nyquist(self, measured=measured, columns=columns)
+        return figure_of(self, kind="nyquist", measured=measured, columns=columns)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write magnitude and phase with their units to a netCDF file."""
         write_netcdf(path, self.data)
-
-    def __repr__(self) -> str:
-        f = self.data["frequency"].values
-        head = f"Frequency response {self.input} to {self.output}, {f[0]:g} to {f[-1]:g} Hz, at "
-        if self.measured:
-            return f"{head.removesuffix(', at ')}, measured"
-        lines = [f"{head}speed {self.data.attrs['speed']:g}"]
-        for case, gone in self.left_out.items():
-            zero = "zero at every frequency, " if self.is_zero(case) else ""
-            lines.append(f"  {case}: {zero}left out: {', '.join(gone) or 'nothing'}")
-        return "\n".join(lines)
 
 
 def bode(
@@ -137,30 +151,25 @@ def bode(
         )
         rows.append(numerical(expression)(2j * np.pi * f))
         left_out[name] = linear.left_out
-    data = label_response(
-        np.array(rows), list(cases), f, unit=ratio_unit(linear_tips(diagram), output, input)
+    values = np.array(rows)
+    return FrequencyResponse(
+        tuple(cases),
+        f,
+        np.abs(values),
+        phase_of(values, f),
+        ratio_unit(linear_tips(diagram), output, input),
+        output,
+        input,
+        left_out,
+        speed=abs(speed),
     )
-    data.attrs |= {"output": output, "input": input, "speed": abs(speed)}
-    return FrequencyResponse(data, output, input, left_out)
 
 
-def label_response(
-    values: np.ndarray, cases: list[str], frequency: np.ndarray, *, unit: str
-) -> xarray.Dataset:
-    """Magnitude and phase of complex values (cases, n) over frequency (n,) in Hz."""
-    import xarray
-
+def phase_of(values: NDArray[np.complex128], frequency: Array) -> Array:
+    """Phase (degrees, unwrapped) of complex values (cases, n) over frequency (n,) in Hz."""
     phase = np.degrees(np.unwrap(np.angle(values), axis=1))
     turns = (phase[:, 0] - _highest_start(np.abs(values), frequency)) / 360
-    phase -= 360 * np.ceil(turns)[:, None]
-    dims = ("case", "frequency")
-    return xarray.Dataset(
-        {
-            "magnitude": (dims, np.abs(values), {"units": unit}),
-            "phase": (dims, phase, {"units": "deg"}),
-        },
-        {"case": cases, "frequency": ("frequency", frequency, {"units": "Hz"})},
-    )
+    return np.asarray(phase - 360 * np.ceil(turns)[:, None])
 
 
 def _highest_start(size: np.ndarray, frequency: np.ndarray) -> np.ndarray:
@@ -190,3 +199,12 @@ def ratio_unit(diagram: Diagram, output: str, source: str) -> str:
     units = signal_units(diagram)
     above, below = units(output), units(source)
     return "1" if above == below else f"{above}/{below}"
+
+
+def cases_of(diagrams: Diagram | Mapping[str, Diagram]) -> dict[str, Diagram]:
+    """Case -> diagram; a single diagram has its name as case. Raises ModelError: no diagram."""
+    if isinstance(diagrams, Diagram):
+        return {diagrams.name: diagrams}
+    if not diagrams:
+        raise ModelError("diagrams: found none, expected a diagram, or several by case")
+    return dict(diagrams)

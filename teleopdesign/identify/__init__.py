@@ -8,7 +8,7 @@ second opinion on the same data.
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .coulomb_level import CoulombLevel as CoulombLevel
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from .largest_stiffness import (
         largest_stiffness_without_oscillation as largest_stiffness_without_oscillation,
     )
-    from .mean_error import mean_error as mean_error
     from .steady_runs import SteadyRun as SteadyRun
+    from .steady_runs import mean_error as mean_error
     from .steady_runs import steady_runs as steady_runs
 
 __getattr__, __dir__, __all__ = lazy_face(__name__)

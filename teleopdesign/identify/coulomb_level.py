@@ -17,15 +17,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError
-from ..base.plain_data import make_plain, write_json
-from ..base.quantity import unit_of
-from ..base.standard_error import with_standard_error
+from ..base.files import make_plain, write_json
+from ..base.frozen import ByValue
+from ..base.shown import Shown, figure_of
+from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
-from .mean_error import mean_error
-from .steady_runs import SteadyRun, steady_runs
+from .steady_runs import SteadyRun, mean_error, steady_runs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -67,7 +66,7 @@ class Line(ByValue):
 
 
 @dataclass(frozen=True, eq=False)
-class CoulombLevel(ByValue):
+class CoulombLevel(Shown, ByValue):
     """Friction over speed, from runs at constant speed.
 
     runs: all runs in the recording;  speeds: friction at each speed with runs in both directions
@@ -87,9 +86,7 @@ class CoulombLevel(ByValue):
 
     def plot(self) -> Figure:
         """Plot force against velocity: every run, and the line with the level at rest."""
-        from ..show.figures.force_velocity_curve import plot_force_velocity_curve
-
-        return plot_force_velocity_curve(self)
+        return figure_of(self)
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data, SI units; null for a number that is not finite."""
@@ -134,32 +131,6 @@ class CoulombLevel(ByValue):
     def lines(self) -> dict[str, Line | None]:
         """The three lines by name: "both ways", "forward", "backward"."""
         return {"both ways": self.line, "forward": self.forward, "backward": self.backward}
-
-    def __repr__(self) -> str:
-        force, speed = unit_of("force", self.axis), unit_of("velocity", self.axis)
-        damping = unit_of("damping", self.axis)
-        lines = [f'Runs at constant speed of "{self.experiment}": {len(self.runs)}']
-        for name, line in self.lines.items():
-            if line is not None:
-                what = "Coulomb level" if name == "both ways" else "level and constant force"
-                level = with_standard_error(line.level, line.level_error)
-                slope = with_standard_error(line.damping, line.damping_error)
-                lines.append(f"  {name}: {what} {level} {force}, damping {slope} {damping}")
-        if self.level is None:
-            lines.append("  no Coulomb level: runs at two speeds are needed both ways")
-        elif self.line is None:
-            lines.append(
-                f"  mean of both: Coulomb level {with_standard_error(*self.level)} {force}, for no "
-                "two speeds were run both ways over one travel"
-            )
-        for s in self.speeds:
-            lines.append(
-                f"  at {s.speed:.4g} {speed}: friction "
-                f"{with_standard_error(s.friction, s.friction_error)} {force}, constant force "
-                f"{with_standard_error(s.middle, s.middle_error)} {force} "
-                f"({s.pairs} pair{'s' * (s.pairs > 1)})"
-            )
-        return "\n".join(lines)
 
 
 def coulomb_level(

@@ -14,16 +14,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.quantity import unit_of
+from ..base.frozen import ByValue
+from ..base.shown import Shown
 from ..blocks import Body
 from ..diagrams import Diagram
 from ..simulate import Sampling, Simulation, simulate
 
 
 @dataclass(frozen=True, eq=False)
-class LargestStiffness(ByValue):
+class LargestStiffness(Shown, ByValue):
     """The largest stiffness without oscillation, N/m.
 
     stiffness: inf if the largest simulated one does not oscillate, 0 if the smallest does
@@ -38,15 +38,6 @@ class LargestStiffness(ByValue):
     kick: float
     decay: float
     axis: str = "prismatic"
-
-    def __repr__(self) -> str:
-        unit, speed = unit_of("stiffness", self.axis), unit_of("velocity", self.axis)
-        return (
-            f"Largest stiffness without oscillation: {self.stiffness:.4g} {unit}, "
-            f"{self.oscillates:.4g} {unit} oscillates ({self.simulations} simulations of a kick of "
-            f"{self.kick:g} {speed}; it oscillates where more than {self.decay:g} of the rms "
-            "speed is left)"
-        )
 
 
 def largest_stiffness_without_oscillation(

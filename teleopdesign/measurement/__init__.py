@@ -11,7 +11,7 @@ form.
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .channel import Channel as Channel

@@ -11,10 +11,10 @@ import numpy as np
 
 from ..arms import Chain, Link, inertia_about, read_urdf, rotation_of
 from ..arms.chain import GRAVITY, Array, tensor
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError, did_you_mean, quote
-from ..base.toml_table import Table, describe_toml_value
-from ..base.whole_files import follow_links
+from ..base.files import follow_links
+from ..base.frozen import ByValue
+from ..base.toml import Table, describe_toml_value
 from .description import BODY, BodyDescription, body_from, effects_from, value_from
 
 #: treatment of inertial parameters: estimated, or taken from the description

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..base.errors import ExperimentError, did_you_mean, quote
-from ..base.quantity import si_factor, to_si
-from ..base.toml_table import Table
+from ..base.toml import Table
+from ..base.units import si_factor, to_si
 from .conversion import KEYS, Conversion, conversion_of
 from .description import ONE_BODY, BodyDescription
 

@@ -7,7 +7,7 @@ import re
 import unicodedata
 from functools import lru_cache
 
-from ..base.quantity import is_unit, measures, noun_of
+from ..base.units import is_unit, measures, noun_of
 from .conversion import COUNTS
 from .doors._log import bare_column
 

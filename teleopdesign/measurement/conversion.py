@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError, quote
-from ..base.quantity import converting_factor, is_unit, measures, si_factor, to_si
-from ..base.toml_table import Table, describe_toml_value
+from ..base.toml import Table, describe_toml_value
+from ..base.units import converting_factor, is_unit, measures, si_factor, to_si
 from .signed_numbers import SIGN_BIT, TWOS_COMPLEMENT, SignCode, sign_code_from
 
 Array = NDArray[np.float64]

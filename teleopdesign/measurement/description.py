@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..base.errors import ExperimentError, did_you_mean, quote
-from ..base.quantity import AXES, to_si
-from ..base.toml_table import Table
+from ..base.toml import Table
+from ..base.units import AXES, to_si
 
 ONE_BODY = ("device",)
 TWO_BODIES = ("master", "slave")

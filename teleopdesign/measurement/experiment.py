@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import final
 
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError, did_you_mean, quote
-from ..base.notebook import html_table
-from ..base.quantity import unit_of
-from ..base.toml_table import Table, describe_toml_value, read_toml
-from ..base.whole_files import follow_links
+from ..base.files import follow_links
+from ..base.frozen import ByValue
+from ..base.shown import html_table
+from ..base.toml import Table, describe_toml_value, read_toml
+from ..base.units import unit_of
 from .arm_description import ArmDescription, arm_from
 from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sample_rate_from
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ..base.errors import ExperimentError
-from ..base.toml_table import read_toml
+from ..base.toml import read_toml
 
 #: bytes that are read at once
 _BLOCK = 1 << 20

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..base.arguments import check_types
 from ..base.errors import ExperimentError, did_you_mean, quote
-from ..base.quantity import AXES, unit_of
-from ..base.toml_table import Table
+from ..base.toml import Table
+from ..base.units import AXES, unit_of
 from .channel import BODY_QUANTITIES, channels_from, sample_rate_from
 from .column_names import as_unit, likeness, unfit_unit, unit_in_name, why_no_unit
 from .description import BodyDescription, ModelValue, bodies_from

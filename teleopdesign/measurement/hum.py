@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-from ..base.quantity import MAINS
+from ..base.units import MAINS
 from .filtering import Array
 
 #: Hz to either side of the mains frequency: the range of the usual power, and the range of the tone

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from .encoder import reading_noise, reading_step
 from .filtering import Array, Spectrum, spectrum
 from .held_command import held_command

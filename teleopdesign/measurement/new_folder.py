@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import ExperimentError
-from ..base.plain_data import write_beside, write_text
-from ..base.toml_table import Table
-from ..base.toml_text import comment_text, inline_text, string_text
+from ..base.files import write_beside, write_text
+from ..base.toml import Table, comment_text, inline_text, string_text
 from .channel import channels_from, sample_rate_from
 from .description import bodies_from
 from .encoder import reading_step, rests

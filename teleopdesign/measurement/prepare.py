@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError
+from ..base.frozen import ByValue
 from .bandwidth import bandwidth_of
 from .experiment import Experiment
 from .filtering import Array, spectrum

@@ -8,8 +8,8 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
-from ..base.notebook import html_table
+from ..base.frozen import ByValue
+from ..base.shown import html_table
 from .channel import Channel, conversion_to_si, factor_of
 from .description import BodyDescription
 from .log_clock import clock_of_log

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.errors import ExperimentError
-from ..base.plain_data import write_beside, write_text
-from ..base.quantity import unit_of
-from ..base.toml_text import comment_text, inline_text, string_text
+from ..base.files import write_beside, write_text
+from ..base.toml import comment_text, inline_text, string_text
+from ..base.units import unit_of
 from .channel import BODY_QUANTITIES
 from .description import BodyDescription, ModelValue
 from .reading import reading_table

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
 from .filtering import Array
 
 if TYPE_CHECKING:

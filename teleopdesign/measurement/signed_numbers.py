@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
-from ..base.toml_table import Table
+from ..base.toml import Table
 
 Array = NDArray[np.float64]
 

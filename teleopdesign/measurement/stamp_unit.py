@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.quantity import si_factor
+from ..base.units import si_factor
 
 Array = NDArray[np.float64]
 

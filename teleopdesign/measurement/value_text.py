@@ -6,7 +6,7 @@ import math
 import re
 
 from ..base.errors import ExperimentError
-from ..base.quantity import AXES, is_unit, measures
+from ..base.units import AXES, is_unit, measures
 from .column_names import unit_of_text
 
 _NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)")

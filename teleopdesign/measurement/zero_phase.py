@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.machine_code import compile_and_keep
+from ..base.machine import compile_and_keep
 from .filtering import CONTINUED, Array
 
 

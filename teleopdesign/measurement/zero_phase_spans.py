@@ -13,7 +13,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.machine_code import compile_and_keep
+from ..base.machine import compile_and_keep
 from .filtering import Array
 from .zero_phase import copy_rows, go_on, sections, settle, zero_phase
 

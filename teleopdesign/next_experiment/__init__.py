@@ -8,7 +8,7 @@ show_in_simulation(proposal)                # each rival is made the truth, and 
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .arm_paths import ArmPaths as ArmPaths
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from .prediction import Separation as Separation
     from .proposal import Proposal as Proposal
     from .proposal import Reference as Reference
+    from .proposal import proposal_data as proposal_data
+    from .proposal import write_reference as write_reference
     from .propose import propose as propose
-    from .reference_csv import write_reference as write_reference
     from .remedies import Remedy as Remedy
     from .rivals import Rival as Rival
-    from .words import proposal_data as proposal_data
 
 __getattr__, __dir__, __all__ = lazy_face(__name__)

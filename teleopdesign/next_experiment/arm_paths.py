@@ -18,8 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arms.base_parameters import BaseParameters, base_parameters, columns_with_motors
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError
+from ..base.frozen import ByValue
+from ..base.shown import Shown
 from ..diagnose import Diagnosis
 from ..measurement.filtering import Array
 from .limits import Limits, shown_limits
@@ -40,7 +41,7 @@ USED = (0.95, 0.8, 0.65, 0.5)
 
 
 @dataclass(frozen=True, eq=False)
-class ArmPaths(ByValue):
+class ArmPaths(Shown, ByValue):
     """Paths of all joints of an arm: periodic, and at rest at their start.
 
     reference: joint -> position over time;  period: s
@@ -64,19 +65,6 @@ class ArmPaths(ByValue):
     def gain(self) -> float:
         """Geometric mean of the parameters' standard errors, relative to those of the records."""
         return float(np.exp(np.mean(np.log(list(self.errors.values())))))
-
-    def __repr__(self) -> str:
-        best = sorted(self.errors, key=lambda name: self.errors[name])[:3]
-        gained = ", ".join(f"{name} (x {self.errors[name]:.2g})" for name in best)
-        text = (
-            f"paths of {len(self.reference.position)} joints, period {self.period:g} s; standard "
-            f"errors for as many samples as in the records: x {self.gain:.2g} (mean), x "
-            f"{max(self.errors.values()):.2g} at most; condition number of the regressor "
-            f"{self.condition:.3g}, of the records {self.recorded:.3g}"
-        )
-        if self.is_useful:
-            return f"{text}; largest gains: {gained}"
-        return f"no path is better than the present records: {text}"
 
 
 def propose_paths(

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ..base.shown import Shown
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.ladder import find_missing
 from .prediction import run_twice, with_records
@@ -14,7 +15,7 @@ from .rivals import Rival
 
 
 @dataclass(frozen=True)
-class SimulatedDiagnosis:
+class SimulatedDiagnosis(Shown):
     """A diagnosis of the present and the new records, with one rival as the truth.
 
     named: whether the truth, and no other effect instead of it, is named
@@ -23,10 +24,6 @@ class SimulatedDiagnosis:
     truth: Rival
     named: bool
     diagnosis: Diagnosis
-
-    def __str__(self) -> str:
-        what = ", ".join(str(c) for c in self.diagnosis.missing) or self.diagnosis.verdict
-        return f"if {self.truth} is the true effect, the diagnosis states: {what}"
 
 
 def show_in_simulation(

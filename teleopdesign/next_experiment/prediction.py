@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..diagnose.error import error_of
 from ..diagnose.evidence import gain_score
 from ..diagnose.fit import Fit, estimate
@@ -22,8 +22,7 @@ from ..measurement.filtering import Array
 from ..measurement.prepare import Stretch, prepare
 from ..measurement.record import Record
 from ..model import Model
-from .rivals import Rival, pairs
-from .separation import rms_measured
+from .rivals import Rival, pairs, rms_measured
 from .synthesis import Bench, PlannedMotion, record_under
 
 #: the two records of a proposed motion

@@ -8,21 +8,19 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.errors import ModelError, did_you_mean
-from ..base.quantity import si_factor
+from ..base.units import si_factor
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.sensors import sensors_of
 from ..measurement.experiment import Experiment
 from .family import PathPart, Setting, Show, family
-from .following import servo_of
 from .limits import Limits, course_of, shown_limits
+from .path import servo_of
 from .prediction import find_least_determined, predict
 from .proposal import Proposal, Reference
 from .remedies import Remedy, remedies, setups
-from .rivals import Rival, depends_on_time, pairs, rivals_of
+from .rivals import Rival, depends_on_time, floor_force, pairs, present_separation, rivals_of
 from .search import SafeParts, compose, join_paths, try_parts
-from .separation import floor_force, present_separation
 from .synthesis import Bench, plan_motion
-from .words import list_pairs_once, sentence_of
 
 #: s: default of the longest duration of a proposal, and its shortest duration: a short one is
 #: repeated, so that chance counts less
@@ -54,8 +52,9 @@ def propose(
     rivals = rivals_of(diagnosis)
     kept = _merge_limits(diagnosis, limits or {})
     bench = _bench(diagnosis, kept)
+    without_motion = Proposal(diagnosis, rivals, None, (), (), (), {}, kept, bench)
     if not rivals:
-        return _finish_proposal(diagnosis, rivals, kept, bench)
+        return without_motion
     setting = _make_setting(diagnosis, rivals, bench)
     parts = family(setting)
     say(f"simulating {len(parts)} motions")
@@ -63,7 +62,7 @@ def propose(
         parts, rivals, diagnosis.prepared, bench, kept, floor=bench.floor, seed=seed
     )
     if not candidates.parts:
-        return _finish_proposal(diagnosis, rivals, kept, bench)
+        return without_motion
     chosen = compose(candidates, duration + setting.repeated, bench.sample_time)
     reference, path_parts = _reference([candidates.parts[k] for k in chosen], bench)
     plan = plan_motion(join_paths(path_parts), bench)
@@ -79,7 +78,6 @@ def propose(
         diagnosis=diagnosis,
         rivals=rivals,
         reference=reference,
-        sentence="",
         separations=tuple(s for p in predictions for s in p.separations),
         determined=find_least_determined([d for p in predictions for d in p.determined]),
         curves=tuple(c for p in predictions for c in p.curves),
@@ -89,13 +87,7 @@ def propose(
         plan=plan,
     )
     say("simulating changes of the set-up")
-    return sentence_of(replace(proposal, remedies=_remedies(proposal, candidates, setting, seed)))
-
-
-def _finish_proposal(
-    diagnosis: Diagnosis, rivals: tuple[Rival, ...], limits: Mapping[str, Limits], bench: Bench
-) -> Proposal:
-    return sentence_of(Proposal(diagnosis, rivals, None, "", (), (), (), {}, limits, bench))
+    return replace(proposal, remedies=_remedies(proposal, candidates, setting, seed))
 
 
 def _merge_limits(diagnosis: Diagnosis, stated: Mapping[str, Limits]) -> dict[str, Limits]:
@@ -174,7 +166,7 @@ def _remedies(
     diagnosis, bench = proposal.diagnosis, proposal.bench
     inertia = {b: body.parameters["inertia"].value for b, body in diagnosis.model.bodies.items()}
     others = {}
-    for i, j in [p for p in list_pairs_once(proposal) if not proposal.decides(p)][:PAIRS]:
+    for i, j in [p for p in proposal.pairs if not proposal.decides(p)][:PAIRS]:
         a, b = proposal.rivals[i], proposal.rivals[j]
         places = list(dict.fromkeys((a.candidate.at, b.candidate.at)))
         changed = setups(places, diagnosis.prepared, bench, setting, proposal.limits, inertia)

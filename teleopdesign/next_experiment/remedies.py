@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..blocks.body import INERTIA
 from ..diagnose.fit import fit_squares
 from ..diagnose.least_squares import solve_normal
@@ -21,9 +21,8 @@ from ..measurement.prepare import Prepared
 from ..measurement.scales import scales
 from .family import Setting, family
 from .limits import Limits, course_of
-from .rivals import Rival
+from .rivals import Rival, Sums
 from .search import try_parts
-from .separation import Sums
 from .synthesis import Bench
 
 #: factors of a remedy: a sensor that is finer by this, limits that are wider by this

@@ -12,8 +12,7 @@ from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, prepare
 from .family import PathPart
 from .limits import Limits
-from .rivals import Rival, pairs
-from .separation import Sums, normal_matrix, sums_of
+from .rivals import Rival, Sums, normal_matrix, pairs, sums_of
 from .synthesis import Bench, PlannedMotion, plan_motion, record_under
 
 #: an additional part may lower the value of the chosen parts by this share, because it dilutes them

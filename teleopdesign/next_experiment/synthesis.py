@@ -22,8 +22,8 @@ from ..measurement.record import Record
 from ..model import Model
 from ..realise.along_motion import residual_along
 from ..realise.simulated import with_bristle, without_absent
-from .following import Servo, follow_path, with_ramps
 from .limits import BodyPaths
+from .path import Servo, follow_path, with_ramps
 
 #: deflection of ideal friction before it slides, in encoder steps: too small to be read
 BRISTLE_STEPS = 0.3

@@ -11,7 +11,7 @@ A refuted claim contains a motion that releases energy: `claim.record.replay()`.
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .available_storage import AvailableStorage as AvailableStorage

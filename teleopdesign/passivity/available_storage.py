@@ -21,8 +21,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.frozen import ByValue
 from .claims.claim import Evidence
 from .rate_independent import Coulomb, Dahl, Element, compliance
 from .round_trips import most_released

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.errors import ModelError
-from ..base.rounding import round_down, round_up
+from ..base.sentences import round_down, round_up
 from ..controllers import CONTROLLERS, Controller, Stage, controller
 from ..diagrams import haptic_interface
 from ..simulate import Sampling

@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.notebook import html_table
+from ..base.frozen import ByValue
+from ..base.shown import Shown
 from ..diagrams import Diagram
 from .claims.claim import Claim, Proof, Refutation, Unknown
 from .device_claims import device_claims
@@ -55,7 +55,7 @@ class Search:
 
 
 @dataclass(frozen=True, eq=False)
-class DiagramClaims(ByValue):
+class DiagramClaims(Shown, ByValue):
     """Claims about the ports of a diagram, with their verdicts.
 
     ports: all ports;  nonlinear: names of the nonlinear parts
@@ -65,15 +65,6 @@ class DiagramClaims(ByValue):
     ports: tuple[Port, ...]
     nonlinear: tuple[str, ...]
     claims: tuple[TopicClaim, ...]
-
-    def __repr__(self) -> str:
-        lines = [f"{s.heading:<9} {s.topic}: {s.claim.statement}" for s in self.claims]
-        return "\n".join([f"Claims on the {self.diagram.name}", *lines])
-
-    def _repr_html_(self) -> str:
-        rows = [(s.heading, s.topic, s.claim.statement, s.claim.verdict) for s in self.claims]
-        head = ("status", "on", "statement", "by")
-        return html_table(f"Claims on the {self.diagram.name}", head, rows)
 
 
 def diagram_claims(

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..blocks import NINETY_FIVE, Body
 from ..effects import EFFECTS, Effect
 from ..realise.acting_bound import largest_acting_force

@@ -17,8 +17,9 @@ import numpy as np
 import sympy as sp
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.frozen import ByValue
+from ..base.shown import Shown, figure_of
 from ..derive import symbol_values, two_port_functions
 from ..diagrams import Diagram
 from ..diagrams.units import unit_of_value
@@ -36,7 +37,7 @@ _FREQUENCY = (0.01, 1000.0, 201)
 
 
 @dataclass(frozen=True, eq=False)
-class MarginMap(ByValue):
+class MarginMap(Shown, ByValue):
     """Least margins over a grid of frequencies, at each pair of two values.
 
     data: `llewellyn` (dimensionless, -inf where a port alone is active), `passive` (N s/m), and
@@ -49,18 +50,7 @@ class MarginMap(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Llewellyn's margin over both values, and the line where it is zero."""
-        from ..show.figures.margin_map import plot_margin_map
-
-        return plot_margin_map(self)
-
-    def __repr__(self) -> str:
-        first, second = self.data["llewellyn"].dims
-        stable = int((self.data["llewellyn"] >= 0).sum())
-        gone = f"; left out: {', '.join(self.left_out)}" if self.left_out else ""
-        return (
-            f"Llewellyn's margin over {first} and {second}: not below 0 at {stable} of "
-            f"{self.data['llewellyn'].size} points, checked numerically on the axis{gone}"
-        )
+        return figure_of(self)
 
 
 @check_types

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError, ModelError
-from ..base.plain_data import write_netcdf
-from ..base.standard_error import with_standard_error
+from ..base.files import write_netcdf
+from ..base.frozen import ByValue
+from ..base.shown import Shown, figure_of
 from ..blocks import NINETY_FIVE
 from ..measurement import Experiment, Record
 from ..simulate import Simulation
@@ -41,7 +41,7 @@ _AT_REST, _PART = 0.1, 1 / 200
 
 
 @dataclass(frozen=True, eq=False)
-class PortEnergy(ByValue):
+class PortEnergy(Shown, ByValue):
     """Energy into a port over time.
 
     data: over `time` (s): `energy` (J, from the start), `stderr` (J, from the noise of the sensors,
@@ -96,25 +96,11 @@ class PortEnergy(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Figure of the energy over time with its band, and of the intervals of released energy."""
-        from ..show.figures.port_energy import plot_port_energy
-
-        return plot_port_energy(self)
+        return figure_of(self)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write energy, standard error and power with their units as a NetCDF file."""
         write_netcdf(path, self.data)
-
-    def __repr__(self) -> str:
-        final = float(self.data["energy"][-1])
-        error = float(self.data["stderr"][-1])
-        verdict = "energy was released" if self.certain else "no energy was certainly released"
-        if self.certain and self.moves_at_start:
-            verdict += ", or was in the motion, which did not begin at rest"
-        when = 0.0 if abs(self.when) < np.finfo(float).eps else self.when
-        return (
-            f"Energy into the port: {with_standard_error(final, error)} J in the end, "
-            f"least {self.lowest:.4g} J at {when:.4g} s: {verdict}"
-        )
 
 
 def observe(

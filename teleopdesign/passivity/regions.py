@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.by_value import ByValue
+from ..base.frozen import ByValue
+from ..base.shown import Shown
 from .claims.claim import Claim
 
 
 @dataclass(frozen=True, eq=False)
-class Region(ByValue):
+class Region(Shown, ByValue):
     """Status of a claim at each point of a grid of two parameters.
 
     x, y: values of the parameters, (n,) and (m,)
@@ -24,11 +25,6 @@ class Region(ByValue):
     y: np.ndarray
     status: np.ndarray
     holds: np.ndarray
-
-    def __repr__(self) -> str:
-        counts = {s: int((self.status == s).sum()) for s in sorted(set(self.status.ravel()))}
-        total = ", ".join(f"{n} {s}" for s, n in counts.items())
-        return f"Region of {self.status.size} points: {total}"
 
 
 def region(claim: Callable[[float, float], Claim], x: np.ndarray, y: np.ndarray) -> Region:

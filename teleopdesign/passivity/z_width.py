@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
 from ..base.finding import Graph, Series
+from ..base.frozen import ByValue
 from .linear.impedance import exact
 from .linear.positive_real import is_positive_real
 from .theorems.sampled_data import Z, travel_operator

@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.machine_code import compile_and_keep
+from ..base.machine import compile_and_keep
 from ..measurement.filtering import Array
 from ..measurement.zero_phase import filter_both_ways, lanes, margin, sections
 from ..measurement.zero_phase_spans import (

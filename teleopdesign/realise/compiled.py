@@ -25,7 +25,7 @@ from types import ModuleType
 from typing import Any
 from uuid import uuid4
 
-from ..base.machine_code import hash_files, without_cache_errors
+from ..base.machine import hash_files, without_cache_errors
 
 #: folder of the package, whose functions generated source may import
 _PACKAGE = Path(__file__).parents[1]

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..base.quantity import unit_after_number, unit_of
-from ..base.rounding import round_down, round_near, round_up
+from ..base.sentences import round_down, round_near, round_up
+from ..base.units import unit_after_number, unit_of
 from ..blocks import Body, Value
 from ..effects import SIGNALS, Effect, sort_by_action
 from .extremes import Least, Ranges, least_value

@@ -29,7 +29,7 @@ from .simulated import prepare_for_simulation
 from .wired_parts import sum_inputs
 
 if TYPE_CHECKING:
-    import control
+    from ..base import python_control as control
 
 MECHANICS = "mechanics"
 
@@ -105,7 +105,7 @@ def _approximate_delays(
     analog_alone: delays of the computer stay, because it keeps samples
     raises ModelError: a dead time without an order of at least 1
     """
-    import control
+    from ..base import python_control as control
 
     for part in diagram.controls:
         if analog_alone and not part.analog:
@@ -130,7 +130,7 @@ def _approximate_delays(
 
 def _join_parts(names: PrivateNames, prescribed: tuple[str, ...]) -> control.InterconnectedSystem:
     """The parts of the diagram, built on private names, connected by the user's names."""
-    import control
+    from ..base import python_control as control
 
     diagram = names.diagram
     parts = build_equations(_replace_code_by_wires(diagram), prescribed=prescribed)
@@ -232,7 +232,7 @@ def _static(part: Junction | Kinematics, names: PrivateNames) -> Any:
 
 def _rename_signals(system: Any, part: Control, names: PrivateNames) -> Any:
     """A python-control system with the block's name and signals."""
-    import control
+    from ..base import python_control as control
 
     return control.nlsys(
         (lambda t, x, u, params: system.dynamics(t, x, u)) if system.nstates else None,
@@ -255,7 +255,7 @@ def _nlsys(
     numbers: SymbolValues,
     joined: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
 ) -> Any:
-    import control
+    from ..base import python_control as control
 
     def function(expressions: Sequence[sp.Expr]) -> Callable[..., Any]:
         printed = [sp.sympify(e, strict=True).subs(numbers.fixed) for e in expressions]

@@ -22,7 +22,7 @@ from ..diagrams import Control, Diagram, Linked, Moving
 from ..diagrams.second_input import acts_along_another, without_motion
 
 if TYPE_CHECKING:
-    import control
+    from ..base import python_control as control
 
 S = sp.Symbol("s")
 
@@ -137,7 +137,7 @@ def as_transfer_function(expression: sp.Expr, *, delay_order: int = 4) -> contro
     delay_order: of the Pade approximation
     raises ModelError: the expression holds a measured frequency response
     """
-    import control
+    from ..base import python_control as control
 
     def rational(power: sp.Expr) -> sp.Expr:
         tau = float(-sp.diff(power, S))
@@ -157,7 +157,8 @@ def numerical(expression: sp.Expr) -> Callable[[np.ndarray], np.ndarray]:
     inexact = {x: sp.Float(x) for x in expression.atoms(sp.Rational) if not x.is_Integer}
     # an integer may be longer than what numpy takes
     inexact |= {x: sp.Float(x) for x in expression.atoms(sp.Integer) if abs(x) >= 2**31}
-    call = sp.lambdify(S, expression.xreplace(inexact), "numpy")
+    # the module: by its name sympy would import all that belongs to it, f2py and tests included
+    call = sp.lambdify(S, expression.xreplace(inexact), [np])
 
     def values(s: np.ndarray) -> np.ndarray:
         s = np.asarray(s, dtype=complex)

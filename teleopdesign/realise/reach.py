@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..effects import SIGNALS
 
 #: friction bounds are for speeds up to FASTER times the recorded speed, and for times up to LONGER

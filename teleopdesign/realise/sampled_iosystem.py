@@ -23,7 +23,7 @@ from .program import Program, program
 from .simulated import realise_in_computer
 
 if TYPE_CHECKING:
-    import control
+    from ..base import python_control as control
 
 #: largest divisor of an inner step, for bristles or fast oscillations
 _MOST_DIVIDED = 200
@@ -39,7 +39,7 @@ def sampled_iosystem(diagram: Diagram, dt: float, step: float) -> control.Nonlin
     dt: s, period of the computer and step of the system;  step: longest inner step, s
     raises ModelError: an analog signal is late, or a delay takes too many samples
     """
-    import control
+    from ..base import python_control as control
 
     form = realise_in_computer(diagram, dt)
     made = program(form, jit=False)

@@ -16,8 +16,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..base.core_count import count_workers
 from ..base.errors import ModelError
+from ..base.machine import count_workers
 from .kernel import Timing, fastest_rates, first_memory, grid, slopes_at_rest
 from .program import CompiledLoop, Program, loop_of
 

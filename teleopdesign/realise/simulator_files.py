@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from xml.etree import ElementTree
 
 from ..base.errors import ModelError, did_you_mean
-from ..base.quantity import unit_after_number
+from ..base.units import unit_after_number
 from ..blocks import Body
 from ..model import Model
 

@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from ..base.machine_code import compile_and_keep
+from ..base.machine import compile_and_keep
 from ..measurement.filtering import Array
 
 #: rad: angle of the swinging tip in one step, some 38 steps in a period. The force agrees with an

@@ -2,15 +2,15 @@
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .force_displacement import ForceDisplacement as ForceDisplacement
+    from .force_displacement import ForceVelocity as ForceVelocity
     from .force_displacement import Loop as Loop
     from .force_displacement import force_displacement as force_displacement
+    from .force_displacement import force_velocity as force_velocity
     from .force_displacement import loop_of as loop_of
-    from .force_velocity import ForceVelocity as ForceVelocity
-    from .force_velocity import force_velocity as force_velocity
     from .many import simulate_many as simulate_many
     from .sampling import Sampling as Sampling
     from .setup import Setup as Setup

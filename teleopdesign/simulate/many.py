@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..base.errors import ModelError, did_you_mean
 from ..diagrams import Diagram
 from ..realise.simulated import refuse_massless
-from .case_results import CaseResults, Mistake, read_reduction
+from .case_results import CaseResults, GridKey, Mistake, Wave, read_reduction
 from .cases import (
     Group,
     columns_of,
@@ -27,7 +27,6 @@ from .on_grid import Input, samples_of
 from .sampling import SAMPLED, Sampling
 from .setup import Setup, prepare, simulated_form
 from .trajectory import Trajectory
-from .wave import GridKey, Wave
 
 if TYPE_CHECKING:
     import xarray

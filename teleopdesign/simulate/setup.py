@@ -15,9 +15,8 @@ from ..diagrams import Diagram, Moving, with_shared_states
 from ..realise.delays import delay_in_samples, is_whole
 from ..realise.simulated import prepare_for_simulation, realise_in_computer, refuse_massless
 from . import on_grid
-from .on_grid import Input, delay_in_steps, input_table, samples_of, whole_steps
+from .on_grid import Input, StepLadder, delay_in_steps, input_table, samples_of, whole_steps
 from .sampling import SAMPLED, Sampling
-from .step_ladder import StepLadder
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:

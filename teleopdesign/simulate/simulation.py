@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..base.by_name import ByName
-from ..base.by_value import ByValue
 from ..base.errors import ModelError, did_you_mean
-from ..base.notebook import html_table
-from ..base.plain_data import write_beside, write_netcdf
+from ..base.files import write_beside, write_netcdf
+from ..base.frozen import ByName, ByValue
+from ..base.shown import Shown, figure_of
 from ..diagrams import Diagram
 from .on_grid import Input, describe_rounding
 from .sampling import SAMPLED, Sampling
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Simulation(ByName, ByValue):
+class Simulation(Shown, ByName, ByValue):
     """Signals over time.
 
     data: one variable for each signal and hidden state over `time` (s), with units in the
@@ -71,9 +70,7 @@ class Simulation(ByName, ByValue):
 
     def plot(self, *names: str) -> matplotlib.figure.Figure:
         """Plot signals over time, one panel each; default: motion, commanded force, interaction."""
-        from ..show.figures.design import plot_simulation
-
-        return plot_simulation(self, names)
+        return figure_of(self, *names)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the signals with their units to a netCDF file."""
@@ -87,29 +84,6 @@ class Simulation(ByName, ByValue):
         with write_beside(path) as part:
             table = np.column_stack([x.values for x in columns.values()])
             np.savetxt(part, table, "%.9g", ",", header=",".join(names), comments="")
-
-    def _repr_html_(self) -> str:
-        t = self.data["time"].values
-        rows = [
-            (n, f"{np.sqrt(np.mean(x.values**2)):.4g}", x.attrs["units"], x.attrs["text"])
-            for n, x in self.data.items()
-        ]
-        title = f"Simulation of the {self.diagram.name}: {t[-1]:g} s, {len(t)} rows"
-        return html_table(
-            title, ("signal", "rms", "unit", ""), rows, note=self.data.attrs["scheme"]
-        )
-
-    def __repr__(self) -> str:
-        t, a = self.data["time"].values, self.data.attrs
-        lines = [
-            f"Simulation of the {self.diagram.name}: {t[-1]:g} s, {len(t)} rows, {a['scheme']}"
-        ]
-        for name, x in self.data.items():
-            size = float(np.sqrt(np.mean(x.values**2)))
-            error = x.attrs.get("step_error")
-            of_step = "" if error is None else f"  error of the step {error:.1e} of the largest"
-            lines.append(f"  {name:<28} rms {size:<10.4g} {x.attrs['units']:<6}{of_step}".rstrip())
-        return "\n".join(lines)
 
 
 def simulate(

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
+from ..base.frozen import ByValue
 
 _FEWEST = 6  # samples that a quintic spline needs
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..diagrams import Attached, Control, Diagram, Linked, Moving
 from ..diagrams.junctions import Weight
 from ..diagrams.units import first_axis

@@ -15,21 +15,21 @@ result.plot.map("force_error")
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .case import SimulatedCase as SimulatedCase
     from .chosen_measures import Measure as Measure
     from .chosen_measures import measure as measure
-    from .diagnosed import diagnose_recording as diagnose_recording
+    from .from_toml import diagnose_recording as diagnose_recording
     from .from_toml import read_study_file as read_study_file
     from .measures import MEASURES as MEASURES
-    from .onset import find_onset as find_onset
-    from .onset import growth as growth
+    from .measures import find_onset as find_onset
+    from .measures import growth as growth
     from .outcomes import PointOutcome as PointOutcome
+    from .outcomes import Progress as Progress
     from .point import Amount as Amount
     from .point import Point as Point
-    from .progress import Progress as Progress
     from .result import Study as Study
     from .result import read_study as read_study
     from .run import study as study
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from .samples import random_samples as random_samples
     from .samples import sensitivity_samples as sensitivity_samples
     from .samples import sobol as sobol
-    from .sensitivities import sensitivities as sensitivities
+    from .sensitivity import sensitivities as sensitivities
     from .sensitivity import sensitivity as sensitivity
 
 __getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -17,9 +17,9 @@ from typing import Any, Literal
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError, did_you_mean
-from ..base.quantity import unit_of
+from ..base.frozen import ByValue
+from ..base.units import unit_of
 from ..diagrams import Diagram
 from ..diagrams.units import first_axis, unit_of_value
 from ..simulate import Sampling, Setup, Simulation, Trajectory, prepare, simulate, sine

@@ -7,23 +7,27 @@
 A function takes the result of the point: the simulation where there is a duration, else the diagram
 or the value that the model's function returned. The function returns a number, a text, a mapping of
 names to numbers or texts, or a labelled array.
+
+What is wrong with every point of a study is refused before its first point.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from ..base.arguments import instance, number
-from ..base.by_value import ByValue
-from ..base.errors import ModelError, did_you_mean
-from ..base.expectations import describe_value
+from ..base.errors import ModelError, UnknownSignal, did_you_mean
+from ..base.expectations import describe_value, number_check
+from ..base.frozen import ByValue
+from ..simulate import Setup
+from .case import SimulatedCase
 from .measures import MEASURES
 from .point import Amount, Point, PointFunction
-from .points import check_name
+from .points import Points, check_name
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,3 +178,43 @@ def _amount(value: Any, where: str) -> Amount:
         "expected a number, a text, a mapping of names "
         "to such, or a labelled array"
     )
+
+
+def check_case(case: SimulatedCase, points: Points, measures: Iterable[Measure]) -> None:
+    """Raise ModelError for texts as values, and for names of signals and states that are unknown.
+
+    Numbers out of bounds are no matter of this check: such a point fails, and others do not.
+    """
+    for name, column in points.columns.items():
+        if column.values.dtype.kind not in "biuf":
+            _refuse(name, column.values[0])
+    for name, value in points.fixed.items():
+        if number_check(value) is not None:
+            _refuse(name, value)
+    setup = _setup(case, points)
+    if setup is None:
+        return
+    layout = setup.program.layout
+    for measure in measures:
+        for signal in measure.signals:
+            if signal not in layout.columns:
+                raise ModelError(
+                    f'measure {measure.name}: no signal "{signal}", has '
+                    f"{', '.join(layout.columns)}{did_you_mean(signal, layout.columns)}"
+                )
+
+
+def _refuse(name: str, value: object) -> None:
+    raise ModelError(f"study: {name}: found {describe_value(value)}, expected a number (SI)")
+
+
+def _setup(case: SimulatedCase, points: Points) -> Setup | None:
+    """The simulation at the first point; None if there is none, for reasons of its values."""
+    if not case.duration and "duration" not in points.names:
+        return None
+    try:
+        return case.with_values(points.at(0)).setup()
+    except UnknownSignal:
+        raise
+    except ModelError:
+        return None

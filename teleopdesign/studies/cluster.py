@@ -10,12 +10,11 @@ from functools import lru_cache
 from typing import Any
 
 from ..base.errors import ExperimentError, ModelError
-from .evaluate import StudyTask
-from .one_thread import one_thread
+from ..base.machine import one_thread
+from .evaluate import StudyTask, Unit, evaluate_unit
+from .fingerprint import versions
 from .outcomes import PointOutcome
 from .pool import Sink
-from .side_by_side import Unit, evaluate_unit
-from .versions import versions
 from .worker_processes import pack_task
 
 #: s: duration of a task of the cluster, long against the milliseconds of the scheduler for each

@@ -17,7 +17,7 @@ import numpy as np
 from ..base.errors import ModelError, TeleopDesignError, did_you_mean
 from ..simulate.cases import bounds_of_value
 from .case import SimulatedCase
-from .side_by_side import group_alike, simulate_rows
+from .evaluate import group_alike, simulate_rows
 
 #: steps of a numerical derivative over the scale of the parameter. At 10 % a step is longer than
 #: the jumps of an encoder; at 2e-5 the curvature of smooth signals is 1e-9 of their slope, and

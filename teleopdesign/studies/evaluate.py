@@ -1,19 +1,33 @@
-"""One point of a study: the result of the model at this point, and the measures of this result."""
+"""One point of a study: the result of the model at this point, and the measures of this result.
+
+Points of a study simulated side by side: many lanes of one compiled loop.
+
+Only measures of the package that state their signals are computed in this way. A user's function
+gets a whole simulation, one point at a time. The number of a point alone decides its block, so that
+the same points are side by side on every machine and in every run.
+"""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..base.errors import ModelError, TeleopDesignError, did_you_mean
+import numpy as np
+
+from ..base.errors import GrowsWithoutBound, ModelError, TeleopDesignError, did_you_mean
 from ..diagrams import Diagram
+from ..simulate import Simulation, simulate_many
 from .case import SimulatedCase
 from .chosen_measures import Measure
 from .outcomes import PointOutcome
-from .point import Amount, Point
+from .point import Amount, Point, SignalRows
 from .points import Points, check_name
+
+if TYPE_CHECKING:
+    import xarray
+
 
 _LONGEST_REASON = 300  # most characters of the reason of a failure
 
@@ -118,3 +132,165 @@ def _shorten(text: str) -> str:
 
 def _list_as_tuple(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else value
+
+
+#: points that are computed and stored together
+Unit = tuple[int, ...] | range
+
+#: steps of all simulations of a block, which are lost if the process is killed: about half a
+#: second, and two seconds if the study has `_BLOCKS` such blocks for its workers. The few points
+#: that need up to 200 times finer steps take most of the time, unless enough of them run side by
+#: side
+_STEPS_OF_BLOCK, _STEPS_OF_LARGE = 2e7, 8e7
+_BLOCKS = 8
+#: most numbers in the signals of a block: 0.2 GB
+_NUMBERS_OF_BLOCK = 2e7
+_LEAST_IN_BLOCK, _MOST_IN_BLOCK, _MOST_IN_LARGE = 16, 512, 2048
+
+
+def units_of(task: StudyTask, todo: Iterable[int]) -> list[Unit]:
+    """The points in blocks if they can be simulated side by side, else one by one.
+
+    A block contains all of its points, including points that are not wanted.
+    """
+    size = block_size(task)
+    if size == 1:
+        return [(i,) for i in todo]
+    firsts = sorted({i - i % size for i in todo})
+    return [range(first, min(first + size, len(task.points))) for first in firsts]
+
+
+def block_size(task: StudyTask) -> int:
+    """Number of points of a block; 1 if points cannot be simulated side by side."""
+    case, signals = task.model, signals_of(task)
+    if not isinstance(case, SimulatedCase) or not signals or case.every_step or not case.duration:
+        return 1
+    varied = [n for n in task.points.columns if n in case.diagram.values]
+    is_number = all(c.values.dtype.kind in "biuf" for c in task.points.columns.values())
+    if not varied or not is_number:
+        return 1
+    period = 1e-3 if isinstance(case.computer, str) else case.computer.period
+    one_step = min(case.step, period) / case.duration
+    usual = min(_STEPS_OF_BLOCK * one_step, _MOST_IN_BLOCK)
+    large = min(_STEPS_OF_LARGE * one_step, _MOST_IN_LARGE, len(task.points) / _BLOCKS)
+    by_memory = _NUMBERS_OF_BLOCK * period / (case.duration * len(signals))
+    size = 16 * int(min(max(usual, large), by_memory) / 16)
+    return max(_LEAST_IN_BLOCK, size)
+
+
+def signals_of(task: StudyTask) -> tuple[str, ...]:
+    """Signals that the measures need; empty if one of them may need any signal."""
+    listed = [m.signals for m in task.measures]
+    return () if not all(listed) else tuple(dict.fromkeys(s for one in listed for s in one))
+
+
+def evaluate_unit(task: StudyTask, unit: Unit) -> list[PointOutcome]:
+    """The outcomes of the points of a unit."""
+    if len(unit) == 1:
+        return [evaluate(task, unit[0])]
+    assert isinstance(task.model, SimulatedCase)
+    table = task.points.table(unit[0], unit[-1] + 1)
+    outcomes: dict[int, PointOutcome] = {}
+    for rows, columns, others in group_alike(task.model, table):
+        try:
+            case = task.model.with_values({**task.points.fixed, **others})
+            block = _block(simulate_rows(case, columns, signals_of(task)))
+        except TeleopDesignError:
+            # what is wrong with all of them: each says its reason
+            outcomes |= {unit[row]: evaluate(task, unit[row]) for row in rows}
+            continue
+        for k, row in enumerate(rows):
+            point = _point(task, unit[row], k, block)
+            outcomes[unit[row]] = outcome_of(task, unit[row], point)
+    return [outcomes[index] for index in unit]
+
+
+def group_alike(
+    case: SimulatedCase, table: Mapping[str, np.ndarray]
+) -> Iterator[tuple[list[int], dict[str, np.ndarray], dict[str, Any]]]:
+    """Groups of rows of a table that differ only in values of the diagram, so that lanes fit them.
+
+    table: parameter -> values (rows,)
+    yields: rows, their values of the diagram (arrays), and the values that they share
+    """
+    within = [n for n in table if n in case.diagram.values]
+    beside = [n for n in table if n not in case.diagram.values]
+    groups: dict[tuple[float, ...], list[int]] = {}
+    for row in range(len(next(iter(table.values())))):
+        groups.setdefault(tuple(table[n][row].item() for n in beside), []).append(row)
+    for content, rows in groups.items():
+        columns = {n: table[n][np.array(rows)] for n in within}
+        yield rows, columns, dict(zip(beside, content, strict=True))
+
+
+def simulate_rows(
+    case: SimulatedCase, columns: Mapping[str, np.ndarray], keep: tuple[str, ...]
+) -> xarray.Dataset:
+    """Simulate a case with several values of its diagram; returns signals over `case` and `time`.
+
+    columns: parameter -> values (cases,);  keep: names of the signals
+    """
+    return simulate_many(
+        case.diagram,
+        columns,
+        duration=case.duration,
+        inputs=case.inputs,
+        motion=case.motion,
+        initial=case.initial,
+        computer=case.computer,
+        step=case.step,
+        give=case.give,
+        keep=keep,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Block:
+    """Signals of points that were simulated side by side, as arrays.
+
+    rows: signal -> (points, rows);  reasons: why a point has no signals, or ""
+    """
+
+    time: np.ndarray
+    rows: Mapping[str, np.ndarray]
+    attributes: Mapping[str, Mapping[str, Any]]
+    reasons: tuple[str, ...]
+
+    def check(self, row: int) -> None:
+        """Raise the error with which the simulation of a point ended, if any."""
+        if reason := self.reasons[row]:
+            words = GrowsWithoutBound.words
+            raise GrowsWithoutBound(reason) if words in reason else ModelError(reason)
+
+
+def _block(signals: xarray.Dataset) -> _Block:
+    names = [str(name) for name in signals.data_vars]
+    return _Block(
+        signals["time"].values,
+        {name: signals[name].values for name in names},
+        {name: signals[name].attrs for name in names},
+        tuple(map(str, signals["reason"].values)),
+    )
+
+
+def _point(task: StudyTask, index: int, row: int, block: _Block) -> Callable[[], Point]:
+    """A function that returns the point whose simulation is one row of the block."""
+
+    def rows(name: str) -> SignalRows:
+        block.check(row)
+        return SignalRows(block.time, block.rows[name][row], str(block.attributes[name]["units"]))
+
+    def simulated() -> Simulation:
+        import xarray
+
+        assert isinstance(task.model, SimulatedCase)
+        block.check(row)
+        data: dict[str, Any] = {
+            name: ("time", values[row], block.attributes[name])
+            for name, values in block.rows.items()
+        }
+        time = ("time", block.time, {"units": "s"})
+        return Simulation(task.model.diagram, xarray.Dataset(data, {"time": time}))
+
+    seed = (task.seed, index)
+    return lambda: Point(task.model, task.points.at(index), seed, simulated, rows)

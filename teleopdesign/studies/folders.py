@@ -13,21 +13,18 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError, ModelError
-from ..base.whole_files import follow_links
+from ..base.files import follow_links
+from ..base.frozen import ByValue
 from ..effects import EFFECTS, Effect
 from ..measurement.files import content_digest
 from .chosen_measures import measures_of
-from .evaluate import StudyTask
-from .fingerprint import fingerprint
+from .evaluate import StudyTask, Unit
+from .fingerprint import fingerprint, versions
 from .journal import Journal
-from .outcomes import PointOutcome
+from .outcomes import Clock, PointOutcome, Progress
 from .points import points_of
 from .processes import run_on_this_machine
-from .progress import Clock, Progress
-from .side_by_side import Unit
-from .versions import versions
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis

@@ -18,20 +18,35 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
-from ..base.toml_table import Table, describe_toml_value, read_toml
+from ..base.toml import Table, describe_toml_value, read_toml
 from ..controllers import CONTROLLERS, ControlLaw
 from ..diagrams import Diagram, read_diagram
 from ..effects import EFFECTS, Effect
 from ..simulate import Sampling, sine
-from .axes_from_toml import read_axes, read_whole
 from .chosen_measures import Measure, measure
-from .diagnosed import diagnose_recording
 from .measures import MEASURES
+from .points import read_axes, read_whole
+
+if TYPE_CHECKING:
+    from ..diagnose import Diagnosis
+
+
+def diagnose_recording(experiment: str) -> Diagnosis:
+    """The diagnosis of the recording in that folder; see `find_missing`.
+
+    experiment: path of a folder with experiment.toml;  a model function for `study`
+    raises ExperimentError: no such folder, or an experiment that cannot be read
+    """
+    from ..diagnose import find_missing
+    from ..measurement import load_experiment
+
+    return find_missing(load_experiment(experiment))
+
 
 _NUMBERS = ("step", "give")
 

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
 from ..base.expectations import describe_value
+from ..base.frozen import ByValue
 from ..simulate import Simulation
 from .case import SimulatedCase
 

@@ -17,12 +17,10 @@ from functools import cached_property
 from typing import Any
 
 from ..base.errors import ModelError
-from ..base.process_copies import shield_from_ctrl_c
-from .evaluate import StudyTask
-from .frames import receive, send
+from ..base.machine import shield_from_ctrl_c
+from .evaluate import StudyTask, Unit
 from .outcomes import PointOutcome
-from .side_by_side import Unit
-from .worker_processes import WorkerProcess, pack_task, start_anew, start_copies
+from .worker_processes import WorkerProcess, pack_task, receive, send, start_anew, start_copies
 
 Sink = Callable[[PointOutcome], None]
 

@@ -9,12 +9,9 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable
 
-from ..base.core_count import count_cores
-from ..base.process_copies import can_copy
-from .evaluate import StudyTask
-from .one_thread import one_thread
+from ..base.machine import can_copy, count_cores, one_thread
+from .evaluate import StudyTask, Unit, evaluate_unit
 from .pool import Pool, Sink
-from .side_by_side import Unit, evaluate_unit
 
 #: s: processor time that a process needs before its first point: started anew, or as a copy
 _START_TIME, _COPY_TIME = 2.5, 0.1

@@ -11,19 +11,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_name import ByName
-from ..base.by_value import ByValue
 from ..base.errors import ExperimentError, ModelError, did_you_mean
-from ..base.notebook import html_table
-from ..base.plain_data import write_beside
+from ..base.files import write_beside
+from ..base.frozen import ByName, ByValue
+from ..base.shown import Shown
 from .hdf5_trial import read_on_trial
 from .outcomes import PointOutcome
+from .plots import StudyPlots
 from .points import SAMPLE, Points
 
 if TYPE_CHECKING:
     import xarray
-
-    from ..show.figures.studies import StudyPlots
 
 #: name of the variable with the reason of a failed point; "" for a point that did not fail
 REASON = "failure"
@@ -38,7 +36,7 @@ def without_reason(names: Iterable[str]) -> list[str]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Study(ByName, ByValue):
+class Study(Shown, ByName, ByValue):
     """Measures over the points of a study.
 
     data: one variable for each measure over the axes, NaN (or "") where the point failed, and
@@ -90,8 +88,6 @@ class Study(ByName, ByValue):
     @property
     def plot(self) -> StudyPlots:
         """Figures: .curves(), .map(), .panels(), .sensitivity(); .plot() selects a suitable one."""
-        from ..show.figures.studies import StudyPlots
-
         return StudyPlots(self.data)
 
     def to_netcdf(self, path: str | Path) -> None:
@@ -102,32 +98,6 @@ class Study(ByName, ByValue):
         check_netcdf()
         with write_beside(path) as part:
             self.data.to_netcdf(part, engine="h5netcdf")
-
-    def _repr_html_(self) -> str:
-        rows = [(n, _range(self.data[n]), _unit(self.data[n])) for n in self.measures]
-        return html_table(self._title, ("measure", "from to", "unit"), rows, note=self._failed)
-
-    @property
-    def _title(self) -> str:
-        sizes = " x ".join(f"{n} {d}" for d, n in self.data.sizes.items() if d in self._point_axes)
-        return f"Study of the {self.data.attrs['model']}: {sizes or '1 point'}"
-
-    @property
-    def _point_axes(self) -> tuple[str, ...]:
-        return tuple(str(d) for d in self.data[REASON].dims)
-
-    @property
-    def _failed(self) -> str:
-        counted = self.failures
-        if not counted:
-            return ""
-        first = next(iter(counted))
-        return f"{sum(counted.values())} of {self.data[REASON].size} points failed, most: {first}"
-
-    def __repr__(self) -> str:
-        lines = [self._title]
-        lines += [f"  {n:<24} {_range(self.data[n])} {_unit(self.data[n])}" for n in self.measures]
-        return "\n".join([*lines, *([f"  {self._failed}"] if self._failed else [])])
 
 
 @check_types
@@ -268,18 +238,3 @@ def _explain_misfit(first: tuple[Any, ...], form: tuple[Any, ...], units: list[s
 
 
 _DTYPES: Mapping[str, Any] = {"text": object, "number": float}
-
-
-def _range(array: Any) -> str:
-    values = array.values
-    if values.dtype.kind not in "biuf":
-        counted, counts = np.unique(values.astype(str), return_counts=True)
-        return ", ".join(f"{n} {t}" for t, n in zip(counted, counts, strict=True) if t)[:60]
-    finite = values[np.isfinite(values)]
-    if not finite.size:
-        return "infinite" if np.isinf(values).any() else "no number"
-    return f"{finite.min():.4g} to {finite.max():.4g}"
-
-
-def _unit(array: Any) -> str:
-    return str(array.attrs.get("units", ""))

@@ -16,18 +16,14 @@ from ..measurement.files import content_digest, is_experiment
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from .case import SimulatedCase
-from .case_checks import check_case
-from .chosen_measures import measures_of
-from .evaluate import StudyTask, check_parameters
-from .fingerprint import fingerprint
+from .chosen_measures import check_case, measures_of
+from .evaluate import StudyTask, check_parameters, units_of
+from .fingerprint import fingerprint, versions
 from .journal import Journal
-from .outcomes import PointOutcome
+from .outcomes import Clock, PointOutcome, Progress
 from .points import Points, points_of
 from .processes import run_on_this_machine
-from .progress import Clock, Progress
 from .result import Study, check_netcdf, label_outcomes, read_study, without_reason
-from .side_by_side import units_of
-from .versions import versions
 
 
 def study(

@@ -13,9 +13,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
 from ..base.expectations import describe_value
+from ..base.frozen import ByValue
+from ..base.shown import Shown
 
 Method = Literal["latin_hypercube", "sobol", "random", "sensitivity"]
 #: most points of one sample: 8 bytes each and parameter, 0.8 GB for ten parameters
@@ -25,7 +26,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Samples(ByValue):
+class Samples(Shown, ByValue):
     """Points in several parameters.
 
     names: parameters;  values: (points, parameters), SI;  ranges: of each parameter, in words
@@ -41,10 +42,6 @@ class Samples(ByValue):
 
     def __len__(self) -> int:
         return len(self.values)
-
-    def __repr__(self) -> str:
-        listed = ", ".join(f"{n} {r}" for n, r in zip(self.names, self.ranges, strict=True))
-        return f"{len(self)} points ({self.method}, seed {self.seed}): {listed}"
 
 
 def latin_hypercube(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:

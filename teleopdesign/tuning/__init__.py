@@ -10,7 +10,7 @@ fitted = td.fit_simulation(diagram, record, {"Z_M.coulomb.level": (0.05, 2.0)})
 
 from typing import TYPE_CHECKING
 
-from ..base.faces import lazy_face
+from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from .limits import TuningLimit as TuningLimit

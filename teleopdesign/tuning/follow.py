@@ -13,8 +13,7 @@ from ..diagnose.solve import BLOCK
 from ..passivity.intervals.box import ValueBox
 from ..studies.case import SimulatedCase
 from ..studies.differences import SignalSlopes, simulated_signals, slopes_of
-from .problem import start_values
-from .shares import AT_END, shares_of, unit_box, units_at, values_at
+from .problem import AT_END, shares_of, start_values, unit_box, units_at, values_at
 
 #: number of searches, which start from the best points of the first simulations
 _SEARCHES = 3

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError, UnstableLoop, did_you_mean
-from ..base.quantity import unit_after_number
+from ..base.frozen import ByValue
+from ..base.shown import Shown
 from ..diagrams import Diagram
 from ..frequency import delay_margin, gain_margin, loop_gain, phase_margin
 from ..passivity.intervals.box import ValueBox
@@ -33,7 +33,7 @@ LOOP_MARGINS = {"delay margin": "s", "gain margin": "1", "phase margin": "deg"}
 
 
 @dataclass(frozen=True, eq=False)
-class TuningLimit(ByValue):
+class TuningLimit(Shown, ByValue):
     """A bound, from below or above, on the margin of a claim, the margin of a loop or a measure.
 
     over: intervals of values, for all of which the limit must hold;  controller: of the loop
@@ -59,12 +59,6 @@ class TuningLimit(ByValue):
         """
         excess = self.bound - value if self.from_above else value - self.bound
         return float(excess) if not np.isnan(excess) else -np.inf
-
-    def __repr__(self) -> str:
-        unit = unit_after_number(self.unit)
-        within = ", ".join(f"{n} {a:g} to {b:g}" for n, (a, b) in self.over.items())
-        side = "<=" if self.from_above else ">="
-        return f"{self.name} {side} {self.bound:g}{unit}{f', for all {within}' if within else ''}"
 
 
 @check_types

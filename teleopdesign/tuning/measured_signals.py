@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..base.by_value import ByValue
 from ..base.errors import ModelError, did_you_mean
+from ..base.frozen import ByValue
+from ..base.shown import Shown
 from ..measurement import Record
 from ..measurement.from_arrays import log_of
 from ..simulate import Simulation, Trajectory, sampled_motion
@@ -20,8 +21,8 @@ _FEWEST = 10
 _LATE = 10.0
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class MeasuredCourse(ByValue):
+@dataclass(frozen=True, eq=False)
+class MeasuredCourse(Shown, ByValue):
     """A measured input: linear between samples (n,), constant beyond both ends."""
 
     time: np.ndarray
@@ -29,9 +30,6 @@ class MeasuredCourse(ByValue):
 
     def __call__(self, t: np.ndarray) -> np.ndarray:
         return np.asarray(np.interp(t, self.time, self.values))
-
-    def __repr__(self) -> str:
-        return f"course of {len(self.time)} samples"
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..base.by_value import ByValue
-from ..base.quantity import unit_after_number
+from ..base.frozen import ByValue
+from ..base.shown import Shown
 from ..passivity.intervals.linear import CLAIMS
 from ..passivity.intervals.over_box import claim_over_intervals
 from ..passivity.intervals.worst import search_worst
@@ -22,7 +22,7 @@ _ACTIVE = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class CheckedLimit(ByValue):
+class CheckedLimit(Shown, ByValue):
     """A limit of a search, checked at the best point.
 
     value: the worst within the intervals of the limit;  worst: values at which it occurs
@@ -37,14 +37,6 @@ class CheckedLimit(ByValue):
     how: str
     worst: Mapping[str, float] = field(default_factory=dict)
     active: bool = False
-
-    def __repr__(self) -> str:
-        unit = unit_after_number(self.unit)
-        state = "active" if self.active else "kept" if self.holds else "missed"
-        at = ", ".join(f"{n} = {v:.4g}" for n, v in self.worst.items())
-        where = f" at {at}" if at else ""
-        number = "" if np.isnan(self.value) else f": {self.value:.5g}{unit}{where}"
-        return f"{state}: {self.limit}{number}; {self.how}"
 
 
 def recheck(problem: Problem, trial: TrialPoint) -> tuple[CheckedLimit, ...]:

@@ -22,11 +22,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.notebook import html_table
-from ..base.quantity import unit_after_number
-from ..base.standard_error import with_standard_error
+from ..base.frozen import ByValue
+from ..base.shown import Shown, figure_of, look
 from ..diagrams import Diagram
 from ..passivity.intervals.box import ValueBox
 from ..simulate import Sampling
@@ -34,10 +32,10 @@ from ..simulate.sampling import SAMPLED
 from ..simulate.units import signal_units
 from ..studies.case import SimulatedCase, case_of
 from ..studies.differences import check_slopes_exist
-from ..studies.sensitivities import labelled_slopes
-from .follow import MOST_APART, Followed, Target, follow, rms_of
+from ..studies.sensitivity import labelled_slopes
+from .follow import Followed, Target, follow, rms_of
 from .measured_signals import MeasuredSignals, measured_signals
-from .shares import box_of_parameters
+from .problem import box_of_parameters
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -52,7 +50,7 @@ _RAREST = 300
 
 
 @dataclass(frozen=True, eq=False)
-class SimulationFit(ByValue):
+class SimulationFit(Shown, ByValue):
     """A diagram whose simulation follows measured signals.
 
     case: with `values`;  errors: standard errors; NaN for parameters in `at_ends` (of their
@@ -89,43 +87,11 @@ class SimulationFit(ByValue):
     @property
     def remarks(self) -> tuple[str, ...]:
         """Warnings to read before the values are used."""
-        out = []
-        if self.at_ends:
-            out.append(f"at an end of the interval: {', '.join(self.at_ends)}")
-        if self.undetermined:
-            out.append(f"the data do not determine: {', '.join(self.undetermined)}")
-        if rough := [n for n, x in self.apart.items() if x > MOST_APART]:
-            out.append(f"no standard errors, as motion follows by jumps: {', '.join(rough)}")
-        if self.agreeing < self.searches:
-            out.append(f"{self.agreeing} of {self.searches} searches came to these values")
-        return tuple(out)
+        return tuple(look(self, "notes"))
 
     def plot(self) -> matplotlib.figure.Figure:
         """Plot measured and simulated signals, with the difference below each."""
-        from ..show.figures.simulation_fit import plot_simulation_fit
-
-        return plot_simulation_fit(self)
-
-    def _rows(self) -> list[tuple[str, str]]:
-        rows = []
-        for name, value in self.values.items():
-            unit, error = self.case.unit(name), self.errors[name]
-            rows.append((name, f"{with_standard_error(value, error)}{unit_after_number(unit)}"))
-        units = signal_units(self.diagram)
-        for name, rms in self.rms.items():
-            was = f"{100 * self.before[name]:.3g} -> " if np.isfinite(self.before[name]) else ""
-            share = f"{was}{100 * self.of_signal[name]:.3g} %"
-            rows.append((f"rms of {name}", f"{rms:.3g} {units(name)} ({share} of the signal)"))
-        return rows
-
-    def __repr__(self) -> str:
-        lines = [f"Simulation of the {self.diagram.name}, fitted to {', '.join(self.rms)}"]
-        lines += [f"  {name:<34} {text}" for name, text in self._rows()]
-        return "\n".join([*lines, *(f"  {one}" for one in self.remarks)])
-
-    def _repr_html_(self) -> str:
-        title = f"Simulation of the {self.diagram.name}, fitted to {', '.join(self.rms)}"
-        return html_table(title, ("", ""), self._rows(), note="; ".join(self.remarks))
+        return figure_of(self)
 
 
 @check_types

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.quantity import unit_after_number
+from ..base.frozen import ByValue
+from ..base.shown import Shown, figure_of
 from ..diagrams import Diagram
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
@@ -33,7 +33,7 @@ _ENDS = 0.25
 
 
 @dataclass(frozen=True, eq=False)
-class ParetoFront(ByValue):
+class ParetoFront(Shown, ByValue):
     """The best trade-offs between two measures, of which smaller values are better.
 
     points: each with its limits checked once more, by increasing first objective
@@ -56,21 +56,7 @@ class ParetoFront(ByValue):
 
     def plot(self) -> matplotlib.figure.Figure:
         """Plot both measures: the front as a line, all points within the limits in grey."""
-        from ..show.figures.pareto import plot_pareto
-
-        return plot_pareto(self)
-
-    def __repr__(self) -> str:
-        units = [unit_after_number(u) for u in self.units]
-        head = (
-            f"The best trade-offs found of {self.number} points (seed {self.seed}), "
-            f"{self.names[0]} against {self.names[1]}"
-        )
-        lines = [head + (f"; {self.dropped} failed the last check" if self.dropped else "")]
-        for point, (x, y) in zip(self.points, self.objectives, strict=True):
-            numbers = ", ".join(f"{n} = {v:.4g}" for n, v in point.values.items())
-            lines.append(f"  {x:.4g}{units[0]}, {y:.4g}{units[1]}: {numbers}")
-        return "\n".join(lines)
+        return figure_of(self)
 
 
 @check_types

@@ -24,19 +24,17 @@ from typing import Any, Literal
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.by_value import ByValue
 from ..base.errors import ModelError
-from ..base.notebook import html_table
-from ..base.quantity import unit_after_number
+from ..base.frozen import ByValue
+from ..base.shown import Shown
 from ..diagrams import Diagram
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from ..studies.case import SimulatedCase, case_of
 from ..studies.chosen_measures import measures_of
 from .limits import limit_of
-from .problem import Problem, TrialPoint
+from .problem import AT_END, Problem, TrialPoint, box_of_parameters, shares_of, unit_box, values_at
 from .recheck import CheckedLimit, recheck
-from .shares import AT_END, box_of_parameters, shares_of, unit_box, values_at
 
 #: most rounds: after each, the worst point of an interval that the search had not evaluated is
 #: added
@@ -48,7 +46,7 @@ _POLISH = 0.25
 
 
 @dataclass(frozen=True, eq=False)
-class Tuned(ByValue):
+class Tuned(Shown, ByValue):
     """The best point of a search.
 
     diagram: with `values`;  objective: the measure at this point;  before: the measure with the
@@ -78,27 +76,6 @@ class Tuned(ByValue):
     def active(self) -> tuple[str, ...]:
         """Limits that hold the search back."""
         return tuple(str(one.limit) for one in self.limits if one.active)
-
-    def __repr__(self) -> str:
-        numbers = ", ".join(f"{n} = {v:.5g}" for n, v in self.values.items())
-        unit = unit_after_number(self.unit)
-        best = f"The best found of {self.number} points (seed {self.seed})"
-        head = (
-            best
-            if self.keeps_limits
-            else f"No point of {self.number} keeps all limits; the nearest"
-        )
-        before = f"{self.before:.5g} -> " if np.isfinite(self.before) else ""
-        lines = [f"{head}: {self.name} {before}{self.objective:.5g}{unit}", f"  {numbers}"]
-        lines += [f"  {one}" for one in self.limits]
-        if self.at_ends:
-            lines.append(f"  at an end of the interval: {', '.join(self.at_ends)}")
-        return "\n".join(lines)
-
-    def _repr_html_(self) -> str:
-        rows = [(n, f"{v:.5g}") for n, v in self.values.items()]
-        rows += [(str(one.limit), str(one)) for one in self.limits]
-        return html_table(f"The best found: {self.name} {self.objective:.5g}", ("", ""), rows)
 
 
 @check_types

@@ -5,6 +5,8 @@ reported where another value of a parameter explains the residual. The weight of
 penalty is chosen with blocks of the fit records held out in turn. The score is the gain on rows
 that were not used for the estimate, in standard deviations of its chance part, by blocks: see
 `evidence`.
+
+Whether a dependence holds in both directions, and whether it needs the body to have rested.
 """
 
 from __future__ import annotations
@@ -16,12 +18,13 @@ from numpy.typing import NDArray
 
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.evidence import chance, gain_score
+from ..diagnose.fit import standard_errors
 from ..diagnose.least_squares import solve_normal
 from ..measurement.filtering import Array
 from ..measurement.prepare import FOLDS
-from .rows import Rows
+from .library import wave_number
+from .rows import RESTED, Rows
 from .shapes import SHAPES, Shape, columns_of, knots_of, roughness
-from .waves import wave_number
 
 #: weights of the roughness penalty that are compared, relative to the weight of the data
 SMOOTHNESS = np.logspace(-4, 3, 8)
@@ -235,3 +238,66 @@ def _simplest(real: list[Dependence]) -> Dependence:
     best = max(t.explained for t in real)
     alike = [t for t in real if t.explained > (1.0 - CRITERIA.relevant) * best]
     return replace(alike[0], alike=tuple(t.shape.name for t in alike[1:]))
+
+
+#: part of the squares of a dependence that each side must have, so that the sides can be compared
+SHARE = 0.1
+#: size on one side, relative to the other side, below which the effect is "only" on the other side
+ONLY = 0.25
+
+
+@dataclass(frozen=True)
+class Contrast:
+    """The size of a dependence on two sides, relative to its overall size, with standard errors.
+
+    sides: such as ("forward", "backward");  sizes, errors: (2,)
+    """
+
+    sides: tuple[str, str]
+    sizes: Array
+    errors: Array
+
+    @property
+    def differs(self) -> bool:
+        """Whether the sides differ by more than chance."""
+        return bool(abs(np.diff(self.sizes)[0]) > CRITERIA.sure * np.hypot(*self.errors))
+
+    @property
+    def only(self) -> str:
+        """The only side on which the dependence exists; "" where it exists on both."""
+        weak = int(np.argmin(np.abs(self.sizes)))
+        strong = self.sizes[1 - weak]
+        return self.sides[1 - weak] if self.differs and self.sizes[weak] < ONLY * strong else ""
+
+
+def contrasts(rows: Rows, dependence: Dependence, left: Array) -> tuple[Contrast, ...]:
+    """Sizes of the dependence forward and backward, and after a rest and after a mere reversal.
+
+    left: weighted residual (n,) that the dependence describes
+    """
+    whole = dependence.columns.values @ dependence.coefficients
+    direction, rested = rows.at("direction"), rows.at("rested")
+    pairs = (
+        (("forward", "backward"), direction > 0, direction < 0),
+        (("after it has rested", "after a mere reversal"), rested >= RESTED, rested < RESTED),
+    )
+    candidates = [_contrast(rows, sides, a, b, whole, left) for sides, a, b in pairs]
+    return tuple(c for c in candidates if c is not None)
+
+
+def _contrast(
+    rows: Rows,
+    sides: tuple[str, str],
+    one: NDArray[np.bool_],
+    other: NDArray[np.bool_],
+    whole: Array,
+    left: Array,
+) -> Contrast | None:
+    columns = np.column_stack([whole * one, whole * other])
+    size = np.sum(columns**2, axis=0)
+    if size.min() < SHARE * size.sum():
+        return None
+    # the other columns of the model would blur the sides: each is held against what is left as is
+    sizes = np.linalg.lstsq(columns, left, rcond=None)[0]
+    errors = standard_errors(columns, left - columns @ sizes, rows.blocks)
+    return Contrast(sides, np.asarray(sizes), errors)

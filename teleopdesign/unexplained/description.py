@@ -7,27 +7,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.finding import Finding, Graph
+from ..base.finding import Graph
+from ..base.shown import look
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.noise_floor import noise_floor
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .amounts import number
-from .curve import Curve, curve_of, without_columns
-from .dependence import ALARM, Dependence, dependences, model_columns
+from .curve import Curve, curve_of, regions_of, without_columns
+from .dependence import Contrast, Dependence, contrasts, dependences, model_columns
 from .formula import Formula, formula_for
-from .qualifiers import Contrast, contrasts
 from .rows import Rows, rows_of
-from .sentences import sentence_for
-from .shapes import SHAPES
-from .views import curve_graph, views_of
-from .whiteness import Whiteness, whiteness_of
-
-#: part of the residual that may remain undescribed without a remark: a description to first order,
-#: with f as lines between knots, leaves a few percent anyway
-UNDESCRIBED = 0.1
-#: if at least this part of the residual lies where no motion is certain, the description says so
-MOSTLY = 0.5
+from .shapes import Shape
+from .views import Whiteness, curve_graph, views_of, whiteness_of
 
 
 @dataclass(frozen=True)
@@ -36,15 +27,20 @@ class DescribedDependence:
 
     curve: as in the residual;  formula: None where none with few terms holds
     contrasts: sizes in both directions, and after a rest or a reversal
-    sentence: without its full stop;  graph: the figure of the sentence
+    graph: the figure of the sentence;  axis: of the body
     """
 
     dependence: Dependence
     curve: Curve
     formula: Formula | None
     contrasts: tuple[Contrast, ...]
-    sentence: str
     graph: Graph
+    axis: str
+
+    @property
+    def sentence(self) -> str:
+        """The dependence in words, without a full stop."""
+        return str(look(self, "sentence"))
 
 
 @dataclass(frozen=True)
@@ -128,87 +124,18 @@ def _describe_dependences(
         formula = formula_for(rows, beside, dependence)
         left = target - beside.values @ beside.solve(target, rows.learnt)
         sides = contrasts(rows, dependence, left)
-        sentence = sentence_for(dependence.shape, curve, formula, sides, rows.axis)
-        if not sentence:
+        if not _is_certain(dependence.shape, curve):
             break
-        graph = curve_graph(dependence.shape, curve, rows.axis)
+        graph, axis = curve_graph(dependence.shape, curve, rows.axis), rows.axis
         descriptions.append(
-            DescribedDependence(without_columns(dependence), curve, formula, sides, sentence, graph)
+            DescribedDependence(without_columns(dependence), curve, formula, sides, graph, axis)
         )
         beside = beside.beside(dependence.columns)
     return tuple(descriptions)
 
 
-def findings_of(part: BodyResidual, *, name_body: bool) -> tuple[Finding, ...]:
-    """The sentences about one body, each with its numbers and its graph."""
-    where = part.body if name_body else ""
-    numbers = {"error": part.error, "noise floor": part.floor, "noise floors": part.floors}
-    error, floors = f"{100 * part.error:.2g} %", number(part.floors)
-    time = part.views["time"]
-    if part.is_adequate:
-        sentence = f"the model leaves {error} of the force, no more than sensor noise would leave"
-        return (Finding("what is left", "fine", f"{sentence}.", numbers, where, time),)
-    sentence = (
-        f"the model leaves {error} of the force, {floors} times what sensor noise would leave"
-    )
-    findings = [Finding("what is left", "warning", f"{sentence}.", numbers, where, time)]
-    for one in part.dependences:
-        findings.append(_finding(one, where))
-    if part.floors > CRITERIA.adequate:
-        findings += _rest(part, where)
-    return tuple(findings)
-
-
-def _finding(one: DescribedDependence, where: str) -> Finding:
-    d = one.dependence
-    numbers = {
-        "explained": d.explained,
-        "score": d.score,
-        "probability of chance": d.probability,
-        "largest": float(one.curve.y.max()),
-        "smallest": float(one.curve.y.min()),
-    }
-    alike = ""
-    if d.alike:
-        listed = ", ".join(d.alike[:3]) + (", ..." if len(d.alike) > 3 else "")
-        alike = f" (no better: {listed})"
-    sentence = f"{one.sentence}. That is {100 * d.explained:.0f} % of what is left{alike}."
-    topic = f"dependence: {d.shape.name}"
-    return Finding(topic, "warning", sentence[0].upper() + sentence[1:], numbers, where, one.graph)
-
-
-def _rest(part: BodyResidual, where: str) -> list[Finding]:
-    """Findings on the remaining residual: its frequencies, correlation in time, and size."""
-    low, high = part.whiteness.band
-    numbers = {"low": low, "high": high, "probability of chance": part.whiteness.probability}
-    sentence = f"Half of what is left lies between {number(low)} and {number(high)} Hz"
-    if low < 1.0:  # the first band
-        sentence = f"Three quarters of what is left lies below {number(max(high, 1.0))} Hz"
-    if part.whiteness.probability < ALARM:
-        largest = int(np.argmax(np.abs(part.whiteness.correlation) / part.whiteness.noise))
-        lag, r = part.whiteness.lag[largest], part.whiteness.correlation[largest]
-        numbers |= {"lag": float(lag), "correlation": float(r)}
-        sentence += f"; its autocorrelation at {number(1e3 * lag)} ms is {r:.2f}"
-        sentence += ", unlike sensor noise"
-    findings = [
-        Finding("frequency", "note", f"{sentence}.", numbers, where, part.views["frequency"])
-    ]
-    if part.at_rest > MOSTLY:
-        sentence = f"{100 * part.at_rest:.0f} % of the residual lies where no motion can be seen."
-        velocity = part.views["velocity"]
-        findings.append(Finding("rest", "note", sentence, {"share": part.at_rest}, where, velocity))
-    floors = part.after / part.floor if part.floor else float("inf")
-    if floors > CRITERIA.adequate and part.after**2 > UNDESCRIBED * part.error**2:
-        what = "Beside that" if part.dependences else f"None of {len(SHAPES)} dependences is sure:"
-        verb = f"{number(floors)} times the sensors' noise"
-        sentence = (
-            f"{what}, {verb} stays undescribed."
-            if part.dependences
-            else f"{what} {verb} stay undescribed."
-        )
-        findings.append(
-            Finding(
-                "undescribed", "note", sentence, {"noise floors": floors}, where, part.views["time"]
-            )
-        )
-    return findings
+def _is_certain(shape: Shape, curve: Curve) -> bool:
+    """Whether a dependence differs from zero by more than its band anywhere."""
+    if shape.variable is None or shape.is_wave:
+        return True
+    return bool(regions_of(curve, signed=shape.variable.signed))

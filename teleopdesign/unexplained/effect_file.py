@@ -10,10 +10,10 @@ import textwrap
 from pathlib import Path
 
 from ..base.errors import ModelError
-from ..base.plain_data import write_text
+from ..base.files import write_text
+from ..base.sentences import span
 from ..measurement.prepare import Prepared
 from ..measurement.scales import scales
-from .amounts import describe_span
 from .description import BodyResidual, DescribedDependence
 from .effect_law import law_of_formula, law_of_points
 from .shapes import COMMAND, FRICTION, LATENESS, LOST, Shape
@@ -123,7 +123,7 @@ def _known_range(part: BodyResidual, described: DescribedDependence) -> str:
     if variable is None:
         return ""
     name = variable.name.replace("_", " ")
-    ends = describe_span(float(x[0]), float(x[-1]), variable.quantity, part.axis)
+    ends = span(float(x[0]), float(x[-1]), variable.quantity, part.axis)
     return f"Known for {name} between {ends}."
 
 

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.quantity import unit_of
+from ..base.units import unit_of
 from ..measurement.filtering import Array
 from .dependence import Dependence
-from .formula import Formula
+from .formula import Formula, formula_text
 from .library import FormulaTerm
-from .sentences import formula_text
 
 #: largest deviation of the written line from f, relative to the largest f
 EXACT = 0.01

@@ -2,21 +2,37 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from ..base.units import unit_of
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.evidence import gain_score
 from ..diagnose.fit import standard_errors
 from ..measurement.filtering import Array
 from .dependence import Columns, Dependence, predict_held_out
-from .library import FormulaTerm, terms_of
+from .library import FormulaTerm, terms_of, wave_number
 from .rows import Rows, StretchSignals
 from .shapes import POSITION_WAVE, TIME_WAVE, Shape, columns_from
-from .waves import wave_number
 
+#: symbol of each variable in a formula
+SYMBOLS = {
+    "position": "x",
+    "speed": "|v|",
+    "velocity": "v",
+    "acceleration": "a",
+    "actuator_force": "u",
+    "load": "|u|",
+    "interaction_force": "f_h",
+    "time": "t",
+    "since_reversal": "t_r",
+    "travel": "s_r",
+}
+#: carrier -> text of the factor of f in a formula
+FACTORS = {"friction": " sgn v", "damping": " v", "mass": " a", "lost command": " u"}
 #: a formula is kept if its gain on the check rows is at least this part of that of a smooth curve
 HOLDS = 0.95
 #: most terms
@@ -179,3 +195,38 @@ def _checked_formula(
     # a dependence that is a sinusoid is its formula
     holds = dependence.shape.is_wave or (share > HOLDS and sure and is_significant)
     return formula if holds else None
+
+
+def formula_text(formula: Formula, axis: str) -> str:
+    """The formula with its numbers in SI units: "F = 1.5 x v (N s/m, m)"."""
+    shape = formula.shape
+    assert shape.variable is not None
+    u = SYMBOLS[shape.variable.name]
+    parts = [_term(t, c, u) for t, c in formula.split()]
+    text = parts[0] + "".join(f" - {p[1:]}" if p[0] == "-" else f" + {p}" for p in parts[1:])
+    if len(parts) > 1 and shape.carrier.name in FACTORS:
+        text = f"({text})"
+    units = [unit_of(q, axis) for q in (shape.carrier.quantity, shape.variable.quantity)]
+    units_text = ", ".join(dict.fromkeys(u.replace("*", " ") for u in units if u != "1"))
+    return f"F = {text}{FACTORS.get(shape.carrier.name, '')} ({units_text})"
+
+
+def _term(term: FormulaTerm, c: Array, u: str) -> str:
+    n = f"{abs(term.number):.3g}"
+    if term.kind == "power":
+        return f"{c[0]:.3g} {u}" + ("" if term.number == 1 else f"^{term.number:g}")
+    if term.kind == "decay":
+        return f"{c[0]:.3g} exp(-{u} / {n})"
+    if term.kind == "bell":
+        return f"{c[0]:.3g} exp(-({u} / {n})^2)"
+    if term.kind == "beyond":
+        return f"{c[0]:.3g} ({u} - clip({u}, {n}))"
+    sign = "-" if term.number > 0 else "+"
+    if term.kind == "above":
+        return f"{c[0]:.3g} max(0, {u} {sign} {n})"
+    if term.kind == "below":
+        return f"{c[0]:.3g} max(0, {term.number:.3g} - {u})"
+    size, phase = math.hypot(*c), math.atan2(c[0], c[1])
+    return (
+        f"{size:.3g} sin(2 pi {term.number:.5g} {u} {'+' if phase >= 0 else '-'} {abs(phase):.3g})"
+    )

@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.base.by_value import is_same
 from teleopdesign.base.codec import (
     INLINE,
     NEVER,
@@ -25,6 +24,7 @@ from teleopdesign.base.codec import (
     to_data,
 )
 from teleopdesign.base.errors import ExperimentError
+from teleopdesign.base.frozen import is_same
 
 
 @dataclass(frozen=True)

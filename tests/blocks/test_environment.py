@@ -58,12 +58,19 @@ def edited(folder, old, new):
 
 
 @pytest.mark.parametrize(
-    ("depth", "force"), [(-1e-3, 0.0), (0.0, 0.0), (2e-3, 100 * 2e-3 + 3 * 0.5)]
+    ("depth", "velocity", "force"),
+    [
+        (-1e-3, 0.5, 0.0),
+        (0.0, 0.5, 0.0),
+        (2e-3, 0.5, 100 * 2e-3 + 3 * 0.5),
+        (2e-3, -0.05, 100 * 2e-3 - 3 * 0.05),
+        (2e-3, -0.5, 0.0),  # the damper would pull with more than the spring pushes
+    ],
 )
-def test_it_pushes_only_beyond_the_contact_position(depth, force):
+def test_it_pushes_only_beyond_the_contact_position_and_never_pulls(depth, velocity, force):
     numbers = {"stiffness": 100.0, "damping": 3.0, "contact_position": 0.01}
     symbols = CONTACT.symbols()
-    here = {SIGNALS["position"]: 0.01 + depth, SIGNALS["velocity"]: 0.5}
+    here = {SIGNALS["position"]: 0.01 + depth, SIGNALS["velocity"]: velocity}
     law = contact_force([CONTACT]).subs(here | {symbols[n]: v for n, v in numbers.items()})
     assert float(law) == pytest.approx(force, abs=1e-12)
 

@@ -22,8 +22,8 @@ def runs(rod, tmp_path):
     return [rod, broken]
 
 
-def diagnose(folders, output):
-    options = ["--output", str(output), "--workers", "1", "--only", "stribeck"]
+def diagnose(folders, output, only="stribeck"):
+    options = ["--output", str(output), "--workers", "1", "--only", only]
     return main(["diagnose", *map(str, folders), *options])
 
 
@@ -78,6 +78,15 @@ def test_a_record_that_has_changed_is_diagnosed_again(rod, few, tmp_path):
     toml.write_text(toml.read_text().replace("value = 60", "value = 30"))
     assert diagnose([rod], output) == 0
     assert table(output)["rod"]["error_before"] != before["error_before"]
+
+
+@pytest.mark.slow
+def test_among_other_candidates_a_folder_is_diagnosed_again(rod, few, tmp_path):
+    output = tmp_path / "answers"
+    assert diagnose([rod], output) == 0
+    assert "stribeck" in table(output)["rod"]["missing"]
+    assert diagnose([rod], output, only="spring") == 0
+    assert "stribeck" not in table(output)["rod"]["missing"]
 
 
 def test_several_folders_need_a_place_for_their_answers(runs, refused, tmp_path):

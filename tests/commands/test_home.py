@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from teleopdesign.commands._home import PLACE, keep_home_absent
+from teleopdesign.commands._command_line import PLACE, keep_home_absent
 
 
 def place_within(monkeypatch, home, **places):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.commands._values import value_from, value_in
+from teleopdesign.commands._options import value_from, value_in
 
 
 def read(text, quantity="position", axis="revolute"):

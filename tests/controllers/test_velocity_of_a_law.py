@@ -21,7 +21,7 @@ from teleopdesign.controllers import (
     from_control,
 )
 from teleopdesign.derive import as_text, transfer, transfer_function
-from teleopdesign.derive.with_values import with_values
+from teleopdesign.derive.transfer_functions import with_values
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.effects import Parameter
 from teleopdesign.frequency import delay_margin, loop_gain, matrix_response

@@ -4,7 +4,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.blocks import Value
-from teleopdesign.design import energy, felt_impedance
+from teleopdesign.design import felt_impedance, verdict
 from teleopdesign.diagnose import Diagnosis, LadderRow
 from teleopdesign.diagnose.noise_floor import NoiseFloor
 from teleopdesign.diagnose.recording import DiagnosedRecording
@@ -23,8 +23,8 @@ ROD = {
 def few_motions():
     """A design looks at fewer motions, the ends of the grid among them: half of its time."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(energy, "SIZES", (0.1, 1.0))
-        patch.setattr(energy, "FREQUENCIES", (1.0, 3.0, 30.0))
+        patch.setattr(verdict, "SIZES", (0.1, 1.0))
+        patch.setattr(verdict, "FREQUENCIES", (1.0, 3.0, 30.0))
         patch.setattr(felt_impedance, "MULTIPLES", (1.0, 10.0))
         yield
 

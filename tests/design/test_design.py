@@ -236,12 +236,10 @@ def test_through_a_compliant_transmission_the_cancellation_is_proved_too(rod):
     assert none.simulated == pytest.approx(none.quasi_static, rel=0.2)
 
 
-def test_friction_that_no_record_has_shown_backward_is_reported(designed, rod):
-    from teleopdesign.design.notes import notes_on
-
+def test_friction_that_no_record_has_shown_backward_is_reported(designed):
     one_way = replace(designed, reach=replace(designed.reach, both_ways=False))
     assert not any("in one direction only" in n for n in designed.notes)
-    assert any("in one direction only" in n for n in notes_on(one_way, rod))
+    assert any("in one direction only" in n for n in one_way.notes)
 
 
 def test_the_impedance_that_a_hand_feels_is_predicted_and_lowered(designed):

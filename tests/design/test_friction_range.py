@@ -7,9 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
-from teleopdesign.base.rounding import round_down, round_up
+from teleopdesign.base.sentences import round_down, round_up
 from teleopdesign.blocks import Body, Value
-from teleopdesign.design.cancellation import acting_gain
+from teleopdesign.design import Assumptions
+from teleopdesign.design.cancellation import acting_gain, cancelled_level
 from teleopdesign.realise.friction_interval import friction_interval
 from teleopdesign.realise.reach import Reach
 
@@ -104,6 +105,14 @@ def test_a_strong_actuator_and_its_ripple_count():
     assert acting_gain(device, REACH, errors=0.0) == pytest.approx(1.2, rel=1e-4)
     device = body(1.0, actuator_lag={"time_constant": 0.01}, actuation_delay={"delay": 2e-3})
     assert acting_gain(device, REACH, errors=0.0) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("gain", [0.8, 1.0, 1.6])
+def test_the_level_is_commanded_so_that_the_part_that_acts_is_the_same(gain):
+    device = body(1.0, actuator_gain={"gain": gain})
+    friction, settings = friction_interval(device, REACH, errors=0.0), Assumptions(fraction=0.5)
+    level = cancelled_level(friction, device, REACH, gain, settings)
+    assert gain * level.value == pytest.approx(0.5, rel=0.005)  # rounded down to three digits
 
 
 @given(st.floats(1e-9, 1e9), st.integers(1, 4))

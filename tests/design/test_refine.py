@@ -5,8 +5,7 @@ from dataclasses import replace
 import pytest
 
 from teleopdesign.design import refine
-from teleopdesign.design.cancellation import smoothed_cancellation
-from teleopdesign.design.chosen import Reason
+from teleopdesign.design.cancellation import Reason, smoothed_cancellation
 
 
 @pytest.mark.slow

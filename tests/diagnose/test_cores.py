@@ -11,9 +11,9 @@ import time
 import numpy as np
 import pytest
 
+from teleopdesign.base.machine import one_thread
 from teleopdesign.diagnose import cores
 from teleopdesign.diagnose.cores import map_in_threads, map_on_cores
-from teleopdesign.studies.one_thread import one_thread
 
 #: arrays of 1 MiB that a residual and its tangents take together, and how often they are made
 TOGETHER, TIMES = 16, 50

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from teleopdesign.base.by_value import is_same
+from teleopdesign.base.frozen import is_same
 from teleopdesign.diagnose import result
 from teleopdesign.diagnose.fit import Fit
 from teleopdesign.diagnose.ranking import Ranking

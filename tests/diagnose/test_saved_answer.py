@@ -15,7 +15,7 @@ from measurement.rod_example import PAIR, rows
 import teleopdesign as td
 from teleopdesign import EFFECTS, ExperimentError, Model, Value
 from teleopdesign.base.errors import TeleopDesignError
-from teleopdesign.base.plain_data import write_json
+from teleopdesign.base.files import write_json
 from teleopdesign.blocks import CONTACT, Body
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import answer, load_answer, write_answer

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from teleopdesign.base.quantity import AXES
+from teleopdesign.base.units import AXES
 from teleopdesign.blocks import CONTACT, Body, Value
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.motion import motion_of

@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 
 import teleopdesign.effects as folder
 from teleopdesign.base.errors import ModelError
-from teleopdesign.base.quantity import AXES, QUANTITIES, unit_of
+from teleopdesign.base.units import AXES, QUANTITIES, unit_of
 from teleopdesign.effects import (
     BLOCK_EFFECTS,
     EFFECTS,

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.frequency.lock_in import distortion, lock_in, phasors
+from teleopdesign.frequency.sinusoid import distortion, lock_in, phasors
 
 GRID = 2 * np.pi * np.arange(2000) / 2000
 

@@ -58,6 +58,13 @@ def test_without_dead_time_margins_are_those_of_python_control(k):
     assert phase_margin(rational) == pytest.approx(turn, rel=1e-6)
 
 
+def test_a_phase_margin_is_that_to_the_nearer_side():
+    """At the lower crossing the phase is 180 degrees less three lags: more lead turns it over."""
+    slower = 0.3438784  # rad/s, where 10 w^2 = (1 + w^2)^(3/2); at the faster one 107 degrees
+    margin = phase_margin(loop(10 * S**2 / (S + 1) ** 3))
+    assert margin == pytest.approx(3 * np.degrees(np.arctan(slower)), rel=1e-5)
+
+
 def test_an_unstable_loop_has_no_margins():
     for margin in (gain_margin, phase_margin):
         with pytest.raises(UnstableLoop):

@@ -5,13 +5,18 @@ import numpy as np
 LEVEL, DAMPING, BIAS, MASS = 0.8, 2.0, 0.3, 0.2
 
 
-def path(speeds, *, travel=0.08, pause=0.2, ramp=0.08, rate=1000.0):
-    """Time, position, velocity, acceleration: forward and backward at each speed, smooth ends."""
+def path(speeds, *, travel=0.08, pause=0.2, ramp=0.08, rate=1000.0, back=1.0):
+    """Time, position, velocity, acceleration: forward and backward at each speed, smooth ends.
+
+    back: part of the way back at that speed; the rest is half as fast again
+    """
     legs = []
     for speed in speeds:
         n = round(travel / speed * rate)
         legs += [np.full(n, speed), np.zeros(round(pause * rate))]
-        legs += [np.full(n, -speed), np.zeros(round(pause * rate))]
+        legs += [np.full(round(back * n), -speed), np.zeros(round(pause * rate))]
+        if back < 1.0:
+            legs += [np.full(round((1.0 - back) * n / 1.5), -1.5 * speed), legs[-1]]
     wanted = np.concatenate([np.zeros(round(rate)), *legs, np.zeros(round(rate))])
     width = round(ramp * rate)
     velocity = wanted

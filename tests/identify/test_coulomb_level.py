@@ -52,6 +52,15 @@ def test_a_spring_cancels_where_both_runs_cover_the_same_travel(tmp_path):
     assert level == pytest.approx(LEVEL, abs=0.005)
 
 
+def test_runs_are_compared_where_both_were_however_far_one_of_them_went(tmp_path):
+    """The way back is half as long: over all of both the spring would make 0.25 N of the level."""
+    folder = write(tmp_path / "spring", SPEEDS[:2], spring=25.0, size=1e-4, back=0.5)
+    result = coulomb_level(td.load_experiment(folder))
+    assert [s.friction for s in result.speeds] == pytest.approx(
+        [LEVEL + DAMPING * v for v in SPEEDS[:2]], abs=0.01
+    )
+
+
 def test_standard_errors_hold_under_correlated_noise():
     """Of 200 means of noise with a memory of 20 samples, the errors stated hold the scatter."""
     generator = np.random.default_rng(3)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.base.toml_table import Table, read_toml
+from teleopdesign.base.toml import Table, read_toml
 from teleopdesign.measurement.arm_description import arm_from, joints_from
 
 WRITTEN = """

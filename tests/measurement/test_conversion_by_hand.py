@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.base.toml_table import Table
+from teleopdesign.base.toml import Table
 from teleopdesign.measurement.conversion import LONGEST_DELAY, conversion_of
 
 TURN = 2 * math.pi

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.base.toml_text import inline_text, key_text, string_text
+from teleopdesign.base.toml import inline_text, key_text, string_text
 from teleopdesign.measurement.doors import bag
 from teleopdesign.measurement.files import content_digest, experiment_files, is_experiment
 from teleopdesign.measurement.numbers_in_cells import numbers_of

@@ -67,6 +67,13 @@ def test_a_span_in_which_all_channels_stand_is_lost_but_where_they_rest(with_for
     np.testing.assert_array_equal(repeated_rows(columns, columns[:1], forces), lost)
 
 
+def test_a_moving_position_that_stops_for_a_row_tells_of_a_lost_row_without_a_force():
+    t, again = np.arange(ROWS) / 500, np.zeros(ROWS, dtype=bool)
+    again[[300, 700, 1130]] = True
+    _, x, u = spoilt((t, np.round(np.sin(5 * t), 6), np.sin(3 * t)), again)
+    np.testing.assert_array_equal(repeated_rows([x, u], [x]), again)
+
+
 def test_a_motion_without_noise_that_stops_for_a_while_has_lost_nothing():
     t = np.arange(ROWS) / 500
     way = np.clip(t, 0, 1) + np.clip(t - 2, 0, 1)  # goes, rests for a second, goes on

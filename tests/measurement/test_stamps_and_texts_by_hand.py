@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.base.toml_table import Table, parse_toml
+from teleopdesign.base.toml import Table, parse_toml
 from teleopdesign.check.stated_accuracy import true_step
 from teleopdesign.measurement import slower_signals
 from teleopdesign.measurement.channel import Channel

@@ -5,7 +5,7 @@ import tomllib
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.base.toml_text import comment_text
+from teleopdesign.base.toml import comment_text
 
 
 @given(st.text(st.characters(exclude_categories=["Cs"])))

@@ -5,7 +5,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.base.quantity import is_unit, to_si
+from teleopdesign.base.units import is_unit, to_si
 from teleopdesign.measurement.column_names import unfit_unit, unit_in_name
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import Choices, survey_log

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from check.made_channels import ask
-from measurement.test_guesses_of_a_survey import Q, T, U, look
+from measurement.columns_by_hand import Q, T, U, look
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError

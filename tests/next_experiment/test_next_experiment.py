@@ -28,8 +28,7 @@ from teleopdesign.next_experiment import (
     write_reference,
 )
 from teleopdesign.next_experiment.family import Setting, family
-from teleopdesign.next_experiment.following import Servo, follow_path
-from teleopdesign.next_experiment.path import Move, travel, window_length
+from teleopdesign.next_experiment.path import Move, Servo, follow_path, travel, window_length
 from teleopdesign.next_experiment.prediction import refit, with_records
 from teleopdesign.next_experiment.synthesis import command_along, exact_motion
 

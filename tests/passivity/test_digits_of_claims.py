@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from teleopdesign import EFFECTS, Body
-from teleopdesign.base.rounding import round_down, round_near, round_up
+from teleopdesign.base.sentences import round_down, round_near, round_up
 from teleopdesign.cli import main
 from teleopdesign.passivity.identified import DIGITS, identify_device
 from teleopdesign.realise.friction_interval import Interval

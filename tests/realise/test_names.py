@@ -14,8 +14,7 @@ from diagrams.several_axes import two_rods
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.base.errors import ModelError
-from teleopdesign.base.names import check_name
+from teleopdesign.base.errors import ModelError, check_name
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import (
     Attached,

@@ -68,3 +68,15 @@ def test_a_limit_acts_on_what_the_gain_makes_of_the_command():
             np.full(50, size),
         )
         np.testing.assert_allclose(forces.value, expected, rtol=1e-12)
+
+
+def test_a_limit_acts_on_what_a_lag_makes_of_the_command():
+    """A step to 4 N, late by 40 ms, is cut off at 3 N; limited first, it would only near 3 N."""
+    t = np.arange(-50, 200) * 1e-3
+    _, forces = acting(
+        ("actuator_lag", "actuator_saturation"),
+        {"actuator_lag.time_constant": 0.04, "actuator_saturation.limit": 3.0},
+        np.where(t < 0.0, 0.0, 4.0),
+    )
+    expected = np.minimum(3.0, -4.0 * np.expm1(-np.maximum(t, 0.0) / 0.04))
+    np.testing.assert_allclose(forces.value[5:-5], expected[5:-5], atol=0.1)

@@ -13,7 +13,7 @@ from clock import in_time
 from measurement.rod_example import ROD, write_rod
 from security.diagram_file import diagram_file
 
-from teleopdesign.base.whole_files import read_whole
+from teleopdesign.base.files import read_whole
 from teleopdesign.cli import main
 from teleopdesign.passivity.checker import check as checker
 
@@ -109,9 +109,9 @@ def test_what_a_shell_hands_over_as_a_pipe_is_read_as_a_file(tmp_path):
 
 
 def test_a_pipe_from_which_nothing_comes_is_given_up(tmp_path, monkeypatch):
-    from teleopdesign.base import whole_files
+    from teleopdesign.base import files
 
-    monkeypatch.setattr(whole_files, "_PATIENCE", 0.05)
+    monkeypatch.setattr(files, "_PATIENCE", 0.05)
     read, write = os.pipe()
     with pytest.raises(OSError, match="nothing came"):
         read_whole(f"/dev/fd/{read}")

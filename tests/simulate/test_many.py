@@ -13,7 +13,7 @@ from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import haptic_interface, teleoperator
 from teleopdesign.realise.kernel import FINER
 from teleopdesign.simulate import Sampling, prepare, simulate, simulate_many
-from teleopdesign.simulate.step_ladder import StepLadder
+from teleopdesign.simulate.on_grid import StepLadder
 
 #: two loops that differ by rounding in one exp: 1e-9 of the largest value, as golden/ allows
 ROUNDING = 1e-9

@@ -15,9 +15,9 @@ import teleopdesign as td
 from teleopdesign.studies import pool, worker_processes
 from teleopdesign.studies.chosen_measures import measures_of
 from teleopdesign.studies.evaluate import StudyTask
-from teleopdesign.studies.frames import receive
 from teleopdesign.studies.journal import Journal
 from teleopdesign.studies.points import points_of
+from teleopdesign.studies.worker_processes import receive
 
 copied = pytest.mark.usefixtures("copies")
 
@@ -51,7 +51,7 @@ def test_every_copy_killed_in_the_middle_costs_no_point(monkeypatch):
             copy.process.kill()
 
     monkeypatch.setattr(pool, "start_copies", keep)
-    monkeypatch.setattr("teleopdesign.studies.progress._BETWEEN", 0.05)
+    monkeypatch.setattr("teleopdesign.studies.outcomes._BETWEEN", 0.05)
     axes = {"x": np.arange(300.0), "y": 0.5}
     arguments = {"measures": models.value, "workers": 2, "progress": kill_all}
     dataset = td.study(models.slow_product, axes, **arguments)
@@ -65,7 +65,7 @@ def test_an_interrupt_ends_all_processes(start, monkeypatch):
     def interrupt(progress):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("teleopdesign.studies.progress._BETWEEN", 0.05)
+    monkeypatch.setattr("teleopdesign.studies.outcomes._BETWEEN", 0.05)
     axes, begin = {"x": np.arange(1e5), "y": 0.5}, time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         arguments = {"measures": models.value, "workers": 2, "progress": interrupt}

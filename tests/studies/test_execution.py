@@ -151,7 +151,7 @@ def damaged_journal(tmp_path, damage):
             raise KeyboardInterrupt
 
     axes = {"x": np.arange(10.0), "y": 0.5}
-    from teleopdesign.studies import progress as module
+    from teleopdesign.studies import outcomes as module
 
     module._BETWEEN, before = -1.0, module._BETWEEN
     try:

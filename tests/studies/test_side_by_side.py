@@ -6,9 +6,8 @@ import study_models as models
 import xarray
 
 import teleopdesign as td
-from teleopdesign.studies import side_by_side
 from teleopdesign.studies.chosen_measures import measures_of
-from teleopdesign.studies.evaluate import StudyTask, evaluate
+from teleopdesign.studies.evaluate import StudyTask, block_size, evaluate, evaluate_unit, units_of
 from teleopdesign.studies.points import points_of
 
 AXES = {
@@ -26,9 +25,9 @@ def task(axes=AXES, measures=MEASURES):
 
 def test_blocks_have_the_numbers_and_reasons_of_single_simulations():
     one = task()
-    (unit,) = side_by_side.units_of(one, [5])
+    (unit,) = units_of(one, [5])
     assert unit == range(42)
-    for together in side_by_side.evaluate_unit(one, unit):
+    for together in evaluate_unit(one, unit):
         alone = evaluate(one, together.point)
         assert (together.reason, together.form) == (alone.reason, alone.form)
         # lanes have another exp, right to a few units of the last digit; friction amplifies it
@@ -38,9 +37,9 @@ def test_blocks_have_the_numbers_and_reasons_of_single_simulations():
 
 def test_a_point_does_not_depend_on_those_beside_it():
     whole = task()
-    blocks = side_by_side.evaluate_unit(whole, range(42))
+    blocks = evaluate_unit(whole, range(42))
     for first, last in ((0, 7), (6, 23), (30, 42)):
-        part = side_by_side.evaluate_unit(whole, range(first, last))
+        part = evaluate_unit(whole, range(first, last))
         assert part == blocks[first:last]
 
 
@@ -53,7 +52,7 @@ def test_a_point_does_not_depend_on_those_beside_it():
     ],
 )
 def test_what_cannot_be_side_by_side_is_one_by_one(axes, measures):
-    assert side_by_side.block_size(task(axes, measures)) == 1
+    assert block_size(task(axes, measures)) == 1
 
 
 def test_blocks_are_longer_for_shorter_simulations_and_bounded():
@@ -61,7 +60,7 @@ def test_blocks_are_longer_for_shorter_simulations_and_bounded():
     for duration in (0.01, 1.0, 10.0, 1000.0):
         case = td.studies.SimulatedCase(models.interface(), duration=duration)
         one = StudyTask(case, {}, points_of(AXES), measures_of("force_error"))
-        sizes.append(side_by_side.block_size(one))
+        sizes.append(block_size(one))
     assert sizes[0] == 512 and sizes[-1] == 16
     assert sorted(sizes, reverse=True) == sizes
 
@@ -71,9 +70,7 @@ def test_blocks_of_long_studies_are_larger_where_each_worker_still_has_some():
 
     def size(points):
         axes = {"C.dahl.level": np.linspace(0.1, 1.5, points)}
-        return side_by_side.block_size(
-            StudyTask(case, {}, points_of(axes), measures_of("force_error"))
-        )
+        return block_size(StudyTask(case, {}, points_of(axes), measures_of("force_error")))
 
     assert size(800) == 400  # half a second of one core
     assert size(8000) == 992  # an eighth of the study, in whole blocks of lanes
@@ -93,12 +90,12 @@ def test_blocks_in_two_processes_and_after_a_stop_give_the_same_data(tmp_path):
         if progress.done > 150:
             raise KeyboardInterrupt
 
-    td.studies.progress._BETWEEN, before = -1.0, td.studies.progress._BETWEEN
+    td.studies.outcomes._BETWEEN, before = -1.0, td.studies.outcomes._BETWEEN
     try:
         with pytest.raises(KeyboardInterrupt):
             td.study(models.interface(), axes, workers=1, out=out, progress=stop, **arguments)
     finally:
-        td.studies.progress._BETWEEN = before
+        td.studies.outcomes._BETWEEN = before
     kept = []
     again = td.study(
         models.interface(), axes, workers=1, out=out, progress=kept.append, **arguments

@@ -7,7 +7,7 @@ from matplotlib.text import Text
 
 import teleopdesign as td
 from teleopdesign.base.errors import ModelError
-from teleopdesign.show.figures.study_data import words
+from teleopdesign.show.studies.data import words
 
 COLUMNS = {"x": (-np.pi, np.pi), "y": (-np.pi, np.pi), "z": (-np.pi, np.pi)}
 

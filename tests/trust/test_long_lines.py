@@ -3,7 +3,7 @@
 import pytest
 from clock import takes_less_than
 
-from teleopdesign.base.toml_table import parse_toml
+from teleopdesign.base.toml import parse_toml
 
 #: characters: a search that begins anew at each takes a minute
 LENGTH = 60_000

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import teleopdesign
-from teleopdesign.base.plain_data import harmless_cell
+from teleopdesign.base.files import harmless_cell
 from teleopdesign.cli import _parser, main
 from teleopdesign.commands import _paths, effects
 from teleopdesign.commands._failures import TRACEBACK

@@ -3,12 +3,11 @@
 from dataclasses import replace
 
 from teleopdesign import load_effect
+from teleopdesign.show.unexplained.sentences import sentence_for
 from teleopdesign.unexplained.curve import curve_of
-from teleopdesign.unexplained.dependence import model_columns
+from teleopdesign.unexplained.dependence import contrasts, model_columns
 from teleopdesign.unexplained.effect_file import write_effect
 from teleopdesign.unexplained.formula import formula_for
-from teleopdesign.unexplained.qualifiers import contrasts
-from teleopdesign.unexplained.sentences import sentence_for
 
 
 def planted(rows, missing):

@@ -7,8 +7,7 @@ import pytest
 from unexplained.planting import planted, sentence_on
 
 from teleopdesign.unexplained.curve import curve_of
-from teleopdesign.unexplained.dependence import Dependence, dependences, model_columns
-from teleopdesign.unexplained.qualifiers import contrasts
+from teleopdesign.unexplained.dependence import Dependence, contrasts, dependences, model_columns
 from teleopdesign.unexplained.rows import rows_of
 from teleopdesign.unexplained.shapes import (
     FORCE,

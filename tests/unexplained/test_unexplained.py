@@ -8,10 +8,10 @@ from clock import takes_less_than
 from hypothesis import given
 from hypothesis import strategies as st
 
+from teleopdesign.base.sentences import number
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.measurement.reversals import look_back_to_reversal
 from teleopdesign.unexplained import describe_residual, where_it_fails
-from teleopdesign.unexplained.amounts import amount, number
 from teleopdesign.unexplained.rows import rows_of
 from teleopdesign.unexplained.shapes import (
     POSITION,
@@ -124,13 +124,6 @@ def test_time_and_travel_are_counted_from_where_the_body_set_off():
 def test_a_number_is_reported_to_two_digits(size, sign):
     # half of the second digit, at worst of 1.0
     assert float(number(sign * size)) == pytest.approx(sign * size, rel=0.0501)
-
-
-def test_amounts_have_units_that_read_well():
-    assert amount(0.004, "velocity", "prismatic") == "4.0 mm/s"
-    assert amount(0.3, "force", "prismatic") == "0.30 N"
-    assert amount(0.012, "force", "revolute") == "12 mN m"
-    assert amount(0.12, "dimensionless", "prismatic") == "12 %"
 
 
 @given(st.lists(st.floats(-2.0, 3.0), min_size=1, max_size=20))

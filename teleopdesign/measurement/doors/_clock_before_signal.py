@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from ...base.quantity import measures, si_factor
+from ...base.units import measures, si_factor
 from ..wrapped_stamps import unwrap_stamps
 from ._cells import number_of
 from ._log import Array, Log, bare_column, join_names

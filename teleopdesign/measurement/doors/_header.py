@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from ...base.quantity import is_unit
+from ...base.units import is_unit
 from ..column_names import unit_of_text
 
 _BRACKETED = re.compile(r"[(\[{<][^()\[\]{}<>]*+[)\]}>]$")

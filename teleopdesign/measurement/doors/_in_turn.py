@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.errors import ExperimentError
-from ...base.quantity import measures, si_factor
+from ...base.units import measures, si_factor
 from ._cells import is_number, number_of, seconds_of
 from ._log import Array, Log, join_names
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...base.quantity import measures, si_factor
+from ...base.units import measures, si_factor
 from ._log import Array, Log
 
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ...base.errors import ExperimentError
-from ...base.quantity import si_factor
+from ...base.units import si_factor
 from ._log import Array, Log
 
 #: last words of the names of whole seconds, and of their part with its unit

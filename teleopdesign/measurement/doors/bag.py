@@ -16,8 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ...base.errors import ExperimentError, quote
-from ...base.names import LONGEST
+from ...base.errors import LONGEST, ExperimentError, quote
 from ._log import Array, Log, join_names, optional, refuse_damage, refuse_size
 
 #: most numbers of one message that become columns: images and point clouds are no log

@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import PurePath
 
 from ...base.errors import ExperimentError, did_you_mean
-from ...base.quantity import is_several_times, is_unit
+from ...base.units import is_several_times, is_unit
 from ..column_names import as_unit, unit_in_name
 from ..doors._log import Log, join_names
 from ..doors.folder import are_quantities

@@ -7,7 +7,7 @@ from itertools import permutations
 
 import numpy as np
 
-from ...base.quantity import measures, si_factor
+from ...base.units import measures, si_factor
 from ..column_names import likeness
 from .content import Array
 from .derivative import DERIVATIVE, derivative_factor, has_both_signs, unwrap_column, wrap_of

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...base.quantity import AXES, is_unit, measures
+from ...base.units import AXES, is_unit, measures
 from ..column_names import words_of
 from .content import Choices, Survey
 from .derivative import turn_of

@@ -12,8 +12,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from ...base.quantity import measures, si_factor
-from ...base.standard_error import with_standard_error
+from ...base.sentences import with_standard_error
+from ...base.units import measures, si_factor
 from ..column_names import is_wanted, likeness, words_of
 from ..first_guess import balance_factor, explain_force
 from .content import SURE_NAME, Array, Choices, Survey, SurveyedColumn

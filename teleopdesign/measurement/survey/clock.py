@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.errors import ExperimentError, quote
-from ...base.quantity import is_several_times, measures, si_factor
+from ...base.units import is_several_times, measures, si_factor
 from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text, words_of
 from ..doors._log import Log, bare_column, join_names
 from ..log_clock import OF_ANOTHER_CLOCK

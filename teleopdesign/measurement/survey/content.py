@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.quantity import is_unit, measures
+from ...base.units import is_unit, measures
 from ..column_names import likeness
 from ..first_guess import FirstGuess
 from ..signed_numbers import SignCode

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ...base.quantity import measures, si_factor
+from ...base.units import measures, si_factor
 from ..column_names import words_of
 from .content import Survey, SurveyedColumn, sample_time_of
 from .derivative import NEAR_USUAL, USUAL_COUNTS, derivative_factor, unwrap_column, wrap_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ...base.quantity import is_unit
+from ...base.units import is_unit
 from ..column_names import likeness, words_of
 from ..law_of_readings import is_copy
 from .axes import same_but_axis

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ...base.quantity import is_unit, measures, unit_of
-from ...base.toml_table import Table
+from ...base.toml import Table
+from ...base.units import is_unit, measures, unit_of
 from ..column_names import unit_in_name, why_no_unit, words_of
 from ..conversion import conversion_of
 from ..signed_numbers import SIGN_BIT

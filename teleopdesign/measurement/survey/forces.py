@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from ...base.quantity import si_factor
+from ...base.units import si_factor
 from ..column_names import is_difference, is_wanted, likeness
 from ..doors._log import join_names
 from ..first_guess import FirstGuess, explain_force, is_turned, left_by_motion

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...base.quantity import is_unit, measures, si_factor
+from ...base.units import is_unit, measures, si_factor
 from ..column_names import (
     is_another_quantity,
     is_difference,

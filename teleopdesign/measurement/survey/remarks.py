@@ -6,7 +6,7 @@ import itertools
 import re
 from collections.abc import Sequence
 
-from ...base.quantity import is_unit, measures, si_factor
+from ...base.units import is_unit, measures, si_factor
 from ..column_names import unit_of_text
 from ..doors._cells import number_of
 

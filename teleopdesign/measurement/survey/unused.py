@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...base.quantity import is_unit
+from ...base.units import is_unit
 from ..column_names import is_another_quantity, is_difference, is_wanted, likeness
 from ..doors._log import Log
 from ..law_of_readings import is_copy

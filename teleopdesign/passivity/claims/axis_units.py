@@ -9,7 +9,7 @@ import re
 from dataclasses import replace
 from typing import Any
 
-from ...base.quantity import unit_of
+from ...base.units import unit_of
 from .claim import Claim, Evidence, Proof, Refutation, Unknown
 
 _QUANTITIES = ("damping", "stiffness", "force", "velocity", "inertia", "position")

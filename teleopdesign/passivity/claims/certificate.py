@@ -17,7 +17,8 @@ import sympy as sp
 
 from ...base.arguments import check_types
 from ...base.errors import ModelError
-from ...base.plain_data import write_text
+from ...base.files import write_text
+from ...base.shown import Shown
 from ..checker import Refused, check, load
 
 #: one term of an identity, (weight, factor -> power, e): weight * product of factor^power * e^2
@@ -25,8 +26,8 @@ Term = tuple[sp.Expr | int, Mapping[str, int], sp.Expr | int]
 
 
 @check_types
-@dataclass(frozen=True, repr=False)
-class Certificate:
+@dataclass(frozen=True)
+class Certificate(Shown):
     """A certificate that the checker can verify; `content` is plain JSON data with a digest."""
 
     content: Mapping[str, Any]
@@ -46,9 +47,6 @@ class Certificate:
             return check(dict(self.content))
         except Refused as problem:
             raise ModelError(f"certificate: {problem}") from None
-
-    def __repr__(self) -> str:
-        return f"Certificate ({self.kind}): {self.content.get('title', '')}"
 
     def write(self, path: str | Path) -> None:
         """Write a JSON file, which `python -m teleopdesign.passivity.checker PATH` verifies."""

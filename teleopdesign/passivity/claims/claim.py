@@ -12,9 +12,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from ...base.by_value import ByValue
 from ...base.errors import ModelError
-from ...base.notebook import html_table
+from ...base.frozen import ByValue
+from ...base.shown import Shown
 from .certificate import Certificate
 
 _EXACT = "decided in exact arithmetic; a certificate would ask for more work than its checker does"
@@ -155,7 +155,7 @@ Verdict = Proof | Refutation | Evidence | Unknown
 
 
 @dataclass(frozen=True, eq=False)
-class Claim(NotTrueOrFalse, ByValue):
+class Claim(Shown, NotTrueOrFalse, ByValue):
     """A statement about passivity at a port, with its proof, refutation or evidence."""
 
     statement: str
@@ -197,10 +197,3 @@ class Claim(NotTrueOrFalse, ByValue):
         if not isinstance(self.verdict, Refutation):
             raise ModelError(f"claim: {self.status}, so no motion refutes it: {self.statement}")
         return self.verdict.record
-
-    def _repr_html_(self) -> str:
-        rows = [("statement", self.statement), ("status", self.status), ("by", self.verdict)]
-        return html_table("Claim", ("", ""), rows)
-
-    def __repr__(self) -> str:
-        return f"{self.heading}: {self.statement}\n    {self.verdict}"

@@ -12,8 +12,7 @@ import numpy as np
 import sympy as sp
 
 from ...base.errors import ExperimentError, ModelError
-from ...base.plain_data import write_json
-from ...base.whole_files import read_whole
+from ...base.files import read_whole, write_json
 from ...diagrams.expressions import read_expression
 from ...diagrams.junctions import position_symbol
 from ...realise.lti import S

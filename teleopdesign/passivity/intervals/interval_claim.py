@@ -6,11 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-import numpy as np
-
-from ...base.by_value import ByValue
-from ...base.notebook import html_table
-from ...base.quantity import unit_after_number
+from ...base.frozen import ByValue
+from ...base.shown import Shown
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim, NotTrueOrFalse
 from .box import ValueBox
@@ -20,7 +17,7 @@ Status = Literal["proved", "refuted", "evidence", "unknown"]
 
 
 @dataclass(frozen=True, eq=False)
-class IntervalClaim(NotTrueOrFalse, ByValue):
+class IntervalClaim(Shown, NotTrueOrFalse, ByValue):
     """A claim over intervals of values, with its status and worst case.
 
     status: "proved" over the whole box; "refuted" at `worst`; "evidence": the claim holds at all
@@ -68,26 +65,6 @@ class IntervalClaim(NotTrueOrFalse, ByValue):
             "evidence": f"checked numerically at {self.points} points, worst found there",
             "unknown": "unknown",
         }[self.status]
-
-    def __repr__(self) -> str:
-        measures = {n: unit_after_number(self.units.get(n, "1")) for n in self.worst}
-        where = ", ".join(f"{n} = {v:.6g}{measures[n]}" for n, v in self.worst.items())
-        lines = [f"{self.known}: {self.statement}", f"    {self.how}"]
-        unit = unit_after_number(self.unit)
-        if not np.isnan(self.margin):
-            lines.append(f"    worst margin {self.margin:.4g}{unit} at {where or 'its values'}")
-        if not np.isnan(self.proved_margin):
-            lines.append(f"    proved to be at least {self.proved_margin:.4g}{unit}")
-        return "\n".join(lines)
-
-    def _repr_html_(self) -> str:
-        rows = [
-            (n, f"{low:g}", f"{high:g}", f"{self.worst[n]:.6g}", self.units.get(n, ""))
-            for n, (low, high) in self.intervals.items()
-        ]
-        head = ("value", "from", "to", "at the worst point", "unit")
-        note = f"{self.statement}; margin {self.margin:.4g} {self.unit}. {self.how}"
-        return html_table(self.known, head, rows, note=note)
 
 
 #: fields of an `IntervalClaim` before units and all intervals are added

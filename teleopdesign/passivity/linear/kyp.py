@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...base.by_value import ByValue
 from ...base.errors import ModelError
+from ...base.frozen import ByValue
 from ..claims.certificate import Term, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
 from .hidden_modes import HIDDEN_GROWTH, has_hidden_growth

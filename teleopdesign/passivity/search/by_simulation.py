@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from ...base.errors import ModelError
-from ...base.quantity import unit_of
+from ...base.units import unit_of
 from ...diagrams import Diagram
 from ...diagrams.units import first_axis
 from ...simulate import Sampling, simulate

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from ...base.by_value import ByValue
+from ...base.frozen import ByValue
 from ...controllers import Stage
 from ...simulate import Sampling
 from ..claims.claim import Claim, Counterexample

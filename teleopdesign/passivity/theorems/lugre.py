@@ -18,7 +18,7 @@ import numpy as np
 import sympy as sp
 
 from ...base.errors import ModelError
-from ...base.rounding import round_near
+from ...base.sentences import round_near
 from ...effects import EFFECTS, SIGNALS
 from ..claims.certificate import Certificate, Term, storage_certificate
 from ..claims.claim import Claim, Proof, Refutation, Unknown

@@ -25,8 +25,8 @@ import numpy as np
 import sympy as sp
 
 from ...base.arguments import describe_value
-from ...base.by_value import ByValue
 from ...base.errors import ModelError
+from ...base.frozen import ByValue
 from ...realise.lti import S
 from ..claims.certificate import positive_real_certificate
 from ..claims.claim import Claim, Refutation, Unknown, prove_by_certificate

@@ -23,9 +23,9 @@ import numpy as np
 import sympy as sp
 
 from ...base.arguments import describe_value
-from ...base.by_value import ByValue
 from ...base.errors import ModelError
 from ...base.finding import Graph, Series
+from ...base.frozen import ByValue
 from ...realise.lti import S
 from ..linear.impedance import Impedance, exact, impedance
 

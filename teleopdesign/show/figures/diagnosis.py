@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.sentences import unit_at_axis
 from ...diagnose.comparison import Comparison, residual_data
-from .design import unit_text
-from .letters import house_style
+from ..registry import shows
+from .style import house_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +40,7 @@ def check_rows(data: Any) -> Any:
 
 def label_of(data: Any, name: str) -> str:
     """Name and unit of a variable of residual data, for an axis."""
-    return f"{name} ({unit_text(data[name].attrs['units'])})"
+    return f"{name} ({unit_at_axis(data[name].attrs['units'])})"
 
 
 def draw_by_direction(ax: Axes, data: Any, over: str) -> None:
@@ -84,6 +85,7 @@ def draw_over_time(ax: Axes, data: Any, name: str, color: str, label: str, width
         )
 
 
+@shows("figure")
 def plot_comparison(comparison: Comparison) -> Figure:
     """Measured and modelled force, and the residual over time, velocity and position."""
     import matplotlib.pyplot as plt
@@ -121,6 +123,7 @@ def _force_axes(ax: Axes, data: Any) -> None:
     ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=3)
 
 
+@shows("figure")
 def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
     """Forces and residual before and after, residual over velocity and position, the ladder.
 

@@ -11,12 +11,12 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ...base.plain_data import write_beside
-from ...base.quantity import unit_of
+from ...base.files import write_beside
+from ...base.units import unit_of
 from ...measurement.experiment import Experiment
 from ...measurement.first_guess import motion_columns
 from ...measurement.survey import Survey
-from .letters import further_fonts
+from .style import further_fonts
 
 #: points of a line: more are not seen
 _POINTS = 4000

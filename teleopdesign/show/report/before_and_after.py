@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.finding import Array, Graph, Series
-from ...base.quantity import unit_of
+from ...base.units import unit_of
 from .scaled import Scaled, choose_prefix, size_of
 
 #: most points of a profile over velocity in each direction, and fewest samples of a point

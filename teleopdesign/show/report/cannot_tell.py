@@ -7,12 +7,26 @@ import math
 import numpy as np
 
 from ...base.finding import Finding
+from ...base.sentences import (
+    join_names,
+)
+from ...base.sentences import (
+    number_on_page as number,
+)
+from ...base.sentences import (
+    percent_on_page as percent,
+)
+from ...base.sentences import (
+    unit_on_page as unit_text,
+)
+from ...base.sentences import (
+    with_error_on_page as with_error,
+)
 from ...diagnose.criteria import CRITERIA
 from ...diagnose.diagnosis import Diagnosis
 from ...diagnose.fit import Fit, free_parameters
 from ...diagnose.statements import LadderRow
 from ...effects import CONTACT_ROLES
-from .words import join_names, number, percent, unit_text, with_error
 
 #: correlation of two estimates from which they are called known only together: the standard error
 #: of either is then 1/sqrt(1 - r^2) = 3.2 times what it would be if the other were known

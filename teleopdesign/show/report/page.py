@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from importlib import metadata
 from typing import Any
 
+from ...base.files import make_plain
 from ...base.finding import Finding, Graph
-from ...base.plain_data import make_plain
 from ...diagnose import Diagnosis
 from ...diagnose.answer import answer
 from ...diagnose.ladder_text import sentence

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ...base.errors import ExperimentError
-from ...base.plain_data import make_plain
+from ...base.files import make_plain
 from ...blocks import CONTACT, NINETY_FIVE, Value
 from ...diagnose import Diagnosis
 from ...effects import EFFECTS

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
-from ..figures.letters import STYLE, further_fonts
+from ..figures.style import STYLE, further_fonts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 
-from ...base.quantity import unit_of
+from ...base.units import unit_of
 from ...measurement.experiment import Experiment
 from ...measurement.reading import log_name
 

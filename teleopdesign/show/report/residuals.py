@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...base.finding import Array, Graph
-from ...base.quantity import unit_of
+from ...base.units import unit_of
 from ...diagnose import Diagnosis
 from ...diagnose.comparison import residual_data
 from ...diagnose.evidence import SAME

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.finding import Array
-from .words import unit_text
+from ...base.sentences import unit_on_page as unit_text
 
 #: SI unit -> (unit that is shown, factor), from small to large; other units are not changed
 _SHOWN = {

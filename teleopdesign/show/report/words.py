@@ -1,93 +1,21 @@
-"""Numbers, units and verdicts in words, as a report prints them."""
+"""Verdicts in words, as a report prints them."""
 
 from __future__ import annotations
 
-import math
-import re
-
+from ...base.sentences import join_names
+from ...base.sentences import number_on_page as number
+from ...base.sentences import percent_on_page as percent
 from ...diagnose.criteria import CRITERIA
 from ...diagnose.diagnosis import Diagnosis
 from ...diagnose.ladder_text import floors_apart
 from ...diagnose.statements import LadderRow
 from ...measurement.experiment import Experiment
 
-_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
-MINUS = "\u2212"
-NONE = "–"
-
-
-#: the sign between two units, and an exponent after a unit
-_PRODUCT = re.compile(r"(?<=[A-Za-z])\*(?=[A-Za-z])")
-_POWER = re.compile(r"(?<=[a-z])\^([23])(?!\d)")
-
-
-def number(value: float | None, digits: int = 4) -> str:
-    """A number with some significant digits: 0.1972, −12 300, 1.2·10⁻⁶; a dash for None or NaN."""
-    if value is None or not math.isfinite(value):
-        return NONE
-    if value == 0:
-        return "0"
-    exponent = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
-    if -4 < exponent < 5:
-        text = f"{value:.{max(digits - 1 - exponent, 0)}f}"
-    else:
-        text = f"{value / 10.0**exponent:.{digits - 1}f}·10{str(exponent).translate(_SUPERSCRIPT)}"
-    return text.replace("-", MINUS)
-
-
-def short(value: float | None, digits: int = 4) -> str:
-    """A number without trailing zeros: 60, 58.9, 7.2·10⁻⁶."""
-    text, times, power = number(value, digits).partition("·")
-    return (text.rstrip("0").rstrip(".") if "." in text else text) + times + power
-
-
-def with_error(value: float, error: float | None) -> tuple[str, str]:
-    """A value and its standard error, both to the second significant digit of the error."""
-    if error is None or not math.isfinite(error) or error <= 0:
-        return number(value), NONE
-    decimals = 1 - math.floor(math.log10(error))
-    if 0 <= decimals <= 6 and abs(value) < 1e5:
-        return f"{value:.{decimals}f}".replace("-", MINUS), f"{error:.{decimals}f}"
-    if value == 0:
-        return "0", number(error, 2)
-    digits = math.floor(math.log10(abs(value))) + decimals + 1
-    return number(value, min(max(digits, 2), 7)), number(error, 2)
-
-
-def percent(value: float | None) -> str:
-    """A relative error as 7.07 %."""
-    if value is None or not math.isfinite(value):
-        return NONE
-    return f"{100 * value:.2f}\u202f%"
-
 
 def sentence_of(entry: object | None) -> str:
     """The text of an entry of a diagnosis as a sentence; "" without an entry."""
     text = "" if entry is None else str(entry)
     return f"{text[:1].upper()}{text[1:]}." if text else ""
-
-
-def unit_text(unit: str) -> str:
-    """An SI unit as printed: N*s/m as N·s/m, m^2 as m²; "" for a plain number."""
-    if unit == "1":
-        return ""
-    return unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
-
-
-def typeset(sentence: str) -> str:
-    """A sentence of the terminal in the form of a page: capital letter, ± and units with dots."""
-    first = sentence.partition(" ")[0].rstrip(",:;")
-    if first.isalpha() and first.isascii():  # no number, and no key of a file
-        sentence = sentence[0].upper() + sentence[1:]
-    sentence = _PRODUCT.sub("·", sentence.replace(" +- ", " ± "))
-    return _POWER.sub(lambda power: "²" if power[1] == "2" else "³", sentence)
-
-
-def join_names(names: list[str], last: str = "and") -> str:
-    """Names as a list in a sentence: a, b and c."""
-    if len(names) < 2:
-        return "".join(names)
-    return f"{', '.join(names[:-1])} {last} {names[-1]}"
 
 
 def step_name(rung: LadderRow) -> str:

@@ -16,12 +16,29 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from ...base.files import write_text
 from ...base.finding import Finding
-from ...base.plain_data import write_text
+from ...base.sentences import (
+    number_on_page as number,
+)
+from ...base.sentences import (
+    percent_on_page as percent,
+)
+from ...base.sentences import (
+    short_on_page as short,
+)
+from ...base.sentences import (
+    typeset,
+)
+from ...base.sentences import (
+    unit_on_page as unit_text,
+)
+from ...base.sentences import (
+    with_error_on_page as with_error,
+)
 from ...diagnose import Diagnosis
 from .figures import WIDE, colour_scale, graph_figure, ladder_figure, step_figure
 from .page import Page, Unexplained, page_data, page_of
-from .words import number, percent, short, typeset, unit_text, with_error
 
 TEMPLATES = Path(__file__).with_name("templates")
 

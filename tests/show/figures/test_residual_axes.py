@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 from teleopdesign.show.figures.diagnosis import draw_by_direction
-from teleopdesign.show.figures.letters import house_style
+from teleopdesign.show.figures.style import house_style
 
 
 @pytest.mark.parametrize("size", [1.02e-3, 2.3e-2, 0.83, 47.0, 4.1e3])

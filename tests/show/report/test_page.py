@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 from markupsafe import Markup
 from show.report.html_page import HtmlPage
 
+from teleopdesign.base.files import make_plain
 from teleopdesign.base.finding import Finding, Graph, Series
-from teleopdesign.base.plain_data import make_plain
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.show.report import write_report
 from teleopdesign.show.report.figures import graph_figure

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.base.finding import Finding, Graph, Series
-from teleopdesign.base.quantity import si_factor
+from teleopdesign.base.units import si_factor
 from teleopdesign.show.report import before_and_after as graphs
 from teleopdesign.show.report import residuals
 from teleopdesign.show.report.before_and_after import BodySamples, excerpt, plot_over_velocity

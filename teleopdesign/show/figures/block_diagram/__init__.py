@@ -10,11 +10,10 @@ import math
 
 from ....base.errors import ModelError
 from ....diagrams import Diagram
-from .cells import place
 from .drawing import Drawing
 from .from_diagram import network
 from .network import Network, Node
-from .paths import Path, paths
+from .paths import Path, paths, place
 from .routes import route
 from .sheet import sheet
 

@@ -1,18 +1,118 @@
-"""A drawing: shapes on a sheet, written as SVG or painted by matplotlib."""
+"""A drawing: shapes on a sheet, written as SVG or painted by matplotlib.
+
+A drawing of shapes painted by matplotlib, for PDF and PNG in house style.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from ....base.plain_data import write_text
-from .figure import figure
-from .shapes import SheetShape
-from .svg import svg
+from ....base.files import write_text
+from ..style import house_style
+from .shapes import (
+    BASELINE,
+    RAISED,
+    SIZES,
+    SMALLER,
+    Box,
+    Circle,
+    Dot,
+    Run,
+    SheetShape,
+    Text,
+    Wire,
+    arrow_head,
+    shaft,
+    svg,
+)
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+
+POINTS_PER_INCH = 72.0
+LINE = 0.8
+#: both come with matplotlib, so that widths are the same everywhere; the second has more letters
+FONT = ["STIXGeneral", "DejaVu Sans"]
+
+
+def figure(shapes: Sequence[SheetShape], *, width: float, height: float) -> Figure:
+    """A matplotlib figure with the shapes on a sheet of that size (points)."""
+    import matplotlib.pyplot as plt
+
+    with plt.style.context(house_style()):
+        size = width / POINTS_PER_INCH, height / POINTS_PER_INCH
+        page = plt.figure(figsize=size, layout="none")
+        axes = page.add_axes((0.0, 0.0, 1.0, 1.0))
+        axes.set_axis_off()
+        axes.set_xlim(0.0, width)
+        axes.set_ylim(height, 0.0)
+        for shape in shapes:
+            if isinstance(shape, Text):
+                _write(shape, axes)
+            else:
+                _paint(shape, axes)
+    return page
+
+
+def _paint(shape: Box | Circle | Dot | Wire, axes: Axes) -> None:
+    from matplotlib import patches
+
+    open_shape: Any = {"facecolor": "white", "edgecolor": "black", "linewidth": LINE, "zorder": 3}
+    if isinstance(shape, Box):
+        corner = shape.x - shape.width / 2, shape.y - shape.height / 2
+        axes.add_patch(patches.Rectangle(corner, shape.width, shape.height, **open_shape))
+    elif isinstance(shape, Circle):
+        axes.add_patch(patches.Circle((shape.x, shape.y), shape.radius, **open_shape))
+    elif isinstance(shape, Dot):
+        dot = patches.Circle((shape.x, shape.y), 1.8, facecolor="black", edgecolor="none", zorder=4)
+        axes.add_patch(dot)
+    else:
+        x, y = zip(*shaft(shape), strict=True)
+        ends: Any = {"solid_joinstyle": "miter", "solid_capstyle": "butt"}
+        axes.plot(x, y, color="black", linewidth=LINE, zorder=2, **ends)
+        if shape.arrow:
+            head = patches.Polygon(arrow_head(shape), facecolor="black", edgecolor="none", zorder=4)
+            axes.add_patch(head)
+
+
+def _write(text: Text, axes: Axes) -> None:
+    size = SIZES[text.role]
+    widths = [_width(run, size) for run in text.runs]
+    start = {"start": 0.0, "middle": -0.5, "end": -1.0}[text.anchor]
+    x = text.x + start * sum(widths)
+    for run, width in zip(text.runs, widths, strict=True):
+        axes.text(
+            x,
+            text.y + (BASELINE + RAISED[run.level]) * size,
+            run.text,
+            fontsize=size * (SMALLER if run.level else 1.0),
+            fontfamily=FONT,
+            fontstyle="italic" if run.italic else "normal",
+            verticalalignment="baseline",
+            parse_math=False,  # a user's name may hold a dollar sign
+            zorder=5,
+        )
+        x += width
+
+
+def _width(run: Run, size: float) -> float:
+    """Width of characters in the font (points), including the space after the last letter."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import text_to_path
+
+    font = FontProperties(family=FONT, style="italic" if run.italic else "normal")
+    scale = size * (SMALLER if run.level else 1.0)
+
+    def wide(text: str) -> float:
+        return float(text_to_path.get_text_width_height_descent(text, font, ismath=False)[0])
+
+    # between two strokes, so that spaces at the ends count
+    return (wide(f"|{run.text}|") - wide("||")) * scale / font.get_size_in_points()
 
 
 @dataclass(frozen=True, repr=False)

@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from ....base.errors import ModelError
-from .cells import LEFT, RIGHT, Cells
 from .network import Net, Network
+from .paths import LEFT, RIGHT, Cells
 
 Vertex = tuple[int, int]
 #: steps right, down, left, up

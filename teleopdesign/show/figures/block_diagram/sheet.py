@@ -7,9 +7,9 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Literal
 
-from .cells import LEFT, RIGHT, Cells
 from .drawing import Drawing
 from .network import MINUS, RADIUS, Network, Node, label
+from .paths import LEFT, RIGHT, Cells
 from .routes import Route, RoutingGrid
 from .shapes import SIZES, Box, Circle, Dot, Run, SheetPoint, SheetShape, Text, Wire, width
 

@@ -1,0 +1,1 @@
+"""How a design looks: proposals with their reasons, predictions, claims, warnings."""

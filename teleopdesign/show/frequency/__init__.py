@@ -1,0 +1,1 @@
+"""How responses over frequency look: Bode and Nyquist plots, impedances, loop gains."""

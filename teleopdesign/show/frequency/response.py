@@ -1,0 +1,171 @@
+"""Texts of responses and loop gains, Bode and Nyquist figures.
+
+A figure of one column is 3.5 in wide with magnitude above phase, a figure of two columns is 7.16 in
+wide with both side by side; fonts, lines and colours are the same. A model is drawn as lines,
+measurements as points.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ...base.sentences import unit_at_axis
+from ..figures.style import ONE_COLUMN, TWO_COLUMNS
+from ..registry import shows
+from .axes import PageColumns, legend_below, look, mark_degrees, panels, points, share_abscissa
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import matplotlib.figure
+    import numpy as np
+
+    from ...frequency import FrequencyResponse, LoopGain, MatrixResponse
+
+
+@shows("text")
+def response_text(response: FrequencyResponse) -> str:
+    """Signals and range, and what each case leaves out."""
+    f = response.frequency
+    head = f"Frequency response {response.input} to {response.output}, {f[0]:g} to {f[-1]:g} Hz"
+    if response.measured:
+        return f"{head}, measured"
+    lines = [f"{head}, at speed {response.speed:g}"]
+    for case, gone in response.left_out.items():
+        zero = "zero at every frequency, " if response.is_zero(case) else ""
+        lines.append(f"  {case}: {zero}left out: {', '.join(gone) or 'nothing'}")
+    return "\n".join(lines)
+
+
+@shows("text")
+def matrix_response_text(response: MatrixResponse) -> str:
+    """Numbers of outputs and inputs, the range, and what is left out."""
+    shape = f"{len(response.data['output'])} outputs from {len(response.data['input'])} inputs"
+    f = response.data["frequency"].values
+    gone = f"; left out: {', '.join(response.left_out)}" if response.left_out else ""
+    return f"Response of {shape}, {f[0]:g} to {f[-1]:g} Hz{gone}"
+
+
+@shows("text")
+def loop_text(loop: LoopGain) -> str:
+    """The controller, and what is left out or sampled."""
+    held = f"; sampled and held: {', '.join(loop.held)}" if loop.held else ""
+    gone = ", ".join(loop.left_out) or "nothing"
+    held += ", margins by an approximation" if loop.held and loop.sampled is None else ""
+    return f"Gain round the loop of {loop.controller}; left out: {gone}{held}"
+
+
+@shows("figure")
+def plot_bode(
+    response: FrequencyResponse,
+    *,
+    measured: FrequencyResponse | None = None,
+    columns: PageColumns = 1,
+) -> matplotlib.figure.Figure:
+    """Magnitude (dB) and phase (deg) against frequency (Hz); measured: drawn as points.
+
+    A case that is zero at every frequency has no curve; the legend says that it is zero.
+    """
+    import numpy as np
+
+    figure, (upper, lower) = panels(columns)
+    for one in (response, measured):
+        if one is None:
+            continue
+        for name in one.cases:
+            style = points(name, alone=len(one.cases) == 1) if one.measured else look(name)
+            style["label"] = _name(one, name)
+            if one.is_zero(name):
+                upper.plot([], [], **(style | {"label": f"{style['label']} (zero)"}))
+                continue
+            size = one.magnitude[one.row(name)]
+            upper.plot(one.frequency, 20 * np.log10(size), **style)
+            lower.plot(one.frequency, _unwrap_beside(one, response, name), **style)
+    unit = response.unit
+    upper.set_ylabel(
+        "magnitude (dB)" if unit == "1" else f"magnitude (dB re 1 {unit_at_axis(unit)})"
+    )
+    lower.set_ylabel("phase (deg)")
+    mark_degrees(lower)
+    ends = float(response.frequency[0]), float(response.frequency[-1])
+    share_abscissa(upper, lower, "frequency (Hz)", ends, columns)
+    if measured is not None or len(response.cases) > 1:
+        legend_below(figure, upper)
+    return figure
+
+
+@shows("nyquist")
+def plot_nyquist(
+    response: FrequencyResponse,
+    *,
+    measured: FrequencyResponse | None = None,
+    columns: PageColumns = 1,
+) -> matplotlib.figure.Figure:
+    """Imaginary part against real part, with a dot at each decade of frequency.
+
+    response: drawn as lines, in its unit;  measured: drawn as points, of the same cases
+    columns: width of the figure in columns of a page, 1 or 2
+    """
+    import matplotlib.pyplot as plt
+
+    unit = response.unit
+    width = TWO_COLUMNS if columns == 2 else ONE_COLUMN
+    figure, axis = plt.subplots(figsize=(width, 0.9 * ONE_COLUMN))
+    axis.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
+    axis.axvline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
+    for one in (response, measured):
+        if one is None:
+            continue
+        for name in one.cases:
+            z = one.values(name)
+            style = points(name, alone=len(one.cases) == 1) if one.measured else look(name)
+            axis.plot(z.real, z.imag, **(style | {"label": _name(one, name)}))
+            if not one.measured:
+                _decades(axis, one.frequency, z, style["color"])
+    low, high = axis.get_xlim()
+    if unit == "1" and low < -1 < high:
+        axis.plot(-1, 0, "+", color="#000000", markersize=6)
+    beside = "" if unit == "1" else f" ({unit_at_axis(unit)})"
+    axis.set_xlabel(f"real part{beside}")
+    axis.set_ylabel(f"imaginary part{beside}")
+    (left, right), (lowest, highest) = axis.get_xlim(), axis.get_ylim()
+    # room for labels, and no emptier page than the curve's shape
+    height = 0.6 + (width - 0.6) * (highest - lowest) / (right - left)
+    figure.set_size_inches(width, min(max(height, 1.6), 4.5))
+    axis.set_aspect("equal", adjustable="box")
+    axis.grid(True)
+    if measured is not None or len(response.cases) > 1:
+        legend_below(figure, axis)
+    return figure
+
+
+def _name(one: FrequencyResponse, case: str) -> str:
+    if not one.measured:
+        return str(look(case)["label"])
+    return "measured" if len(one.cases) == 1 else "_"
+
+
+def _unwrap_beside(one: FrequencyResponse, model: FrequencyResponse, case: str) -> np.ndarray:
+    """Phase of a case, shifted by multiples of 360 degrees to lie beside the phase of the model."""
+    import numpy as np
+
+    phase, f = one.phase[one.row(case)], np.log(model.frequency)
+    line = model.phase[model.row(case if case in model.cases else "")]
+    expected = np.interp(np.log(one.frequency), f, line)
+    return np.asarray(phase + 360 * np.round(np.median(expected - phase) / 360))
+
+
+def _decades(axis: matplotlib.axes.Axes, f: np.ndarray, z: np.ndarray, colour: str | None) -> None:
+    import numpy as np
+
+    tens = 10.0 ** np.arange(np.ceil(np.log10(f[0])), np.floor(np.log10(f[-1])) + 1)
+    at = [int(np.argmin(np.abs(np.log(f / ten)))) for ten in tens]
+    axis.plot(z[at].real, z[at].imag, ".", color=colour or "#000000", markersize=4)
+    if axis.texts:
+        return  # another case has the names
+    apart = 0.1 * max(float(np.ptp(z.real)), float(np.ptp(z.imag)))
+    named: list[complex] = []
+    for ten, k in zip(tens, at, strict=True):
+        if all(abs(z[k] - other) > apart for other in named):
+            named.append(z[k])
+            beside = (float(z[k].real), float(z[k].imag))
+            axis.annotate(f"{ten:g} Hz", beside, (3, 3), textcoords="offset points", fontsize=6)

@@ -1,0 +1,1 @@
+"""How a proposed experiment looks: sentences, findings, figure."""

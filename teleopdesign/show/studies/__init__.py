@@ -1,0 +1,1 @@
+"""How studies look: curves, maps, panels, points, bars. Figures compute nothing."""

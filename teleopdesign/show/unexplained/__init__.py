@@ -1,0 +1,1 @@
+"""How an unexplained residual looks: sentences, findings, views."""

@@ -1,0 +1,222 @@
+"""Where a model fails: sentences on each body, each with its numbers and its graph.
+
+The figure of a residual: its views, and a curve for each dependence on a variable.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...base.finding import Finding
+from ...base.sentences import number, percent
+from ...diagnose.criteria import CRITERIA
+from ...unexplained.dependence import ALARM
+from ...unexplained.shapes import SHAPES
+from ..figures.diagnosis import AFTER, BACKWARD, FORWARD, MEASURED
+from ..registry import shows
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...base.finding import Graph, Series
+    from ...unexplained import BodyResidual, DescribedDependence, ResidualDescription
+
+
+#: part of the residual that may remain undescribed without a remark: a description to first order,
+#: with f as lines between knots, leaves a few percent anyway
+UNDESCRIBED = 0.1
+#: if at least this part of the residual lies where no motion is certain, the description says so
+MOSTLY = 0.5
+
+
+@shows("text")
+def description_text(description: ResidualDescription) -> str:
+    """A line for each finding."""
+    return "\n".join(map(str, description.findings))
+
+
+@shows("findings")
+def findings_of(description: ResidualDescription) -> tuple[Finding, ...]:
+    """The sentences on all bodies."""
+    many = len(description.parts) > 1
+    return tuple(f for p in description.parts for f in _findings_on(p, name_body=many))
+
+
+def _findings_on(part: BodyResidual, *, name_body: bool) -> tuple[Finding, ...]:
+    """The sentences about one body, each with its numbers and its graph."""
+    where = part.body if name_body else ""
+    numbers = {"error": part.error, "noise floor": part.floor, "noise floors": part.floors}
+    error, floors = percent(part.error, ".2g"), number(part.floors)
+    time = part.views["time"]
+    if part.is_adequate:
+        sentence = f"the model leaves {error} of the force, no more than sensor noise would leave"
+        return (Finding("what is left", "fine", f"{sentence}.", numbers, where, time),)
+    sentence = (
+        f"the model leaves {error} of the force, {floors} times what sensor noise would leave"
+    )
+    findings = [Finding("what is left", "warning", f"{sentence}.", numbers, where, time)]
+    for one in part.dependences:
+        findings.append(_finding(one, where))
+    if part.floors > CRITERIA.adequate:
+        findings += _rest(part, where)
+    return tuple(findings)
+
+
+def _finding(one: DescribedDependence, where: str) -> Finding:
+    d = one.dependence
+    numbers = {
+        "explained": d.explained,
+        "score": d.score,
+        "probability of chance": d.probability,
+        "largest": float(one.curve.y.max()),
+        "smallest": float(one.curve.y.min()),
+    }
+    alike = ""
+    if d.alike:
+        listed = ", ".join(d.alike[:3]) + (", ..." if len(d.alike) > 3 else "")
+        alike = f" (no better: {listed})"
+    share = percent(d.explained, ".0f")
+    sentence = f"{one.sentence}. That is {share} of what is left{alike}."
+    topic = f"dependence: {d.shape.name}"
+    return Finding(topic, "warning", sentence[0].upper() + sentence[1:], numbers, where, one.graph)
+
+
+def _rest(part: BodyResidual, where: str) -> list[Finding]:
+    """Findings on the remaining residual: its frequencies, correlation in time, and size."""
+    low, high = part.whiteness.band
+    numbers = {"low": low, "high": high, "probability of chance": part.whiteness.probability}
+    sentence = f"Half of what is left lies between {number(low)} and {number(high)} Hz"
+    if low < 1.0:  # the first band
+        sentence = f"Three quarters of what is left lies below {number(max(high, 1.0))} Hz"
+    if part.whiteness.probability < ALARM:
+        largest = int(np.argmax(np.abs(part.whiteness.correlation) / part.whiteness.noise))
+        lag, r = part.whiteness.lag[largest], part.whiteness.correlation[largest]
+        numbers |= {"lag": float(lag), "correlation": float(r)}
+        sentence += f"; its autocorrelation at {number(1e3 * lag)} ms is {r:.2f}"
+        sentence += ", unlike sensor noise"
+    findings = [
+        Finding("frequency", "note", f"{sentence}.", numbers, where, part.views["frequency"])
+    ]
+    if part.at_rest > MOSTLY:
+        share = percent(part.at_rest, ".0f")
+        sentence = f"{share} of the residual lies where no motion can be seen."
+        velocity = part.views["velocity"]
+        findings.append(Finding("rest", "note", sentence, {"share": part.at_rest}, where, velocity))
+    floors = part.after / part.floor if part.floor else float("inf")
+    if floors > CRITERIA.adequate and part.after**2 > UNDESCRIBED * part.error**2:
+        what = "Beside that" if part.dependences else f"None of {len(SHAPES)} dependences is sure:"
+        verb = f"{number(floors)} times the sensors' noise"
+        sentence = (
+            f"{what}, {verb} stays undescribed."
+            if part.dependences
+            else f"{what} {verb} stay undescribed."
+        )
+        findings.append(
+            Finding(
+                "undescribed", "note", sentence, {"noise floors": floors}, where, part.views["time"]
+            )
+        )
+    return findings
+
+
+#: panels side by side; height of a row of them (in)
+COLUMNS, HEIGHT = 3, 1.75
+#: letters on a line above the panels: as many as fit into 7.16 in at 7 points
+LETTERS = 150
+#: colour of each named series
+COLOURS = {
+    "forward": FORWARD,
+    "backward": BACKWARD,
+    "mean forward": "#00513b",
+    "mean backward": "#7b3f63",
+    "measured force": MEASURED,
+    "residual": AFTER,
+    "check, means": "0.25",
+    "smooth": AFTER,
+}
+
+
+@shows("figure")
+def plot_unexplained(failure: ResidualDescription) -> Figure:
+    """The sentences of all findings, and below them the graphs of each body, dependences first."""
+    import matplotlib.pyplot as plt
+
+    panels = [p for part in failure.parts for p in _panels(part, name=len(failure.parts) > 1)]
+    lines = [
+        line
+        for finding in failure.findings
+        for line in textwrap.wrap(
+            _plain_text(_sentence_text(finding.where, finding.sentence)), LETTERS
+        )
+    ]
+    rows = math.ceil(len(panels) / COLUMNS)
+    title = 0.14 * (len(lines) + 1)
+    figure, axes = plt.subplots(rows, COLUMNS, figsize=(7.16, HEIGHT * rows + title), squeeze=False)
+    for ax, (name, graph) in zip(axes.flat, panels, strict=False):
+        _draw(ax, graph)
+        ax.set_title(name, loc="left", fontsize=7)
+    for ax in axes.flat[len(panels) :]:
+        ax.set_axis_off()
+    for ax, (_, graph) in zip(axes.flat, panels, strict=False):
+        if not any(s.kind == "rest" for s in graph.series):
+            ax.legend(markerscale=2, fontsize=6, loc="best")
+        elif graph.x_label.startswith("time ("):  # points are everywhere: beside the title
+            place = {"loc": "lower right", "bbox_to_anchor": (1.02, 0.98)}
+            points = zip(*ax.get_legend_handles_labels(), strict=True)
+            named = [(h, n) for h, n in points if n in ("forward", "backward")]
+            ax.legend(
+                *zip(*named, strict=True),
+                markerscale=6,
+                fontsize=6,
+                ncols=2,
+                handletextpad=0.0,
+                columnspacing=0.6,
+                **place,
+            )
+    figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=7, parse_math=False)
+    return figure
+
+
+def _sentence_text(where: str, sentence: str) -> str:
+    return f"{where}: {sentence}" if where else sentence[:1].upper() + sentence[1:]
+
+
+def _plain_text(text: str) -> str:
+    return text.replace("$", r"\$")
+
+
+def _panels(part: BodyResidual, *, name: bool) -> list[tuple[str, Graph]]:
+    before = f"{part.body}, " if name else ""
+    curves = [(before + d.dependence.shape.name, d.graph) for d in part.dependences]
+    return curves + [(f"{before}residual over {n}", g) for n, g in part.views.items()]
+
+
+def _draw(ax: Axes, graph: Graph) -> None:
+    for series in graph.series:
+        _series(ax, series)
+    if graph.logarithmic:
+        ax.set(xscale="log", yscale="log")
+    else:
+        ax.axhline(0, color="k", lw=0.5)
+    ax.set(xlabel=graph.x_label, ylabel=graph.y_label)
+
+
+def _series(ax: Axes, series: Series) -> None:
+    colour = COLOURS.get(series.name, MEASURED)
+    points: dict[str, Any] = {"color": colour, "label": series.name}
+    if series.kind == "rest":
+        ax.plot(series.x, series.y, ".", ms=1.0, rasterized=True, **points)
+        return
+    if series.kind == "measured" and series.low is not None and series.high is not None:
+        half = [series.y - series.low, series.high - series.y]
+        ax.errorbar(series.x, series.y, half, fmt=".", ms=3, lw=0.7, **points)
+        return
+    if series.low is not None and series.high is not None:
+        ax.fill_between(series.x, series.low, series.high, color=colour, alpha=0.25, lw=0)
+    style = "." if len(series.x) == 1 else "-"
+    ax.plot(series.x, series.y, style, lw=1.0, **points)

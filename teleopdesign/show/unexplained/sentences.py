@@ -1,0 +1,215 @@
+"""A dependence in one plain sentence, made from its numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ...base.sentences import amount, number, span
+from ...unexplained.curve import Curve, SignRegion, goes_up_and_down, largest_regions, regions_of
+from ...unexplained.dependence import Contrast
+from ...unexplained.formula import Formula, formula_text
+from ...unexplained.shapes import DAMPING, FORCE, FRICTION, LATENESS, LOST, MASS, Shape, Variable
+from ..registry import shows
+
+if TYPE_CHECKING:
+    from ...unexplained.description import DescribedDependence
+
+#: ratio of the sizes on two sides from which the text states a difference
+UNLIKE = 1.5
+#: words before a range, except for a plain "below 4 mm/s"
+_PLACES = {
+    "position": "at positions ",
+    "acceleration": "at accelerations ",
+    "actuator_force": "at commands ",
+    "load": "where the command's size is ",
+    "interaction_force": "at interaction forces ",
+}
+_AFTER = {"time": " of a record", "since_reversal": " after it sets off", "travel": " of travel"}
+
+
+def place(region: SignRegion, variable: Variable, axis: str) -> str:
+    """The range in words: "below 4 mm/s", "within 30 ms after it sets off"."""
+    low, high = region.low, region.high
+    if variable.signed:
+        if region.backward:
+            low, high = -high, -low
+        way = "backward" if region.backward else "forward"
+        inner = replace(region, low=low, high=high)
+        return f"moving {way}{_range(inner, variable, axis, ' ')}"
+    if variable.name in _AFTER:
+        return _describe_since(region, variable, axis)
+    over = _range(region, variable, axis)
+    return _PLACES.get(variable.name, "") + over if over else "throughout"
+
+
+def _range(region: SignRegion, variable: Variable, axis: str, before: str = "") -> str:
+    q = variable.quantity
+    if math.isfinite(region.low) and math.isfinite(region.high):
+        return f"{before}between {span(region.low, region.high, q, axis)}"
+    if math.isfinite(region.high):
+        return f"{before}below {amount(region.high, q, axis)}"
+    if math.isfinite(region.low):
+        return f"{before}above {amount(region.low, q, axis)}"
+    return ""
+
+
+def _describe_since(region: SignRegion, variable: Variable, axis: str) -> str:
+    q, after = variable.quantity, _AFTER[variable.name]
+    if variable.name == "travel":
+        after += " after it sets off"
+    if math.isfinite(region.low) and math.isfinite(region.high):
+        return f"between {span(region.low, region.high, q, axis)}{after}"
+    if math.isfinite(region.high):
+        first = "in the first" if variable.name == "time" else "within"
+        return f"{first} {amount(region.high, q, axis)}{after}"
+    if math.isfinite(region.low):
+        return f"from {amount(region.low, q, axis)}{after} on"
+    return "throughout"
+
+
+def _size(value: float, shape: Shape, axis: str, *, backward: bool = False) -> str:
+    """The difference in force, in the words of the carrier."""
+    carrier = shape.carrier
+    if backward:  # there, more is against the motion
+        value = -value
+    size = amount(abs(value), carrier.quantity, axis)
+    more = "more" if value > 0 else "less"
+    if carrier in (FORCE, FRICTION):
+        return f"{size} {more}"
+    if carrier is DAMPING:
+        return f"{size} {more} damping"
+    if carrier is MASS:
+        return f"{size} {more} moving mass"
+    if carrier is LOST:
+        return f"{size} of the command {'fails to arrive' if value > 0 else 'arrives in excess'}"
+    return f"{size} {'later' if value > 0 else 'earlier'}"
+
+
+@shows("sentence")
+def sentence_of(one: DescribedDependence) -> str:
+    """The sentence, without its full stop."""
+    shape, curve, formula = one.dependence.shape, one.curve, one.formula
+    return sentence_for(shape, curve, formula, one.contrasts, one.axis)
+
+
+def sentence_for(
+    shape: Shape, curve: Curve, formula: Formula | None, contrasts: Sequence[Contrast], axis: str
+) -> str:
+    """The sentence on a dependence, without its full stop; "" where no range surely differs."""
+    if shape.variable is None:
+        return _constant(shape, float(curve.y[0]), axis)
+    regions = regions_of(curve, signed=shape.variable.signed)
+    wave = formula is not None and len(formula.terms) == 1 and formula.terms[0].kind == "wave"
+    if shape.is_wave or (wave and len(largest_regions(regions)) > 2):
+        assert formula is not None
+        sentence = _wave(shape, formula, axis)
+    elif goes_up_and_down(regions) and shape.variable.name in ("position", "time"):
+        low, high = float(curve.y.min()), float(curve.y.max())
+        over = _describe_range(shape.variable)
+        sentence = (
+            f"{_subject(shape)} goes up and down {over}, by {_spread(low, high, shape, axis)}"
+        )
+    elif regions:
+        sentence = _ranges(shape, regions, axis)
+    else:
+        return ""
+    return sentence + _qualify(shape, contrasts) + _describe_following(formula, axis)
+
+
+def _ranges(shape: Shape, regions: Sequence[SignRegion], axis: str) -> str:
+    assert shape.variable is not None
+    parts = []
+    for i, region in enumerate(largest_regions(tuple(regions))):
+        backward = shape.variable.signed and region.backward
+        where = place(region, shape.variable, axis)
+        size = _size(region.extreme, shape, axis, backward=backward)
+        parts.append((where or "everywhere", size, i))
+    if shape.carrier is LOST:
+        return " and ".join(f"{where} up to {size}" for where, size, _ in parts)
+    need = "the device needs" if shape.carrier is not LATENESS else "the command acts"
+    sentence = ""
+    for where, size, i in parts:
+        if i == 0:
+            sentence = f"{where} {need} up to {size} than the model"
+        else:
+            sentence += f", {where} up to {size}"
+    if shape.carrier is FORCE and not shape.variable.signed:
+        sentence += " (counted in the positive direction)"
+    return sentence
+
+
+def _subject(shape: Shape) -> str:
+    return {
+        "force": "the force that the model lacks",
+        "friction": "the friction that the model lacks",
+        "damping": "the damping that the model lacks",
+        "mass": "the moving mass that the model lacks",
+        "lost command": "the part of the command that arrives",
+        "lateness": "the lateness of the command",
+    }[shape.carrier.name]
+
+
+def _describe_range(variable: Variable) -> str:
+    return {"position": "along the travel", "time": "in time"}.get(
+        variable.name, f"with {variable.name.replace('_', ' ')}"
+    )
+
+
+def _spread(low: float, high: float, shape: Shape, axis: str) -> str:
+    half = amount(0.5 * (high - low), shape.carrier.quantity, axis)
+    return f"{half} to either side"
+
+
+def _wave(shape: Shape, formula: Formula, axis: str) -> str:
+    assert shape.variable is not None
+    size = math.hypot(*formula.coefficients)
+    half = amount(size, shape.carrier.quantity, axis)
+    k = formula.terms[0].number
+    if shape.variable.name == "time":
+        every = f"at {k:.3g} Hz"
+    else:
+        every = f"every {amount(1.0 / k, shape.variable.quantity, axis)} of travel"
+    return f"{_subject(shape)} goes up and down {every}, by {half} to either side"
+
+
+def _constant(shape: Shape, value: float, axis: str) -> str:
+    size = _size(value, shape, axis)
+    if shape.carrier is FORCE:
+        twice = amount(2 * abs(value), "force", axis)
+        return (
+            f"everywhere the device needs {size} than the model (counted in the positive "
+            f"direction): a constant force, or friction that differs by {twice} between directions"
+        )
+    if shape.carrier is FRICTION:
+        return f"at all speeds the device needs {size} than the model, in both directions"
+    if shape.carrier is LOST:
+        return f"everywhere {size}"
+    if shape.carrier is LATENESS:
+        return f"the command acts {size} than the model says"
+    return f"everywhere the device needs {size} than the model"
+
+
+def _qualify(shape: Shape, contrasts: Sequence[Contrast]) -> str:
+    words = ""
+    signed = shape.variable is not None and shape.variable.signed
+    for contrast in contrasts:
+        directions = "forward" in contrast.sides
+        if directions and signed:  # the ranges say it
+            continue
+        if contrast.only:
+            words += f", only {'moving ' if directions else ''}{contrast.only}"
+        elif contrast.differs and min(contrast.sizes) > 0:
+            strong = int(contrast.sizes[1] > contrast.sizes[0])
+            ratio = contrast.sizes[strong] / contrast.sizes[1 - strong]
+            if ratio > UNLIKE:
+                words += f", {number(float(ratio))} times as much {contrast.sides[strong]}"
+        elif directions and shape.carrier is FRICTION:
+            words += ", in both directions"
+    return words
+
+
+def _describe_following(formula: Formula | None, axis: str) -> str:
+    return "" if formula is None else f"; it follows {formula_text(formula, axis)}"

@@ -1,0 +1,102 @@
+"""Every result that asks for its looks has them, and none words or draws itself."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import pkgutil
+import subprocess
+import sys
+from importlib import import_module
+
+import pytest
+from example_objects import QUICK
+from syntax_trees import PACKAGE, syntax_trees
+
+from teleopdesign import Study
+from teleopdesign.base.shown import Shown, figure_of
+from teleopdesign.show.registry import LOOKS, look_of, shows
+
+#: folders of results: what they print and draw stands in `show`
+FOLDERS = (
+    "design",
+    "frequency",
+    "identify",
+    "next_experiment",
+    "passivity",
+    "simulate",
+    "studies",
+    "tuning",
+    "unexplained",
+)
+
+
+def classes():
+    """Every class of the package's results, with the looks of all of them loaded."""
+    for folder in FOLDERS:
+        package = import_module(f"{PACKAGE.name}.{folder}")
+        for part in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if part.name.endswith("__main__"):
+                continue
+            module = import_module(part.name)
+            for kind in vars(module).values():
+                if inspect.isclass(kind) and kind.__module__ == module.__name__:
+                    yield kind
+
+
+@pytest.mark.parametrize("kind", sorted(classes(), key=lambda k: k.__qualname__))
+def test_a_result_has_the_looks_that_it_asks_for(kind):
+    if issubclass(kind, Shown):
+        assert look_of("text", kind) or look_of("table", kind)
+    if hasattr(kind, "plot") and not isinstance(vars(kind)["plot"], property):
+        assert look_of("figure", kind)
+
+
+def test_every_look_is_that_of_a_class():
+    for kind in classes():
+        look_of("text", kind)
+    names = {kind.__name__ for kind in classes()}
+    of_folders = {
+        shown for (_, shown), look in LOOKS.items() if look.__module__.split(".")[2] in FOLDERS
+    }
+    assert of_folders - names == set()
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_no_result_words_itself(folder):
+    """A text in a class of its folder would be a second place to look for texts."""
+    written = [
+        f"{path.stem}.{node.name}"
+        for path, tree in syntax_trees().items()
+        if path.relative_to(PACKAGE).parts[0] == folder
+        for node in tree.body
+        if isinstance(node, ast.ClassDef)
+        and not node.name.startswith("_")
+        and any(getattr(m, "name", "") in ("__repr__", "_repr_html_") for m in node.body)
+    ]
+    assert written == []
+
+
+def test_a_text_does_not_load_the_library_of_figures():
+    code = (
+        "import sys, teleopdesign as td\n"
+        "d = td.haptic_interface(td.Body('prismatic', {'inertia': 0.1}))\n"
+        "print(td.bode(d, frequency=[1.0, 2.0]))\n"
+        "print([m for m in ('matplotlib', 'xarray', 'scipy') if m in sys.modules])"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.startswith("Frequency response") and run.stdout.endswith("[]\n")
+
+
+def test_two_functions_for_one_look_are_refused():
+    assert look_of("text", Study)
+    with pytest.raises(ValueError, match="two functions give the text of Study"):
+
+        @shows("text")
+        def again(study: Study) -> str:
+            return ""
+
+
+def test_a_result_without_a_figure_says_so():
+    with pytest.raises(TypeError, match="show: no figure of Samples"):
+        figure_of(QUICK["samples"]())
