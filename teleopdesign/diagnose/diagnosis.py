@@ -15,14 +15,13 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from ..base.codec import INLINE, NEVER, OMIT, At, Bounds, Error, Filled, InUnit
 from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
-from ..base.shown import figure_of
+from ..base.shown import Shown, figure_of
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared
 from ..model import Model
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate
 from .fingerprint import Fingerprint
-from .ladder_text import ladder_html, ladder_text
 from .learnable import Learnable, NearReversals
 from .model_data import model_of_body
 from .noise_floor import NoiseFloor
@@ -54,7 +53,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis(ByValue):
+class Diagnosis(Shown, ByValue):
     """Result of a diagnosis: the ladder of effects, its models, and the verdict.
 
     rungs: the user's model re-estimated, then one row an effect
@@ -285,9 +284,3 @@ class Diagnosis(ByValue):
     def plot(self) -> Figure:
         """Figure of forces, of the residual over time, velocity and position, and of the ladder."""
         return figure_of(self)
-
-    def _repr_html_(self) -> str:
-        return ladder_html(self)
-
-    def __repr__(self) -> str:
-        return ladder_text(self)

@@ -12,13 +12,13 @@ from diagnose.simulated_cases import FEW
 
 from teleopdesign import Model, compare, find_missing
 from teleopdesign.diagnose.answer import answer, write_answer
-from teleopdesign.diagnose.ladder_text import command_error_text, ladder_text
 from teleopdesign.diagnose.predictions import write_predictions
 from teleopdesign.diagnose.probability import shares
 from teleopdesign.diagnose.ranking import REFUSALS
 from teleopdesign.diagnose.result import _bandwidth_source
 from teleopdesign.diagnose.rungs import first_rise, without_rise
 from teleopdesign.diagnose.statements import NotAccepted
+from teleopdesign.show.diagnose.text import command_error_text, ladder_text
 
 EVERY_KEY = {
     "verdict", "missing", "ladder", "noise_floor", "candidates", "indistinguishable",

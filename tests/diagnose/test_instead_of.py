@@ -22,7 +22,6 @@ from teleopdesign.diagnose.candidates import Candidate, candidates
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.decision import find_superfluous_effect, objection
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.rung import Rung, restore_replaced
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.stated import reset_to_stated
@@ -30,6 +29,7 @@ from teleopdesign.diagnose.statements import OpenRival
 from teleopdesign.diagnose.width import OpenWidths
 from teleopdesign.effects import EFFECTS
 from teleopdesign.next_experiment.rivals import rival_instead
+from teleopdesign.show.diagnose.text import ladder_text
 from teleopdesign.show.report.parameter_table import parameter_rows
 
 pytestmark = pytest.mark.slow  # diagnoses of whole cases

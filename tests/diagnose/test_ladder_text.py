@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import pytest
 from diagnose.stand_ins import fit, floor, ranked
 
-from teleopdesign.diagnose import ladder_text
-from teleopdesign.diagnose.ladder_text import records_line, say_floors
 from teleopdesign.diagnose.open_questions import nearest, not_accepted, possible_next
+from teleopdesign.show.diagnose import text as ladder_text
+from teleopdesign.show.diagnose.text import records_line, say_floors
 from teleopdesign.show.report.words import _floors
 
 

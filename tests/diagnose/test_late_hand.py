@@ -12,13 +12,13 @@ import teleopdesign as td
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.clock import with_late_hand, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.model_data import model_data, model_from
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.record_shift import name_of_hand, shifts_of
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
+from teleopdesign.show.diagnose.text import ladder_text
 
 pytestmark = pytest.mark.slow  # diagnoses of whole cases
 

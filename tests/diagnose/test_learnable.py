@@ -12,7 +12,6 @@ from teleopdesign.base.codec import from_data, to_data
 from teleopdesign.diagnose import learnable as module
 from teleopdesign.diagnose.answer import answer, load_answer, write_answer
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.learnable import (
     Learnable,
     error_near_reversals,
@@ -21,6 +20,7 @@ from teleopdesign.diagnose.learnable import (
 from teleopdesign.diagnose.tree_inputs import inputs_along
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.measurement.reversals import mark_reversals
+from teleopdesign.show.diagnose.text import ladder_text
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -12,7 +12,6 @@ import teleopdesign as td
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.clock import with_late_starts, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.model_data import model_data, model_from
 from teleopdesign.diagnose.record_shift import RecordShift, shifts_of
 from teleopdesign.diagnose.residual import residuals
@@ -20,6 +19,7 @@ from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
 from teleopdesign.fitted_checks import check_experiment
 from teleopdesign.measurement.prepare import prepare
+from teleopdesign.show.diagnose.text import ladder_text
 
 
 def shifted(experiment, rows):

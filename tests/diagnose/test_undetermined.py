@@ -15,12 +15,12 @@ from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.conclusion import find_doubtful_rung, find_hidden_rung
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.identifiability import doubt, explains_most, is_identifiable
-from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.plausibility import implausible_effects, record_facts
 from teleopdesign.diagnose.products import Product, best_product
 from teleopdesign.diagnose.statements import SetAside, Undetermined
 from teleopdesign.diagnose.undetermined import alike_on_records, find_undetermined, known_together
 from teleopdesign.effects import EFFECTS
+from teleopdesign.show.diagnose.text import ladder_text
 
 
 @given(power=st.floats(0.3, 3.0), noise=st.floats(1e-4, 1e-2))

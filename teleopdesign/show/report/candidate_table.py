@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 from ...diagnose import Diagnosis
-from ...diagnose.ladder_text import command_error_text
 from ...diagnose.ranking import REFUSALS
 from ...diagnose.statements import CandidateResult, StepResult
+from ..diagnose.text import command_error_text
 from .words import step_name
 
 

@@ -12,8 +12,8 @@ from ...base.files import make_plain
 from ...base.finding import Finding, Graph
 from ...diagnose import Diagnosis
 from ...diagnose.answer import answer
-from ...diagnose.ladder_text import sentence
 from ...measurement.reading import ReadingStep
+from ..diagnose.text import sentence
 from ..figures.graph import thin_series
 from .candidate_table import (
     CandidateRow,

@@ -7,9 +7,9 @@ from ...base.sentences import number_on_page as number
 from ...base.sentences import percent_on_page as percent
 from ...diagnose.criteria import CRITERIA
 from ...diagnose.diagnosis import Diagnosis
-from ...diagnose.ladder_text import floors_apart
 from ...diagnose.statements import LadderRow
 from ...measurement.experiment import Experiment
+from ..diagnose.text import floors_apart
 
 
 def sentence_of(entry: object | None) -> str:

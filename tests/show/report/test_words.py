@@ -6,9 +6,9 @@ from teleopdesign.base.sentences import (
     number_on_page,
     percent_on_page,
 )
-from teleopdesign.diagnose import ladder_text
 from teleopdesign.diagnose.one_moment import Moment
 from teleopdesign.diagnose.statements import Alternative
+from teleopdesign.show.diagnose import text as ladder_text
 from teleopdesign.show.report.words import sentence_of, verdict
 
 

@@ -5,18 +5,19 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from ..base.sentences import with_standard_error
-from ..base.shown import html_table
-from ..base.units import unit_after_number
-from ..blocks import Value
-from .adequacy import records_differ
-from .criteria import CRITERIA
-from .noise_floor import say_floors
-from .open_parameters import open_parameters_line
+from ...base.sentences import with_standard_error
+from ...base.shown import html_table
+from ...base.units import unit_after_number
+from ...blocks import Value
+from ...diagnose.adequacy import records_differ
+from ...diagnose.criteria import CRITERIA
+from ...diagnose.noise_floor import say_floors
+from ...diagnose.open_parameters import open_parameters_line
+from ..registry import shows
 
 if TYPE_CHECKING:
-    from .diagnosis import Diagnosis
-    from .statements import LadderRow
+    from ...diagnose.diagnosis import Diagnosis
+    from ...diagnose.statements import LadderRow
 
 #: relative difference from which the error at the command is stated in addition
 DIFFERENT = 0.02
@@ -27,6 +28,7 @@ def percent(error: float) -> str:
     return f"{100 * error:.2f} %" if math.isfinite(error) else "unknown"
 
 
+@shows("table")
 def ladder_html(diagnosis: Diagnosis) -> str:
     """The ladder as an HTML table for a notebook, with the verdict."""
     rows = [
@@ -43,6 +45,7 @@ def ladder_html(diagnosis: Diagnosis) -> str:
     return html_table("Diagnosis", ("added", "fit error", "check error"), rows, note=note)
 
 
+@shows("text")
 def ladder_text(diagnosis: Diagnosis) -> str:
     """The ladder as a table, with parameters, noise floor and verdict."""
     lines = [f"{'added':<42}{'fit error':>10}{'check error':>13}"]

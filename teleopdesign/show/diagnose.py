@@ -1,3 +1,0 @@
-"""How diagnoses and comparisons look."""
-
-from .figures import diagnosis as diagnosis
