@@ -123,24 +123,9 @@ def run(options: argparse.Namespace) -> int:
         write_page(diagnosis, options.report)
     say_written(options.report, options.json, options.predictions, options.figure)
     source = shell_word(options.json or folder)
-    suggest = _suggest_for_joints if diagnosis.joints else _suggest_commands
-    for line in suggest(diagnosis, source):
+    for line in _suggest_commands(diagnosis, source):
         print(line)
     return 0
-
-
-def _suggest_for_joints(diagnosis: Diagnosis, source: str) -> list[str]:
-    """Lines with the next command for each joint of an arm.
-
-    source: the answer if one was written, else the folder, as typed in a shell
-    """
-    lines = []
-    for joint, one in diagnosis.joints.items():
-        if one.groups:
-            lines.append(f"to distinguish them: teleopdesign next {source} --body {joint}")
-        if one.verdict != "model_adequate" and one.more_is_missing:
-            lines.append(f"where the model fails: teleopdesign describe {source} --body {joint}")
-    return ["", *lines] if lines else []
 
 
 def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> SimulationComparison | None:
@@ -159,15 +144,23 @@ def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> Simulation
 
 
 def _suggest_commands(diagnosis: Diagnosis, source: str) -> list[str]:
-    """Lines with the next commands; with a written answer they need no second diagnosis."""
+    """Lines with the next commands, of an arm for each joint.
+
+    source: the answer if one was written, so that no second diagnosis is needed, else the folder;
+        as typed in a shell
+    """
     from ..fitted_checks.bandwidth import check_bandwidth
 
     lines = []
-    if diagnosis.groups:
-        lines.append(f"what to measure to distinguish them: teleopdesign next {source}")
-    if diagnosis.verdict != "model_adequate" and diagnosis.more_is_missing:
-        lines.append(f"where the model fails: teleopdesign describe {source}")
-        wrong_band = check_bandwidth(diagnosis.model, diagnosis.prepared)
-        lines[:0] = [f.sentence for f in wrong_band]
-    lines.append(f"to design a compensation: teleopdesign design {source} --output design")
-    return ["", *lines]
+    for joint, one in (diagnosis.joints or {"": diagnosis}).items():
+        at = f"{source} --body {joint}" if joint else source
+        if one.groups:
+            lines.append(f"what to measure to distinguish them: teleopdesign next {at}")
+        if one.verdict != "model_adequate" and one.more_is_missing:
+            lines.append(f"where the model fails: teleopdesign describe {at}")
+            if not joint:
+                wrong_band = check_bandwidth(one.model, one.prepared)
+                lines[:0] = [f.sentence for f in wrong_band]
+    if not diagnosis.joints:
+        lines.append(f"to design a compensation: teleopdesign design {source} --output design")
+    return ["", *lines] if lines else []

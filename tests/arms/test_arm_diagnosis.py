@@ -14,7 +14,7 @@ from shared_data import shared_folder
 
 import teleopdesign as td
 from teleopdesign.cli import main
-from teleopdesign.commands.diagnose import _suggest_for_joints
+from teleopdesign.commands.diagnose import _suggest_commands
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.parts import PreparedParts
 from teleopdesign.diagnose.parts_fit import PartsFit, error_over_joints, estimate_parts
@@ -107,14 +107,14 @@ def test_what_helps_further_at_a_joint_stands_in_the_answer_and_is_not_searched_
         "joint2": joint("effects_missing", (), True),
         "joint3": joint("undecided", ("bias", "spring"), True),
     }
-    assert _suggest_for_joints(SimpleNamespace(joints=joints), "answer.json") == [
+    assert _suggest_commands(SimpleNamespace(joints=joints), "answer.json") == [
         "",
         "where the model fails: teleopdesign describe answer.json --body joint2",
-        "to distinguish them: teleopdesign next answer.json --body joint3",
+        "what to measure to distinguish them: teleopdesign next answer.json --body joint3",
         "where the model fails: teleopdesign describe answer.json --body joint3",
     ]
     adequate = SimpleNamespace(joints={"joint1": joints["joint1"]})
-    assert _suggest_for_joints(adequate, "answer.json") == []
+    assert _suggest_commands(adequate, "answer.json") == []
 
 
 @pytest.mark.slow
