@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from .base.arguments import check_types, describe_value, instance
-from .base.errors import ExperimentError, ModelError, did_you_mean
+from .base.errors import ExperimentError, ModelError, did_you_mean, unknown
 from .base.frozen import Frozen
 from .base.sentences import with_standard_error
 from .base.shown import html_table
@@ -264,10 +264,7 @@ class Model:
     def holder(self, at: str) -> str:
         """Name of the body at a place or touching it; raises ModelError: there is no such place."""
         if at not in self.places:
-            raise ModelError(
-                f'model: no body "{at}", has {", ".join(self.places)}'
-                f"{did_you_mean(at, self.places)}"
-            )
+            raise ModelError(f"model: {unknown('body', at, self.places)}")
         if at in self.bodies:
             return at
         return next(p for p, b in self.bodies.items() if b.has(CONTACT.name))

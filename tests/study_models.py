@@ -107,3 +107,12 @@ def drawn(number):
 def can_be_copied(x):
     """Whether the process that computes it may be copied."""
     return float(can_copy())
+
+
+#: what only a process that set it, and its copies, have
+mark = 0.0
+
+
+def has_mark(x):
+    """Whether the process that computes it is a copy of one that has set `mark`."""
+    return mark

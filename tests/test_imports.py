@@ -41,7 +41,7 @@ def test_a_diagnosis_imports_at_its_start_only_what_each_diagnosis_needs_there()
 
 def test_a_worker_of_a_study_loads_only_what_a_simulation_needs():
     others = [f"teleopdesign.{f}" for f in ("diagnose", "passivity", "tuning", "show")]
-    code = "import sys, teleopdesign.studies.worker_processes\n"
+    code = "import sys, teleopdesign.studies.processes\n"
     code += f"print(*[m for m in {others} if m in sys.modules])"
     loaded = modules_after(code)
     assert loaded.isdisjoint({*others, "numba", "control", "matplotlib", "xarray"})

@@ -71,6 +71,15 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return "" if match is None else f'; did you mean "{match}"?'
 
 
+def unknown(kind: str, name: object, known: Iterable[object]) -> str:
+    """What is wrong with a name: 'no law "dhal", has coulomb, dahl; did you mean "dahl"?'.
+
+    kind: of what the name stands for
+    """
+    names = [str(one) for one in known]
+    return f"no {kind} {quote(str(name))}, has {', '.join(names)}{did_you_mean(str(name), names)}"
+
+
 def quote(text: str) -> str:
     """`text` in double quotes, shortened if it is long."""
     if len(text) > _LONGEST_QUOTE:

@@ -169,9 +169,7 @@ def _work_and_end(work: Callable[[], None], first: int) -> None:
     """Work in this copy, and end it without a second end of all that the first process will end."""
     status = 1
     try:
-        _end_with(first)
-        forbid_copies()
-        _forget_handlers()
+        act_as_copy(first)
         work()
         status = 0
     except SystemExit as end:
@@ -182,8 +180,17 @@ def _work_and_end(work: Callable[[], None], first: int) -> None:
         os._exit(status)
 
 
+def act_as_copy(first: int) -> None:
+    """Let this copy of the process `first` end with it, and take no part in what that one handles.
+
+    It ends even where the first process is killed, ignores Ctrl-C, and makes no copies.
+    """
+    _end_with(first)
+    forbid_copies()
+    _forget_handlers()
+
+
 def _end_with(first: int) -> None:
-    """Let this copy end when the process that made it ends, even where that one is killed."""
     with suppress(AttributeError, OSError):
         ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # 1: PR_SET_PDEATHSIG of Linux
     if os.getppid() != first:

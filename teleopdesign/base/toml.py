@@ -74,6 +74,16 @@ class Table:
             raise self._wrong_type(key, "a text in quotes")
         return value
 
+    def choice(self, key: str, known: Iterable[str], default: str | None = None) -> str:
+        """The text under `key`, one of those in `known`; required without a default."""
+        value, known = self.text(key, default), tuple(known)
+        if value not in known:
+            raise ExperimentError(
+                f"{self.where(key)}: found {quote(value)}, expected {', '.join(known)}"
+                f"{did_you_mean(value, known)}"
+            )
+        return value
+
     def flag(self, key: str, default: bool) -> bool:
         """The boolean (true or false) under `key`; `default` if the key is absent."""
         value = self.content.get(key, default)

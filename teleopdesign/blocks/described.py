@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from ..base.errors import ExperimentError, ModelError, did_you_mean
+from ..base.errors import ExperimentError, ModelError, unknown
 from ..base.units import unit_after_number, unit_of
 from ..effects import CONTACT_ROLES, Effect, Parameter, find_effect
 from ..measurement.description import BodyDescription, Effects, EnvironmentDescription, ModelValue
@@ -61,8 +61,7 @@ def effects_of(
         for key in entries:
             if key not in effect.parameters:
                 raise ExperimentError(
-                    f'{where}.{name}: no parameter "{key}", has {", ".join(effect.parameters)}'
-                    f"{did_you_mean(key, effect.parameters)}"
+                    f"{where}.{name}: {unknown('parameter', key, effect.parameters)}"
                 )
         for key, parameter in effect.parameters.items():
             if key in entries:

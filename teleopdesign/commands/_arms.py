@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.errors import ExperimentError, unknown
 from ._options import value_from
 
 if TYPE_CHECKING:
@@ -45,10 +45,7 @@ def joint_of(experiment: Experiment, options: argparse.Namespace) -> str:
             "--body"
         )
     if chosen not in joints:
-        raise ExperimentError(
-            f"--body: no joint {quote(chosen)}, has {', '.join(joints)}"
-            f"{did_you_mean(chosen, joints)}"
-        )
+        raise ExperimentError(f"--body: {unknown('joint', chosen, joints)}")
     return str(chosen)
 
 
@@ -92,10 +89,7 @@ def _read_pose(texts: list[str], experiment: Experiment) -> dict[str, float]:
     for text in texts:
         joint, _, value = text.partition("=")
         if joint not in joints:
-            raise ExperimentError(
-                f"--pose {text}: no joint {quote(joint)}, has {', '.join(joints)}"
-                f"{did_you_mean(joint, joints)}"
-            )
+            raise ExperimentError(f"--pose {text}: {unknown('joint', joint, joints)}")
         pose[joint] = value_from(
             value, quantity="position", axis=experiment.axis(joint), where=f"--pose {text}"
         )

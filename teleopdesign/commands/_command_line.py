@@ -18,6 +18,7 @@ from pathlib import Path
 
 from .. import __version__, commands
 from ._failures import TRACEBACK, failure
+from ._options import check_outputs
 from ._paths import check_paths
 from ._terminal import plain_warnings, printable_streams
 
@@ -83,6 +84,7 @@ def _run(arguments: Sequence[str] | None, is_stopped: Callable[[], bool]) -> int
         finally:  # also where help was shown, or a wrong argument refused
             _flush()
         check_paths(options)
+        check_outputs(options)
         status: int = options.run(options)
         _flush()
         return status

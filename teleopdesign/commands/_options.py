@@ -48,6 +48,24 @@ def add_law_files(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_output(parser: argparse.ArgumentParser, option: str, text: str, *endings: str) -> None:
+    """Argument: a file that the command writes, which `check_outputs` checks before the work.
+
+    text: the help;  endings: endings of the file name that are allowed
+    """
+    action = parser.add_argument(
+        option, type=Path, metavar="F", help=f"{text} ({', '.join(endings)})"
+    )
+    parser.set_defaults(files={**(parser.get_default("files") or {}), action.dest: endings})
+
+
+def check_outputs(options: argparse.Namespace) -> None:
+    """Raise ExperimentError if a file of `add_output` cannot be written."""
+    for name, endings in getattr(options, "files", {}).items():
+        if (path := getattr(options, name)) is not None:
+            check_output(path, endings)
+
+
 def check_output(path: Path, endings: tuple[str, ...]) -> None:
     """Raise ExperimentError before the work, not after it, if a result cannot be written.
 

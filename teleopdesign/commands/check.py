@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..base.errors import ExperimentError
 from ..base.files import write_json
 from ._diagnosis import experiment_of, folder_of, stated_model
-from ._options import add_experiment, check_output, say_written
+from ._options import add_experiment, add_output, say_written
 from ._paths import shell_word
 
 if TYPE_CHECKING:
@@ -33,13 +33,11 @@ EXAMPLES = """
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser, answer=False)
-    parser.add_argument("--json", type=Path, metavar="F", help="write the findings (.json)")
+    add_output(parser, "--json", "write the findings", ".json")
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the findings, warnings first; write the requested file."""
-    if options.json is not None:
-        check_output(options.json, (".json",))
     from ..fitted_checks import check_experiment
     from ..measurement.experiment import describe_content
 

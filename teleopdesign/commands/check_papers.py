@@ -6,11 +6,10 @@ import argparse
 import shutil
 import textwrap
 from collections import Counter
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.files import write_json
-from ._options import check_output, say
+from ._options import add_output, say
 
 if TYPE_CHECKING:
     from ..papers import Result, Statement
@@ -29,13 +28,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         help="P1 to P65: check only these statements, and print every step and number",
     )
-    parser.add_argument("--json", type=Path, metavar="F", help="write the results (.json)")
+    add_output(parser, "--json", "write the results", ".json")
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the table; returns 1 if an outcome differs from what the statement says."""
-    if options.json is not None:
-        check_output(options.json, (".json",))
     from ..papers import STATEMENTS, check, find_statement
 
     chosen = [find_statement(name) for name in options.statement] or list(STATEMENTS.values())

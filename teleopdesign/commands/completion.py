@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, unknown
 
 EXAMPLES = """
   eval "$(teleopdesign completion bash)"           # in ~/.bashrc
@@ -30,10 +30,7 @@ def run(options: argparse.Namespace) -> int:
     from ..effects import EFFECTS
 
     if options.shell not in shtab.SUPPORTED_SHELLS:
-        raise ModelError(
-            f'completion: no shell "{options.shell}", has {", ".join(shtab.SUPPORTED_SHELLS)}'
-            f"{did_you_mean(options.shell, shtab.SUPPORTED_SHELLS)}"
-        )
+        raise ModelError(f"completion: {unknown('shell', options.shell, shtab.SUPPORTED_SHELLS)}")
     say_what_follows(options.parser, EFFECTS)
     print(shtab.complete(options.parser, options.shell))
     return 0

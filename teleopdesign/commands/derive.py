@@ -11,7 +11,7 @@ from ..base.errors import ModelError, did_you_mean
 from ..base.files import write_json
 from ._arms import add_body
 from ._diagnosis import body_of_source
-from ._options import add_answer, add_effect_files, add_law_files, check_output, say_written
+from ._options import add_answer, add_effect_files, add_law_files, add_output, say_written
 
 if TYPE_CHECKING:
     from ..derive import Transfers
@@ -31,12 +31,8 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--latex", action="store_true", help="print LaTeX, for an align environment"
     )
-    parser.add_argument(
-        "--json", type=Path, metavar="F", help="write expressions and numbers (.json)"
-    )
-    parser.add_argument(
-        "--figure", type=Path, metavar="F", help="draw the diagram (.svg, .pdf, .png)"
-    )
+    add_output(parser, "--json", "write expressions and numbers", ".json")
+    add_output(parser, "--figure", "draw the diagram", ".svg", ".pdf", ".png")
     parser.add_argument(
         "--speed",
         type=float,
@@ -63,9 +59,6 @@ def add_diagram(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the transfer functions, with numbers where the blocks have values."""
-    for path, endings in ((options.json, (".json",)), (options.figure, (".svg", ".pdf", ".png"))):
-        if path is not None:
-            check_output(path, endings)
     from ..derive import all_transfers
 
     diagram = diagram_from(options)

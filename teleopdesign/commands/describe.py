@@ -10,7 +10,7 @@ from ..base.errors import ModelError
 from ..base.files import write_beside, write_json
 from ._arms import add_body
 from ._diagnosis import diagnosis_of_part, experiment_and_answer, stated_model
-from ._options import add_experiment, check_output
+from ._options import add_experiment, add_output
 from ._paths import shell_word
 
 if TYPE_CHECKING:
@@ -37,28 +37,19 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="describe where the model of experiment.toml fails: its parameters are estimated "
         "again, no effect is added",
     )
-    parser.add_argument(
-        "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
-    )
-    parser.add_argument("--json", type=Path, metavar="F", help="write the description (.json)")
-    parser.add_argument(
+    add_output(parser, "--figure", "write the figure", ".png", ".pdf", ".svg")
+    add_output(parser, "--json", "write the description", ".json")
+    add_output(
+        parser,
         "--effect-file",
-        type=Path,
-        metavar="NAME.py",
-        help="write the strongest dependence of the unexplained force as an effect file, for "
+        "write the strongest dependence of the unexplained force as an effect file for "
         "`diagnose --effect`",
+        ".py",
     )
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the sentences; write the requested files."""
-    for path, endings in (
-        (options.json, (".json",)),
-        (options.figure, (".png", ".pdf", ".svg")),
-        (options.effect_file, (".py",)),
-    ):
-        if path is not None:
-            check_output(path, endings)
     if options.effect_file is not None and not options.effect_file.stem.isidentifier():
         raise ModelError(f"{options.effect_file}: expected a name such as my_effect.py")
     from ..unexplained import describe_residual

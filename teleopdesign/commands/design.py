@@ -7,11 +7,11 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..base.errors import ExperimentError, did_you_mean
+from ..base.errors import ExperimentError, unknown
 from ..base.files import write_json, write_text
 from ._arms import add_body, inertia_line, joint_of, place_at_pose
 from ._diagnosis import diagnosis_of, experiment_and_answer, print_diagnosis
-from ._options import add_experiment, check_output, make_folder, say, say_written
+from ._options import add_experiment, add_output, check_output, make_folder, say, say_written
 from ._paths import shell_word
 
 if TYPE_CHECKING:
@@ -45,10 +45,8 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser)
     add_body(parser, pose=True)
-    parser.add_argument("--json", type=Path, metavar="F", help="write the designs (.json)")
-    parser.add_argument(
-        "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
-    )
+    add_output(parser, "--json", "write the designs", ".json")
+    add_output(parser, "--figure", "write the figure", ".png", ".pdf", ".svg")
     parser.add_argument(
         "--output", type=Path, metavar="DIR", help="folder for figures, data and controllers"
     )
@@ -59,13 +57,8 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the design of each body; write the requested files."""
-    for path, endings in (
-        (options.answer, (".json",)),
-        (options.json, (".json",)),
-        (options.figure, (".png", ".pdf", ".svg")),
-    ):
-        if path is not None:
-            check_output(path, endings)
+    if options.answer is not None:
+        check_output(options.answer, (".json",))
     if options.output is not None:
         make_folder(options.output)
     assumptions = _assumptions(options)
@@ -98,10 +91,7 @@ def _places(options: argparse.Namespace, experiment: Experiment) -> list[str]:
     elif options.body in bodies:
         places = [options.body]
     else:
-        raise ExperimentError(
-            f'--body: no body "{options.body}", has {", ".join(bodies)}'
-            f"{did_you_mean(options.body, bodies)}"
-        )
+        raise ExperimentError(f"--body: {unknown('body', options.body, bodies)}")
     if options.figure is not None and len(places) > 1:
         raise ExperimentError(f"--figure: shows one body, choose --body {' or '.join(bodies)}")
     return places

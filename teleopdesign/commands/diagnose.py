@@ -15,7 +15,7 @@ from ._diagnosis import (
     print_diagnosis,
 )
 from ._folders import diagnose_all
-from ._options import add_effect_files, add_search, check_output, count_argument, say, say_written
+from ._options import add_effect_files, add_output, add_search, count_argument, say, say_written
 from ._paths import shell_word
 from ._report import write_page
 
@@ -39,16 +39,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="folder with experiment.toml and its records; several folders need --output",
     )
     parser.set_defaults(answer=None)
-    parser.add_argument("--json", type=Path, metavar="F", help="write the answer (.json)")
-    parser.add_argument(
-        "--predictions",
-        type=Path,
-        metavar="F",
-        help="write measured and modelled forces (.csv[.gz])",
-    )
-    parser.add_argument(
-        "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
-    )
+    add_output(parser, "--json", "write the answer", ".json")
+    add_output(parser, "--predictions", "write measured and modelled forces", ".csv", ".csv.gz")
+    add_output(parser, "--figure", "write the figure", ".png", ".pdf", ".svg")
     parser.add_argument(
         "--simulate",
         action="store_true",
@@ -62,9 +55,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="with --simulate: stiffness and damping (SI) of the position loop that held the "
         "device; in an arm, each joint has such a loop",
     )
-    parser.add_argument(
-        "--report", type=Path, metavar="F", help="write a report of the whole diagnosis (.html)"
-    )
+    add_output(parser, "--report", "write a report of the whole diagnosis", ".html")
     add_search(parser)
     parser.add_argument(
         "--output",
@@ -92,14 +83,6 @@ def run(options: argparse.Namespace) -> int:
         raise ModelError("--loop: found without --simulate, which it belongs to")
     if len(options.folder) > 1 or options.output is not None:
         return diagnose_all(options)
-    for path, endings in (
-        (options.json, (".json",)),
-        (options.predictions, (".csv", ".csv.gz")),
-        (options.figure, (".png", ".pdf", ".svg")),
-        (options.report, (".html",)),
-    ):
-        if path is not None:
-            check_output(path, endings)
     from ..diagnose import write_answer
     from ..diagnose.predictions import write_predictions
 

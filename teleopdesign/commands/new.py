@@ -255,10 +255,7 @@ def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> C
             "lever_arm",
             "counts_per_turn",
             "gear_ratio",
-        ) and key not in (
-            "model.device.axis",
-            "sample_rate",
-        ):
+        ) and key not in ("model.device.axis", "sample_rate"):
             continue
         entry = survey.channels.get(quantity, {})
         answer = ask(f"{key}: {why}\n  Enter accepts this; or type another value: ").strip()

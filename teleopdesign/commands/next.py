@@ -6,10 +6,9 @@ import argparse
 import math
 import textwrap
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import ExperimentError, did_you_mean
+from ..base.errors import ExperimentError, unknown
 from ..base.files import write_beside, write_json
 from ._arms import add_body
 from ._diagnosis import (
@@ -18,7 +17,7 @@ from ._diagnosis import (
     experiment_and_answer,
     print_diagnosis,
 )
-from ._options import add_experiment, check_output, say, value_from
+from ._options import add_experiment, add_output, say, value_from
 
 if TYPE_CHECKING:
     from ..measurement import Experiment
@@ -47,13 +46,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser)
     add_body(parser)
-    parser.add_argument(
-        "--output", type=Path, metavar="F", help="write the position reference (.csv)"
-    )
-    parser.add_argument("--json", type=Path, metavar="F", help="write the proposal (.json)")
-    parser.add_argument(
-        "--figure", type=Path, metavar="F", help="write the figure (.png, .pdf, .svg)"
-    )
+    add_output(parser, "--output", "write the position reference", ".csv")
+    add_output(parser, "--json", "write the proposal", ".json")
+    add_output(parser, "--figure", "write the figure", ".png", ".pdf", ".svg")
     parser.add_argument(
         "--limit",
         action="append",
@@ -83,13 +78,6 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the proposed experiment and what it will show; write the requested files."""
-    for path, endings in (
-        (options.output, (".csv",)),
-        (options.json, (".json",)),
-        (options.figure, (".png", ".pdf", ".svg")),
-    ):
-        if path is not None:
-            check_output(path, endings)
     if not (math.isfinite(options.duration) and options.duration > 0):
         raise ExperimentError(f"--duration: found {options.duration:g}, expected more than 0 s")
     from ..next_experiment import propose, show_in_simulation, write_reference
@@ -188,15 +176,9 @@ def _read_limits(texts: Sequence[str], experiment: Experiment) -> dict[str, dict
         body, _, name_of_limit = name.rpartition(".")
         body = body or bodies[0]
         if body not in bodies:
-            raise ExperimentError(
-                f'--limit {text}: no body "{body}", has {", ".join(bodies)}'
-                f"{did_you_mean(body, bodies)}"
-            )
+            raise ExperimentError(f"--limit {text}: {unknown('body', body, bodies)}")
         if name_of_limit not in QUANTITY:
-            raise ExperimentError(
-                f'--limit {text}: no limit "{name_of_limit}", has {", ".join(QUANTITY)}'
-                f"{did_you_mean(name_of_limit, QUANTITY)}"
-            )
+            raise ExperimentError(f"--limit {text}: {unknown('limit', name_of_limit, QUANTITY)}")
         size = value_from(
             value,
             quantity=QUANTITY[name_of_limit],

@@ -15,7 +15,7 @@ from ..base.files import read_whole, write_json
 from ._arms import add_body
 from ._claims import BESIDE_A_DIAGRAM, WIDTH, claim_data, claim_lines, is_diagram, settle_diagram
 from ._diagnosis import body_of_source
-from ._options import add_answer, add_effect_files, add_law_files, check_output, say_written
+from ._options import add_answer, add_effect_files, add_law_files, add_output, say_written
 
 if TYPE_CHECKING:
     from ..passivity.device_claims import Compensator, Margin
@@ -59,9 +59,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="SPEED",
         help="for a diagram: largest speed in this search, m/s or rad/s (default: %(default)g)",
     )
-    parser.add_argument(
-        "--json", type=Path, metavar="F", help="write claims, certificates and motions (.json)"
-    )
+    add_output(parser, "--json", "write claims, certificates and motions", ".json")
     parser.add_argument(
         "--check",
         type=Path,
@@ -130,7 +128,9 @@ def run(options: argparse.Namespace) -> int:
     from ..passivity.device_claims import margins
     from ..passivity.identified import identify_device
 
-    device = identify_device(*body_of_source(options.source, options))
+    body, reach, basis = body_of_source(options.source, options)
+    print(basis.sentence(body.axis))
+    device = identify_device(body, reach, basis)
     compensator = _choose_compensator(options)
     claims = _settle_claims(options, device, compensator)
     limits = margins(device, compensator)
@@ -138,7 +138,11 @@ def run(options: argparse.Namespace) -> int:
     if options.period is not None and device.damping.low > 0:
         print("\n" + _describe_z_width(device, options.period, options.delay))
     if options.json is not None:
-        content = {"claims": [claim_data(s) for s in claims], "margins": [vars(m) for m in limits]}
+        content = {
+            "basis": basis.sentence(body.axis),
+            "claims": [claim_data(s) for s in claims],
+            "margins": [vars(m) for m in limits],
+        }
         write_json(options.json, content)
     say_written(options.json)
     return 0
@@ -149,8 +153,6 @@ def _check_options(options: argparse.Namespace) -> None:
         raise ExperimentError(
             "passivity: expected a folder, an answer (.json), a diagram (.toml), or --check F"
         )
-    if options.json is not None:
-        check_output(options.json, (".json",))
     for name in ("stroke", "speed"):
         value = getattr(options, name)
         if not (math.isfinite(value) and value > 0):

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from ._diagnosis import diagnosis_of, experiment_and_answer
-from ._options import add_experiment, add_search, check_output
+from ._options import add_experiment, add_output, add_search, check_output
 from ._report import write_page
 
 EXAMPLES = """
@@ -19,19 +19,14 @@ EXAMPLES = """
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser)
-    parser.add_argument(
-        "--output",
-        type=Path,
-        metavar="F",
-        help="write this page (default: beside the answer, or report.html)",
+    add_output(
+        parser, "--output", "write this page, by default beside the answer or report.html", ".html"
     )
     add_search(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the page; with an answer, print that nothing is searched or estimated again."""
-    if options.output is not None:
-        check_output(options.output, (".html",))
     experiment = experiment_and_answer(options)
     answer: Path | None = options.answer
     if options.output is not None:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError
-from ._options import check_output, say_written, value_in
+from ._options import add_output, say_written, value_in
 from .derive import add_diagram, diagram_from
 
 if TYPE_CHECKING:
@@ -66,20 +65,12 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="a signal of the figure (may be repeated; default: motion, commanded force and force "
         "of interaction)",
     )
-    parser.add_argument(
-        "--output", type=Path, metavar="F", help="write the signals over time (.csv, .nc)"
-    )
-    parser.add_argument(
-        "--figure", type=Path, metavar="F", help="draw signals over time (.pdf, .svg, .png)"
-    )
+    add_output(parser, "--output", "write the signals over time", ".csv", ".nc")
+    add_output(parser, "--figure", "draw signals over time", ".pdf", ".svg", ".png")
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the size of every signal, and write the requested files."""
-    outputs = ((options.output, (".csv", ".nc")), (options.figure, (".pdf", ".svg", ".png")))
-    for path, endings in outputs:
-        if path is not None:
-            check_output(path, endings)
     from ..simulate import simulate
 
     case = _case(options)

@@ -11,7 +11,7 @@ from ..base.errors import ExperimentError, did_you_mean
 from ..base.files import read_whole
 from . import STOPPED
 from ._failures import BAD_INPUT
-from ._options import add_effect_files, add_law_files, check_output, count_argument, say
+from ._options import add_effect_files, add_law_files, add_output, count_argument, say
 from ._progress import PointReporter
 
 if TYPE_CHECKING:
@@ -42,16 +42,14 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--scheduler", default="", metavar="A", help="address of a Dask cluster: tcp://ADDRESS:PORT"
     )
-    parser.add_argument(
+    add_output(
+        parser,
         "--out",
-        type=Path,
-        metavar="F",
-        help="write the data set (.nc); finished points are kept in F.part, and the same command "
-        "continues from there",
+        "write the data set; finished points are kept in F.part, and the same command continues "
+        "from there",
+        ".nc",
     )
-    parser.add_argument(
-        "--figure", type=Path, metavar="F", help="write the figure (.pdf, .svg, .png)"
-    )
+    add_output(parser, "--figure", "write the figure", ".pdf", ".svg", ".png")
     add_effect_files(parser)
     add_law_files(parser)
 
@@ -60,10 +58,6 @@ def run(options: argparse.Namespace) -> int:
     """Run the study, print its results, write the requested files."""
     if options.scheduler and options.workers is not None:
         raise ExperimentError("--workers: found beside --scheduler: a cluster has its own workers")
-    if options.out is not None:
-        check_output(options.out, (".nc",))
-    if options.figure is not None:
-        check_output(options.figure, (".pdf", ".svg", ".png"))
     arguments = _arguments(options)
     from ..studies import study
 
@@ -99,9 +93,7 @@ def _arguments(options: argparse.Namespace) -> dict[str, Any]:
         from ..studies import read_study_file
 
         return read_study_file(
-            path,
-            effects=effects.catalogue(options.effect),
-            laws=controllers.catalogue(options.law),
+            path, effects=effects.catalogue(options.effect), laws=controllers.catalogue(options.law)
         )
     if path.suffix != ".py":
         raise ExperimentError(f"{path}: found {path.suffix!r}, expected .toml or .py")

@@ -9,11 +9,13 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import Literal
+from weakref import WeakValueDictionary
 
 from ..base.arguments import check_arguments
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, check_name, unknown
 from ..base.folders import Shelf
 from ..base.frozen import Catalogue
+from ..base.recipes import checked_path, laws_of, load_once, run
 from ._controller import (
     SIGNALS,
     Ability,
@@ -24,12 +26,18 @@ from ._controller import (
     Stage,
     parameter_symbol,
 )
-from ._declarations import broken_declarations
+from ._declarations import (
+    broken_declarations,
+    equation_of,
+    has_shape,
+    symbols_of,
+    unknown_symbols,
+)
 from ._exact import exact_decimal, make_exact, resolvent
 from ._from_control import from_control, invert_plant, matrices_of, unit_state
-from ._from_file import load_controller
 from ._measured import measured_frequencies, measured_plant
 from ._opaque import calls_in, is_call, opaque_laws
+from ._state_space import is_of_matrices, sides_of
 
 __all__ = [
     "CONTROLLERS",
@@ -45,19 +53,24 @@ __all__ = [
     "calls_in",
     "catalogue",
     "controller",
+    "equation_of",
     "from_control",
+    "has_shape",
     "make_exact",
     "invert_plant",
     "is_call",
     "laws_that_declare",
     "load_controller",
     "matrices_of",
+    "is_of_matrices",
+    "sides_of",
     "measured_frequencies",
     "measured_plant",
     "opaque_laws",
     "parameter_symbol",
     "resolvent",
     "scheduled_force_feedback",
+    "symbols_of",
     "unit_state",
 ]
 
@@ -94,10 +107,7 @@ def controller(name: str | ControlLaw, values: Mapping[str, float]) -> Controlle
     if isinstance(name, ControlLaw):
         return Controller((Stage(name, values),))
     if name not in CONTROLLERS:
-        raise ModelError(
-            f'controller: no law "{name}", has {", ".join(CONTROLLERS)}'
-            f"{did_you_mean(name, CONTROLLERS)}"
-        )
+        raise ModelError(f"controller: {unknown('law', name, CONTROLLERS)}")
     return Controller((Stage(CONTROLLERS[name], values),))
 
 
@@ -128,6 +138,52 @@ def scheduled_force_feedback(
     scheduled = controller("velocity_schedule", values)
     low_pass = controller("low_pass", {"bandwidth": bandwidth})
     return scheduled.then(low_pass) if schedule == "before" else low_pass.then(scheduled)
+
+
+_LOADED: WeakValueDictionary[tuple[Path, str], ControlLaw] = WeakValueDictionary()
+
+
+def load_controller(path: str | Path) -> ControlLaw:
+    """Read a file with a control law; the name of the file becomes the name of the law.
+
+    Use the law like one of the catalogue, `controller(load_controller("my_law.py"), values)`. An
+    unchanged file returns the same law again.
+
+    raises ModelError: the file cannot be read or run, defines no CONTROLLER, or one whose
+        declarations are wrong
+    """
+    path = checked_path(path, "control law", "my_law.py")
+    return _load_law(path.resolve(), path)
+
+
+def _load_law(path: Path, written: Path, expected: str = "") -> ControlLaw:
+    """The law in a file.
+
+    written: path of the file in messages;  expected: digest that the file must have, "" for any
+    """
+
+    def read(content: bytes) -> ControlLaw:
+        return _check_law(run(content, written, str(__package__)), written)
+
+    return load_once(_LOADED, _load_law, read, path, written, expected)
+
+
+def _check_law(module: ModuleType, path: Path) -> ControlLaw:
+    law = getattr(module, "CONTROLLER", None)
+    if not isinstance(law, ControlLaw):
+        raise ModelError(f"{path}: found no CONTROLLER = ControlLaw(...)")
+    for name in (*law.parameters, *law.states):
+        check_name(name, where=f"{path}")
+    if both := set(law.parameters) & set(law.states):
+        raise ModelError(f'{path}: "{min(both)}" is a parameter and a state: call one otherwise')
+    law = law.named(path.stem, module.__doc__ or "")
+    with laws_of(path, law.parameters):
+        if strange := unknown_symbols(law):
+            raise ModelError(f"{path}: law uses {', '.join(map(str, strange))}")
+        broken = broken_declarations(law)
+    if broken:
+        raise ModelError(f"{path}: declares {broken[0]}")
+    return law
 
 
 check_arguments(globals(), __all__)

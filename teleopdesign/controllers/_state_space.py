@@ -16,7 +16,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from ..base.errors import ModelError
-from ..base.recipes import remember
+from ..base.recipes import maker_of, remember
 from ..effects import Parameter
 from ._controller import ControlLaw, ControllerState, Stage, mark_sampled_rate
 from ._exact import exact_decimal, resolvent
@@ -164,6 +164,11 @@ def _law(name: str, form: Form, n: int, discrete: bool) -> ControlLaw:
     return remember(made, _law, name, form, n, discrete)
 
 
+def is_of_matrices(law: ControlLaw) -> bool:
+    """Whether a law was made here, so that its transfer function is that of its own states."""
+    return maker_of(law) is _law
+
+
 def _matrix_law(n: int) -> tuple[_Law, Callable[[int], _Law]]:
     """Output, and change of each state, of a state space."""
 
@@ -222,8 +227,8 @@ def _meaning(entry: str) -> str:
     return ", ".join([matrix.upper(), *indices])
 
 
-def _transfer(values: Mapping[str, float], s: sp.Symbol) -> sp.Expr:
-    """The transfer function in exact numbers: a zero coefficient stays exactly zero."""
+def sides_of(values: Mapping[str, float], s: sp.Symbol) -> tuple[sp.Poly, sp.Poly]:
+    """Numerator and denominator in exact numbers, with a root of the latter for each state."""
     n = _order(values)
     if "denominator_0" in values:
         above, below = (
@@ -242,7 +247,12 @@ def _transfer(values: Mapping[str, float], s: sp.Symbol) -> sp.Expr:
         through = zip([Fraction(0), *numerator], det, strict=True)
         above = [sp.Rational(x + straight * y) for x, y in through]
         below = [sp.Rational(x) for x in det]
-    p, q = (sp.Poly(row, s, domain="QQ") for row in (above, below))
+    return sp.Poly(above, s, domain="QQ"), sp.Poly(below, s, domain="QQ")
+
+
+def _transfer(values: Mapping[str, float], s: sp.Symbol) -> sp.Expr:
+    """The transfer function in exact numbers: a zero coefficient stays exactly zero."""
+    p, q = sides_of(values, s)
     common = sp.gcd(p, q)
     return p.quo(common).as_expr() / q.quo(common).as_expr()
 

@@ -10,8 +10,10 @@ Friction left to the hand in slow steady motion, by the laws of friction, C and 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -23,7 +25,6 @@ from ..controllers import Controller, parameter_symbol
 from ..diagrams import Diagram, four_cases, haptic_interface
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
-from ..realise.law_along import law_along
 from ..realise.simulated import without_absent
 from ..realise.tips import move_to_tip_body
 from .stated_motion import StatedMotion
@@ -158,3 +159,28 @@ def residual_friction(
         for case, d in four_cases(device, every=True).items()
     }
     return ResidualFriction(speeds, rows)
+
+
+def law_along(body: Body, law: sp.Expr, signals: Mapping[sp.Symbol, Any]) -> tuple[Array, Array]:
+    """A law of a body and the bound of its standard error, in the broadcast shape of the signals.
+
+    The bound is the sum of abs(dlaw/dp) times the error of each parameter p: for any correlation of
+    the parameters the error is not larger.
+
+    law: on symbols of the body's parameters and of the signals
+    signals: symbol of `effects.SIGNALS` or of a hidden state -> array
+    Parameters that are fixed, or have no standard error, count as exact.
+    """
+    numbers, symbols, names = body.numbers(), body.symbols(), list(signals)
+    values = [np.asarray(v, dtype=float) for v in signals.values()]
+    shape = np.broadcast_shapes(*(v.shape for v in values))
+
+    def at(expression: sp.Expr) -> Array:
+        call = sp.lambdify(names, expression.subs(numbers), "numpy")
+        return np.broadcast_to(np.asarray(call(*values), dtype=float), shape)
+
+    error = np.zeros(shape)
+    for name, value in body.parameters.items():
+        if not value.fixed and math.isfinite(value.stderr) and law.has(symbols[name]):
+            error = error + np.abs(at(sp.diff(law, symbols[name]))) * value.stderr
+    return at(law), error

@@ -285,9 +285,10 @@ def _of_past(motion: Motion, ranges: Ranges) -> Array:
     elapsed = motion.time - motion.time[last]
     travels = np.geomspace(max(ranges.step, 1e-3 * ranges.travel), ranges.travel, MEMORIES)
     times = ranges.fast * np.geomspace(1.0, 100.0, MEMORIES)
-    return direction * np.vstack(
+    fading: Array = np.vstack(
         [np.exp(-travel[None] / travels[:, None]), np.exp(-elapsed[None] / times[:, None])]
     )
+    return direction * fading
 
 
 def _of_past_and_derivatives(motion: Motion, ranges: Ranges) -> Array:

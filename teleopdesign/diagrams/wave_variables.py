@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, unknown
 from ..blocks import Body
 from ..controllers import Controller, controller
 from .junctions import Junction
@@ -63,10 +63,7 @@ def wave_variables(
     times = delay if isinstance(delay, Mapping) else dict.fromkeys(_WAYS, delay)
     for name in times:
         if name not in _WAYS:
-            raise ModelError(
-                f'wave_variables: no way "{name}", has {", ".join(_WAYS)}'
-                f"{did_you_mean(name, _WAYS)}"
-            )
+            raise ModelError(f"wave_variables: {unknown('way', name, _WAYS)}")
     damper: Controller | AnyBlock = ANY
     if wave_impedance is not None:
         damper = controller("spring_damper", {"stiffness": 0.0, "damping": wave_impedance})

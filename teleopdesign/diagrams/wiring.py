@@ -13,7 +13,7 @@ from typing import TypeGuard
 import sympy as sp
 
 from ..base.arguments import check_types
-from ..base.errors import ModelError, check_name, did_you_mean
+from ..base.errors import ModelError, check_name, did_you_mean, unknown
 from ..base.frozen import Frozen
 from ..base.shown import html_table
 from ..base.units import QUANTITIES
@@ -162,9 +162,7 @@ class Diagram:
             if block.name == name:
                 return block
         names = [b.name for b in self.blocks]
-        raise ModelError(
-            f'{self.name}: no block "{name}", has {", ".join(names)}{did_you_mean(name, names)}'
-        )
+        raise ModelError(f"{self.name}: {unknown('block', name, names)}")
 
     def has(self, name: str) -> bool:
         """Whether the diagram has a block of that name."""
@@ -174,10 +172,7 @@ class Diagram:
     def signal(self, name: str) -> str:
         """The name itself; raises ModelError with the nearest name: no such signal."""
         if name not in self.signals:
-            raise ModelError(
-                f'{self.name}: no signal "{name}", has {", ".join(self.signals)}'
-                f"{did_you_mean(name, self.signals)}"
-            )
+            raise ModelError(f"{self.name}: {unknown('signal', name, self.signals)}")
         return name
 
     def without(self, *names: str) -> Diagram:

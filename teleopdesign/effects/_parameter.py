@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..base.arguments import check_types
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, unknown
 from ..base.units import QUANTITIES
 
 
@@ -70,10 +70,7 @@ class Parameter:
 
     def __post_init__(self) -> None:
         if self.quantity not in QUANTITIES:
-            raise ModelError(
-                f'Parameter: no quantity "{self.quantity}", has {", ".join(QUANTITIES)}'
-                f"{did_you_mean(self.quantity, QUANTITIES)}"
-            )
+            raise ModelError(f"Parameter: {unknown('quantity', self.quantity, QUANTITIES)}")
 
     @property
     def scale(self) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..base.arguments import check_types
-from ..base.errors import ExperimentError, did_you_mean
+from ..base.errors import ExperimentError, unknown
 
 
 @check_types
@@ -16,7 +16,5 @@ def example(name: str = "rod") -> Path:
     """
     folders = {p.parent.name: p.parent for p in Path(__file__).parent.glob("*/experiment.toml")}
     if name not in folders:
-        raise ExperimentError(
-            f'examples: no example "{name}", has {", ".join(folders)}{did_you_mean(name, folders)}'
-        )
+        raise ExperimentError(f"examples: {unknown('example', name, folders)}")
     return folders[name]

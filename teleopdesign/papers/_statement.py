@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import math
+import re
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -80,6 +81,10 @@ class Numbers:
 StatementEvidence = ProofSteps | Correction | Numbers
 
 
+#: beginning of a part of a docstring, which reaches to the next part
+_PART = re.compile(r"^(formula|printed|assumes): ", re.MULTILINE)
+
+
 @dataclass(frozen=True)
 class Statement:
     """One statement.
@@ -97,9 +102,9 @@ class Statement:
     paper: Paper
     place: str
     words: str
-    formula: str
     how: How
     shown_by: Callable[[], StatementEvidence] | None
+    formula: str = ""
     printed: str = ""
     assumes: str = ""
     numbers: Callable[[], Numbers] | None = None
@@ -140,29 +145,33 @@ class Result:
 
 def shows(
     number: int,
-    *,
     paper: Paper,
     place: str,
-    formula: str,
+    *,
     how: How = "proved",
-    printed: str = "",
-    assumes: str = "",
     numbers: Callable[[], Numbers] | None = None,
 ) -> Callable[[Callable[[], StatementEvidence]], Statement]:
-    """A decorator: the function shows this statement; its docstring is the statement's words."""
+    """A decorator: the function shows the statement in its docstring.
+
+    The docstring has the words, and then `formula`, `printed` and `assumes`.
+    """
 
     def made(function: Callable[[], StatementEvidence]) -> Statement:
-        words = " ".join((inspect.getdoc(function) or "").split())
-        return Statement(
-            number, paper, place, words, formula, how, function, printed, assumes, numbers
-        )
+        words, *parts = map(_one_line, _PART.split(inspect.getdoc(function) or ""))
+        named = dict(zip(parts[::2], parts[1::2], strict=True))
+        texts = named.get("formula", ""), named.get("printed", ""), named.get("assumes", "")
+        return Statement(number, paper, place, words, how, function, *texts, numbers)
 
     return made
 
 
-def claim(number: int, *, paper: Paper, place: str, words: str, see: tuple[int, ...]) -> Statement:
+def _one_line(text: str) -> str:
+    return " ".join(line.strip() for line in text.strip().splitlines())
+
+
+def claim(number: int, paper: Paper, place: str, words: str, see: tuple[int, ...]) -> Statement:
     """A statement that only the experiment or the text of the paper can support."""
-    return Statement(number, paper, place, words, "", "claim of the paper", None, see=see)
+    return Statement(number, paper, place, words, "claim of the paper", None, see=see)
 
 
 def check(statement: Statement) -> Result:

@@ -27,17 +27,13 @@ def corner_at_20_hz() -> Numbers:
     return Numbers((figure_near("F_C/(m a_0) for 20 Hz", pi**3 * 20**1.2, 1130, 5, "N/(kg m)"),))
 
 
-@shows(
-    20,
-    paper=DERIVED,
-    place="from eq (9) of Bernstein 2005",
-    formula="Z = -m omega^2 + j 4 F_C/(pi A): phase 135 deg at A* = 4 F_C/(pi m omega^2); on A "
-    "= a_0 f^-0.8 "
-    "at f^1.2 = F_C/(pi^3 m a_0)",
-    numbers=corner_at_20_hz,
-)
+@shows(20, DERIVED, "from eq (9) of Bernstein 2005", numbers=corner_at_20_hz)
 def corner() -> ProofSteps:
-    """Mass with Coulomb friction: corner amplitude, and corner frequency on a falling profile."""
+    """Mass with Coulomb friction: corner amplitude, and corner frequency on a falling profile.
+
+    formula: Z = -m omega^2 + j 4 F_C/(pi A): phase 135 deg at A* = 4 F_C/(pi m omega^2); on A = a_0
+        f^-0.8 at f^1.2 = F_C/(pi^3 m a_0)
+    """
     corner_amplitude = 4 * F_C / (sp.pi * m * w**2)
     friction, mass = COULOMB / A, m * w**2
     profile = a0 * f ** sp.Rational(-4, 5)
@@ -64,19 +60,13 @@ def degrees_lost() -> Numbers:
     )
 
 
-@shows(
-    21,
-    paper=BERNSTEIN,
-    place="section 6.2",
-    formula="greatest loss over amplitudes A to A/r: 2 atan(sqrt(r)) - 90 deg = 54.9 deg for r "
-    "= 10",
-    printed="about 90 deg between 10 mm and 1 mm",
-    how="refuted",
-    numbers=degrees_lost,
-)
+@shows(21, BERNSTEIN, "section 6.2", how="refuted", numbers=degrees_lost)
 def phase_per_decade() -> Correction:
     """A mass with Coulomb friction loses at most 54.9 deg of phase per decade of amplitude. So the
     observed 90 deg need another effect, a wider range, or an inexact statement.
+
+    formula: greatest loss over amplitudes A to A/r: 2 atan(sqrt(r)) - 90 deg = 54.9 deg for r = 10
+    printed: about 90 deg between 10 mm and 1 mm
     """
     more, q = sp.symbols("more q", positive=True)  # r = 1 + more;  r = q^2
     steep = sp.diff(LOSS, y)
@@ -146,18 +136,14 @@ def remaining_impedance(
     return np.asarray(body - c)
 
 
-@shows(
-    22,
-    paper=BERNSTEIN,
-    place="figure 6",
-    how="checked numerically",
-    formula="MBC: phase -> 180 deg for V >> a; minimum over amplitude only for Fhat_C > F_C, where "
-    "F_1(Fhat_C, a, V) = 4 F_C/pi; FF and hybrid have one without over-compensation",
-    printed="a dip near 2 mm, without its cause",
-)
+@shows(22, BERNSTEIN, "figure 6", how="checked numerically")
 def minimum_over_amplitude() -> Numbers:
     """Why the compensated impedance has a minimum over amplitude: with the schedule of H it rises
     again. With cancellation alone it rises only under over-compensation, and the rise is tiny.
+
+    formula: MBC: phase -> 180 deg for V >> a; minimum over amplitude only for Fhat_C > F_C, where
+        F_1(Fhat_C, a, V) = 4 F_C/pi; FF and hybrid have one without over-compensation
+    printed: a dip near 2 mm, without its cause
     """
     grid = np.geomspace(1e-4, 1.0, 1500)
     exact = remaining_impedance(grid, share=1.0, smoothing=0.005, frequency=5.0)
@@ -197,18 +183,14 @@ def minimum_over_amplitude() -> Numbers:
     return Numbers(tuple(figures))
 
 
-@shows(
-    23,
-    paper=BERNSTEIN,
-    place="figure 7",
-    how="checked numerically",
-    formula="20 Hz low-pass: slope of bare friction kept below 20 Hz, phase above 180 deg from "
-    "about "
-    "25 Hz; 2 Hz: 40 deg more phase at 5 Hz, another slope",
-    printed="bandwidth of H: 2 Hz with digits lost, 20 Hz (0.8 sure)",
-)
+@shows(23, BERNSTEIN, "figure 7", how="checked numerically")
 def bandwidth_of_force_feedback() -> Numbers:
-    """The bandwidth of H that fits the measured slope and phase."""
+    """The bandwidth of H that fits the measured slope and phase.
+
+    formula: 20 Hz low-pass: slope of bare friction kept below 20 Hz, phase above 180 deg from about
+        25 Hz; 2 Hz: 40 deg more phase at 5 Hz, another slope
+    printed: bandwidth of H: 2 Hz with digits lost, 20 Hz (0.8 sure)
+    """
     hybrid = four_cases(world_haptics_2005())["hybrid"]
     bare = hybrid.with_values({"C.smoothed_coulomb.level": 0.0})
     level, mass = read_open_number("coulomb_level"), read_open_number("mass")

@@ -35,15 +35,12 @@ def coupling(x: tuple[sp.Expr, sp.Expr], v: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
     return sp.sympify(between(stretch, SimpleNamespace(stiffness=k, damping=c)))
 
 
-@shows(
-    53,
-    paper=DERIVED,
-    place="extension announced in Mahvash 2006",
-    formula="f_D <= f_1 is enough, whatever k, f_2, masses and environment",
-)
+@shows(53, DERIVED, "extension announced in Mahvash 2006")
 def motor_side() -> ProofSteps:
     """Compensation of at most the friction of the measured contact keeps the two-body joint passive
     for any environment.
+
+    formula: f_D <= f_1 is enough, whatever k, f_2, masses and environment
     """
     x1, x2, force = sp.symbols("x_1 x_2 f_dahl", real=True)
     push, env, w1, w2 = sp.symbols("u f_env w_1 w_2", positive=True)
@@ -90,16 +87,13 @@ def rising_gain() -> list[ProofStep]:
     ]
 
 
-@shows(
-    54,
-    paper=DERIVED,
-    place="extends P53",
-    formula="clamped link: unlimited stroke needs f_D <= f_1; a stroke between -A and A at least "
-    "f_D (1 - tanh(u)/u) <= f_1, u = sigma_D A/f_D",
-)
+@shows(54, DERIVED, "extends P53")
 def clamped_link() -> ProofSteps:
     """Necessary condition where the environment may clamp the link. For a limited stroke the
     condition is that of plain cycles, see P56.
+
+    formula: clamped link: unlimited stroke needs f_D <= f_1; a stroke between -A and A at least f_D
+        (1 - tanh(u)/u) <= f_1, u = sigma_D A/f_D
     """
     released = CLAMPED.subs(A, u * f_D / sigma)
     return proof(
@@ -112,18 +106,15 @@ def clamped_link() -> ProofSteps:
     )
 
 
-@shows(
-    55,
-    paper=DERIVED,
-    place="extends P53",
-    formula="no plain slow cycle between -A and A gives energy out, whatever A, iff f_D <= f_1 + "
-    "f_2 and f_D (1 - tanh(u_2)/u_2) <= f_1, u_2 = sigma_D f_2/(k f_D); for these enough: "
-    "sigma_D <= k sqrt(3 f_1 f_D)/f_2",
-)
+@shows(55, DERIVED, "extends P53")
 def free_link() -> ProofSteps:
     """Free link held by its own friction only, with plain quasi-static cycles of the motor of any
     amplitude: the stiffness of the cable limits the stiffness of the compensator. For other motions
     see P56.
+
+    formula: no plain slow cycle between -A and A gives energy out, whatever A, iff f_D <= f_1 + f_2
+        and f_D (1 - tanh(u_2)/u_2) <= f_1, u_2 = sigma_D f_2/(k f_D); for these enough: sigma_D <=
+        k sqrt(3 f_1 f_D)/f_2
     """
     spare, more, soft, over = sp.symbols("spare more soft over", nonnegative=True)
     bound = k * sp.sqrt(3 * f_1 * f_D) / f_2
@@ -169,28 +160,21 @@ def free_link() -> ProofSteps:
     )
 
 
-@shows(
-    57,
-    paper=DERIVED,
-    place="consequence of P54, P55",
-    formula="f_1 < f_D <= f_1 + f_2: P55 holds with sigma_D = k sqrt(3 f_1 f_D)/f_2 and fails for "
-    "sigma_D large enough; a clamped link breaks it at any sigma_D",
-)
+@shows(57, DERIVED, "consequence of P54, P55")
 def relieving_the_far_contact() -> ProofSteps:
     """Over-compensation of the motor's contact relieves the far contact. Plain slow cycles then
     release no energy only if the compensator is soft and the environment does not clamp the link.
     Other motions may still release energy, see P56.
+
+    formula: f_1 < f_D <= f_1 + f_2: P55 holds with sigma_D = k sqrt(3 f_1 f_D)/f_2 and fails for
+        sigma_D large enough; a clamped link breaks it at any sigma_D
     """
     excess = sp.Symbol("excess", positive=True)
     soft = k * sp.sqrt(3 * f_1 * f_D) / f_2
     per_travel = (CLAMPED / A).subs({sigma: 1, f_D: 1, f_1: 1 - excess})
     return proof(
         NotNegative("a compensator that P55 allows exists", soft, soft, strictly=True),
-        Equal(
-            "its u_2",
-            f_D * (soft * f_2 / (k * f_D)) ** 2 / 3,
-            f_1,
-        ),
+        Equal("its u_2", f_D * (soft * f_2 / (k * f_D)) ** 2 / 3, f_1),
         Limit(
             "stiffer without end, f_D (1 - tanh(u_2)/u_2) tends to f_D, which is above f_1",
             SHARE,
@@ -210,10 +194,10 @@ def relieving_the_far_contact() -> ProofSteps:
 
 journal_version = claim(
     58,
-    paper=MAHVASH,
-    place="later version: IEEE Trans. Robotics 23 (2007) 1240",
-    words="Passivity conditions for a feedforward Dahl compensator with a compliant "
+    MAHVASH,
+    "later version: IEEE Trans. Robotics 23 (2007) 1240",
+    "Passivity conditions for a feedforward Dahl compensator with a compliant "
     "transmission. The exact inequalities of that paper could not be read, and P53 to P57 are not "
     "those of that paper.",
-    see=(53, 54, 55),
+    (53, 54, 55),
 )

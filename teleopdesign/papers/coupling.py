@@ -68,19 +68,14 @@ k_11, k_22 = sp.symbols("k_11 k_22", positive=True)
 crossed = sp.Symbol("k_12_k_21", nonnegative=True)
 
 
-@shows(
-    59,
-    paper=MAHVASH,
-    place="eq (10)",
-    formula="storage e^T P e/2 iff P is symmetric and positive semidefinite; a skew part gives out "
-    "pi r^2 (p_21 - p_12) a turn; tau = J^T P e needs e' = J q'",
-    printed="F_m = -F_s = P (X_m - X_s) repels as a force ON the master: there it is -P (X_m - "
-    "X_s)",
-    numbers=closed_paths,
-)
+@shows(59, MAHVASH, "eq (10)", numbers=closed_paths)
 def coupling_stiffness() -> ProofSteps:
     """Condition for a multi-axis coupling to be an ideal spring, and the permitted coordinates of
     orientation.
+
+    formula: storage e^T P e/2 iff P is symmetric and positive semidefinite; a skew part gives out
+        pi r^2 (p_21 - p_12) a turn; tau = J^T P e needs e' = J q'
+    printed: F_m = -F_s = P (X_m - X_s) repels as a force ON the master: there it is -P (X_m - X_s)
     """
     p = sp.Matrix(2, 2, sp.symbols("p_11 p_12 p_21 p_22", real=True))
     angle = sp.Symbol("angle", real=True)
@@ -165,21 +160,18 @@ def residues_of_the_coupling(z_11: sp.Expr, z_12: sp.Expr) -> tuple[ProofStep, .
     )
 
 
-@shows(
-    61,
-    paper=LLEWELLYN,
-    place="applied to the coupling of Mahvash 2006",
-    formula="spring coupling: always; one-way delay T_d: iff b_m b_s >= (P T_d)^2",
-    assumes="absolutely stable iff z_11, z_22 are positive real; z_12, z_21 have no pole in the "
-    "open right half plane, and simple ones on the axis; on it 2 Re z_11 Re z_22 >= abs(z_12 z_21) "
-    "+ Re(z_12 z_21); and at its poles, infinity included, the residues have 2 k_11 k_22 >= "
-    "abs(k_12 k_21) + Re(k_12 k_21). Of that theorem the two inequalities are proved here, the "
-    "minimum principle for positive-real functions is quoted. The axis alone, as Llewellyn's "
-    "criterion is often cited, does not do: z_11 = z_22 = 1, z_12 = z_21 = 1/s",
-)
+@shows(61, LLEWELLYN, "applied to the coupling of Mahvash 2006")
 def delayed_coupling() -> ProofSteps:
     """Absolute stability of the linear two-port of masses, dampers and a coupling spring; not a
     statement about friction.
+
+    formula: spring coupling: always; one-way delay T_d: iff b_m b_s >= (P T_d)^2
+    assumes: absolutely stable iff z_11, z_22 are positive real; z_12, z_21 have no pole in the open
+        right half plane, and simple ones on the axis; on it 2 Re z_11 Re z_22 >= abs(z_12 z_21) +
+        Re(z_12 z_21); and at its poles, infinity included, the residues have 2 k_11 k_22 >=
+        abs(k_12 k_21) + Re(k_12 k_21). Of that theorem the two inequalities are proved here, the
+        minimum principle for positive-real functions is quoted. The axis alone, as Llewellyn's
+        criterion is often cited, does not do: z_11 = z_22 = 1, z_12 = z_21 = 1/s
     """
     b_m, b_s, m_m = sp.symbols("b_m b_s m_m", positive=True)
     late = sp.exp(-sp.I * omega * T)

@@ -21,15 +21,13 @@ def step_upwards(step: sp.Expr) -> sp.Expr:
     return step.subs(v, q * f_c / (T * sigma))
 
 
-@shows(
-    27,
-    paper=MAHVASH,
-    place="eq (1)",
-    formula="df/dx = sigma abs(1 - (f/f_c) sgn v)^alpha sgn(1 - (f/f_c) sgn v)",
-    printed="sigma (1 - (f/f_c) sgn v)^alpha, right only for abs(f) <= f_c or odd alpha",
-)
+@shows(27, MAHVASH, "eq (1)")
 def general_exponent() -> ProofSteps:
-    """The Dahl model with any exponent, also for forces outside of its level."""
+    """The Dahl model with any exponent, also for forces outside of its level.
+
+    formula: df/dx = sigma abs(1 - (f/f_c) sgn v)^alpha sgn(1 - (f/f_c) sgn v)
+    printed: sigma (1 - (f/f_c) sgn v)^alpha, right only for abs(f) <= f_c or odd alpha
+    """
     base = sp.Symbol("base", positive=True)  # 1 - (f/f_c) sgn v, positive inside
     alpha = sp.Symbol("alpha", positive=True)
     printed, safe = base**alpha, sp.Abs(base) ** alpha * sp.sign(base)
@@ -44,17 +42,14 @@ def general_exponent() -> ProofSteps:
     )
 
 
-@shows(
-    28,
-    paper=MAHVASH,
-    place="eq (3)",
-    formula="f_next = f + T sigma v (1 - (f/f_c) sgn v) is forward Euler;  backward: "
-    "f_next = (f + T sigma v)/(1 + T sigma abs(v)/f_c)",
-    printed='eq (3) is called "backward Euler"',
-    how="refuted",
-)
+@shows(28, MAHVASH, "eq (3)", how="refuted")
 def called_backward_euler() -> Correction:
-    """The printed step is forward Euler; true backward Euler is stable and keeps its level."""
+    """The printed step is forward Euler; true backward Euler is stable and keeps its level.
+
+    formula: f_next = f + T sigma v (1 - (f/f_c) sgn v) is forward Euler;  backward: f_next = (f + T
+        sigma v)/(1 + T sigma abs(v)/f_c)
+    printed: eq (3) is called "backward Euler"
+    """
     printed = f + T * sigma * v * (1 - f / f_c * sp.sign(v))
     implicit = sp.Eq(new, f + T * dahl_rate(new, v, f_c, sigma))
     (backward,) = sp.solve(implicit, new)
@@ -77,16 +72,13 @@ def called_backward_euler() -> Correction:
     )
 
 
-@shows(
-    29,
-    paper=MAHVASH,
-    place="eq (4)",
-    formula="pole 1 - q, q = T sigma abs(v)/f_c; unstable for q > 2",
-    printed="1 - sigma abs(v)/f_c: T is missing; the unit circle is abs(z) = 1",
-    how="refuted",
-)
+@shows(29, MAHVASH, "eq (4)", how="refuted")
 def pole_of_forward_euler() -> Correction:
-    """Pole of the printed step, and the speed from which it is unstable."""
+    """Pole of the printed step, and the speed from which it is unstable.
+
+    formula: pole 1 - q, q = T sigma abs(v)/f_c; unstable for q > 2
+    printed: 1 - sigma abs(v)/f_c: T is missing; the unit circle is abs(z) = 1
+    """
     step = step_upwards(FORWARD)
     slope = sp.diff(FORWARD.subs(v, d), f)
     point = {sigma: 1, d: 1, f_c: 1, T: 2}
@@ -113,16 +105,14 @@ def pole_of_forward_euler() -> Correction:
     )
 
 
-@shows(
-    30,
-    paper=MAHVASH,
-    place="after eq (4)",
-    formula="abs(f) <= f_c is kept iff q <= 1, v <= f_c/(T sigma) = lambda/T; from -f_c one "
-    "step reaches (2 q - 1) f_c",
-    printed='"unstable at high velocity": stability ends at q = 2, the bound already at q = 1',
-)
+@shows(30, MAHVASH, "after eq (4)")
 def bound_of_forward_euler() -> ProofSteps:
-    """The bound that passivity needs fails at half the speed at which the step diverges."""
+    """The bound that passivity needs fails at half the speed at which the step diverges.
+
+    formula: abs(f) <= f_c is kept iff q <= 1, v <= f_c/(T sigma) = lambda/T; from -f_c one step
+        reaches (2 q - 1) f_c
+    printed: "unstable at high velocity": stability ends at q = 2, the bound already at q = 1
+    """
     step = step_upwards(FORWARD)
     slow = sp.Symbol("slow", nonnegative=True)  # 1 - q
     signs = {**LEVELS, slow: 1 - q}

@@ -51,16 +51,12 @@ def sampled_compensator() -> Numbers:
     )  # rounding of doubles
 
 
-@shows(
-    31,
-    paper=MAHVASH,
-    place="eq (9)",
-    formula="f_next = f_c s + (f - f_c s) exp(-(sigma/f_c) abs(dx)),  s = sgn(dx)",
-    numbers=sampled_compensator,
-)
+@shows(31, MAHVASH, "eq (9)", numbers=sampled_compensator)
 def exact_step() -> ProofSteps:
     """The exact step, for any speed profile without a reversal within the sample. It keeps abs(f)
     <= f_c for every sequence of positions and never diverges.
+
+    formula: f_next = f_c s + (f - f_c s) exp(-(sigma/f_c) abs(dx)),  s = sgn(dx)
     """
     steps: list[ProofStep] = []
     for s in (1, -1):
@@ -95,19 +91,14 @@ def exact_step() -> ProofSteps:
     )
 
 
-@shows(
-    32,
-    paper=MAHVASH,
-    place="eq (9)",
-    formula="s = sgn(x_next - x): error within a sample that turns at most 2 sigma d1, d1 <= "
-    "abs(a) T^2/8; "
-    "travel 0 keeps the force",
-    printed="sgn(v_i), the velocity at the old sample",
-    how="refuted",
-)
+@shows(32, MAHVASH, "eq (9)", how="refuted")
 def sign_of_the_travel() -> Correction:
     """Motion forward by d1, then back by more within one sample. With the sign of the old velocity
     the force changes in the wrong direction; with the sign of the travel the error is bounded.
+
+    formula: s = sgn(x_next - x): error within a sample that turns at most 2 sigma d1, d1 <= abs(a)
+        T^2/8; travel 0 keeps the force
+    printed: sgn(v_i), the velocity at the old sample
     """
     back, small, t1, acc, early = sp.symbols("back small t_1 a early", positive=True)
 

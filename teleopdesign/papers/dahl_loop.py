@@ -4,14 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from ._laws import (
-    bristle_force,
-    bristle_rate,
-    dahl_loop,
-    dahl_rate,
-    dahl_step,
-    stribeck_level,
-)
+from ._laws import bristle_force, bristle_rate, dahl_loop, dahl_rate, dahl_step, stribeck_level
 from ._proof import Equal, Grows, Limit, NotNegative, ProofSteps, proof
 from ._statement import DERIVED, MAHVASH, shows
 
@@ -23,15 +16,12 @@ RISING = dahl_loop(x, A, f_c, sigma)
 ENERGY = 2 * sp.integrate(RISING, (x, -A, A))  # the falling half is the point mirror
 
 
-@shows(
-    33,
-    paper=DERIVED,
-    place="from eq (9) of Mahvash 2006",
-    formula="rising: f_c (1 - exp(-x/lambda)/cosh u), falling: its point mirror; peak f_c tanh u",
-)
+@shows(33, DERIVED, "from eq (9) of Mahvash 2006")
 def steady_loop() -> ProofSteps:
     """Steady loop of amplitude A. Any start converges to this loop, wherever its centre is. So Dahl
     friction forgets offsets and drifts under small biased oscillation.
+
+    formula: rising: f_c (1 - exp(-x/lambda)/cosh u), falling: its point mirror; peak f_c tanh u
     """
     shape = f_c * (1 - sp.exp(-sigma * x / f_c) / sp.cosh(sigma * A / f_c))
     end = dahl_step(f, 2 * A, 1, f_c, sigma)
@@ -52,15 +42,12 @@ def steady_loop() -> ProofSteps:
     )
 
 
-@shows(
-    34,
-    paper=DERIVED,
-    place="from eq (9) of Mahvash 2006",
-    formula="W(A) = 4 f_c A (1 - tanh(u)/u)",
-)
+@shows(34, DERIVED, "from eq (9) of Mahvash 2006")
 def energy_per_cycle() -> ProofSteps:
     """Energy that a steady cycle dissipates: proportional to the cube of a small amplitude, 4 f_c
     (A - lambda) for a large amplitude.
+
+    formula: W(A) = 4 f_c A (1 - tanh(u)/u)
     """
     scaled = ENERGY.subs(SCALED) * sigma / f_c**2  # in units of f_c lambda
     form = 4 * f_c * A * (1 - f_c / (sigma * A) * sp.tanh(sigma * A / f_c))
@@ -72,14 +59,12 @@ def energy_per_cycle() -> ProofSteps:
     )
 
 
-@shows(
-    35,
-    paper=DERIVED,
-    place="from eq (2) of Mahvash 2006",
-    formula="f v = d/dt (f^2/(2 sigma)) + (abs(v)/f_c) f^2",
-)
+@shows(35, DERIVED, "from eq (2) of Mahvash 2006")
 def power() -> ProofSteps:
-    """Dahl friction is passive: storage f^2/(2 sigma), dissipation abs(v) f^2/f_c."""
+    """Dahl friction is passive: storage f^2/(2 sigma), dissipation abs(v) f^2/f_c.
+
+    formula: f v = d/dt (f^2/(2 sigma)) + (abs(v)/f_c) f^2
+    """
     velocity = sp.Symbol("v", real=True)
     stored = sp.diff(f**2 / (2 * sigma), f) * dahl_rate(f, velocity, f_c, sigma)
     lost = sp.Abs(velocity) * f**2 / f_c
@@ -90,17 +75,13 @@ def power() -> ProofSteps:
     )
 
 
-@shows(
-    36,
-    paper=MAHVASH,
-    place="eq (2); LuGre and Hayward-Armstrong models",
-    formula="z' = v - alpha abs(v) z, f = sigma z is Dahl for alpha = 1/lambda; LuGre with "
-    "constant level, "
-    "sigma_1 = sigma_2 = 0 too",
-)
+@shows(36, MAHVASH, "eq (2); LuGre and Hayward-Armstrong models")
 def relatives() -> ProofSteps:
     """Hayward-Armstrong friction with constant alpha, and LuGre with constant level and no damping,
     are Dahl friction. alpha = 0 near rest removes the drift.
+
+    formula: z' = v - alpha abs(v) z, f = sigma z is Dahl for alpha = 1/lambda; LuGre with constant
+        level, sigma_1 = sigma_2 = 0 too
     """
     alpha, damping, extra, scale = sp.symbols("alpha sigma_1 F_SC v_S", positive=True)
     velocity = sp.Symbol("v", real=True)

@@ -26,17 +26,14 @@ def work_over_cycle(force: sp.Expr) -> sp.Expr:
 LATE_FRICTION = work_over_cycle(a1 * sp.sin(angle - late) + b1 * sp.cos(angle - late))
 
 
-@shows(
-    47,
-    paper=DERIVED,
-    place="delay in eq (9) of Mahvash 2006",
-    formula="W = pi A (b_1 cos(omega tau) - a_1 sin(omega tau)), a_1 = 2 f_D I_1(u)/cosh u, "
-    "b_1 = (4 f_D/pi)(1 - tanh(u)/u); Coulomb: 4 f_D A cos(omega tau)",
-    assumes="pi I_1(u) = integral of e^(u cos t) cos t over 0..pi (DLMF 10.32.3)",
-)
+@shows(47, DERIVED, "delay in eq (9) of Mahvash 2006")
 def late_friction() -> ProofSteps:
     """A late friction compensator releases less energy: it under-compensates and pushes against the
     motion after a reversal. A user feels this push, but it dissipates.
+
+    formula: W = pi A (b_1 cos(omega tau) - a_1 sin(omega tau)), a_1 = 2 f_D I_1(u)/cosh u, b_1 = (4
+        f_D/pi)(1 - tanh(u)/u); Coulomb: 4 f_D A cos(omega tau)
+    assumes: pi I_1(u) = integral of e^(u cos t) cos t over 0..pi (DLMF 10.32.3)
     """
     k = sp.Symbol("k", integer=True, positive=True)
     shift, c = sp.Symbol("shift", real=True), sp.Symbol("c", positive=True)
@@ -91,16 +88,13 @@ def late_friction() -> ProofSteps:
     )
 
 
-@shows(
-    48,
-    paper=BERNSTEIN,
-    place="text on delay",
-    formula="cancelled inertia gives out pi mhat A^2 omega^2 sin(omega tau) > 0 for omega tau < pi",
-    printed="motion-based cancellation suffers from delay, seen as limit cycles at reversal",
-)
+@shows(48, BERNSTEIN, "text on delay")
 def late_inertia() -> ProofSteps:
     """Cancellation of inertia with any delay releases energy. A late friction compensator within
     the level of ideal Coulomb friction releases none, so limit cycles have another source.
+
+    formula: cancelled inertia gives out pi mhat A^2 omega^2 sin(omega tau) > 0 for omega tau < pi
+    printed: motion-based cancellation suffers from delay, seen as limit cycles at reversal
     """
     work = work_over_cycle(mass * -A * omega**2 * sp.sin(angle - late))
     less = sp.Symbol("less", nonnegative=True)
@@ -126,18 +120,13 @@ def least_damping() -> Numbers:
     )  # half a last digit
 
 
-@shows(
-    49,
-    paper=DERIVED,
-    place="small motion on a presliding plant",
-    formula="Re Z >= 0 iff B >= kappa sigma_D tau, kappa = -min sin(x)/x = -cos x*, tan x* = "
-    "x*, 0.2172; and "
-    "sigma_D <= sigma_p",
-    numbers=least_damping,
-)
+@shows(49, DERIVED, "small motion on a presliding plant", numbers=least_damping)
 def late_stiffness() -> ProofSteps:
     """Damping that a late Dahl compensator needs in small motion, where the compensator is a
     negative spring.
+
+    formula: Re Z >= 0 iff B >= kappa sigma_D tau, kappa = -min sin(x)/x = -cos x*, tan x* = x*,
+        0.2172; and sigma_D <= sigma_p
     """
     s = sp.Symbol("s")
     sigma_p, sigma_D, B, x, v = sp.symbols("sigma_p sigma_D B x v", positive=True)

@@ -31,16 +31,13 @@ def first_harmonic(force: sp.Expr) -> sp.Expr:
     return 2 / sp.pi * sp.integrate(force * sp.cos(phi), (phi, -QUARTER, QUARTER))
 
 
-@shows(
-    16,
-    paper=BERNSTEIN,
-    place="eq (9)",
-    formula="N = j 4 F_C/(pi A)",
-    printed="4 j F_C/A: pi is missing",
-    how="refuted",
-)
+@shows(16, BERNSTEIN, "eq (9)", how="refuted")
 def coulomb_friction() -> Correction:
-    """Coulomb friction acts on a sinusoid as j 4 F_C/(pi A), at any frequency."""
+    """Coulomb friction acts on a sinusoid as j 4 F_C/(pi A), at any frequency.
+
+    formula: N = j 4 F_C/(pi A)
+    printed: 4 j F_C/A: pi is missing
+    """
     force = coulomb(v, F_C)
     spring = sp.integrate(force * sp.sin(phi), (phi, -QUARTER, QUARTER))
     return Correction(
@@ -56,16 +53,13 @@ def coulomb_friction() -> Correction:
     )
 
 
-@shows(
-    17,
-    paper=DERIVED,
-    place="from eq (6) of Bernstein 2005",
-    formula="N = j F_1/A,  F_1 = (4 F_C/pi)(1 - pi r/2 + r^2 J),  r = a/V;  J = "
-    "arcosh(1/r)/sqrt(1 - r^2) "
-    "for r < 1, 1 for r = 1, arccos(1/r)/sqrt(r^2 - 1) for r > 1",
-)
+@shows(17, DERIVED, "from eq (6) of Bernstein 2005")
 def smoothed_friction() -> ProofSteps:
-    """Describing function of smoothed Coulomb friction."""
+    """Describing function of smoothed Coulomb friction.
+
+    formula: N = j F_1/A,  F_1 = (4 F_C/pi)(1 - pi r/2 + r^2 J),  r = a/V;  J = arcosh(1/r)/sqrt(1 -
+        r^2) for r < 1, 1 for r = 1, arccos(1/r)/sqrt(r^2 - 1) for r > 1
+    """
     c, t = sp.symbols("c t", positive=True)
     force = smoothed_coulomb(v, F_C, a).subs({v: V * sp.cos(phi), a: r * V})
     parts = F_C * (sp.cos(phi) - r + r**2 / (r + sp.cos(phi)))
@@ -104,27 +98,18 @@ def smoothed_friction() -> ProofSteps:
         Equal(
             "its end 2 arctan c is arccos(1/r)", sp.expand_trig(sp.cos(2 * sp.atan(c))), 1 / above
         ),
-        Limit(
-            "r -> 0: Coulomb, since r^2 J -> 0",
-            r**2 * j_below,
-            r,
-            sp.S(0),
-            sp.S(0),
-        ),
+        Limit("r -> 0: Coulomb, since r^2 J -> 0", r**2 * j_below, r, sp.S(0), sp.S(0)),
         Equal("large r: (F_C V/a)(1 - 8 V/(3 pi a))", series, x - 8 * x**2 / (3 * sp.pi)),
     )
 
 
-@shows(
-    18,
-    paper=DERIVED,
-    place="from eq (9) of Mahvash 2006",
-    formula="N = [2 f I_1(u)/cosh u + j (4 f/pi)(1 - tanh(u)/u)]/A,  u = sigma A/f",
-    assumes="pi I_1(u) = integral of e^(u cos t) cos t over 0..pi (DLMF 10.32.3)",
-)
+@shows(18, DERIVED, "from eq (9) of Mahvash 2006")
 def dahl_friction() -> ProofSteps:
     """Describing function of Dahl friction: a spring in small motion, Coulomb friction in large
     motion, with a spring part that decays only as 1/sqrt(u).
+
+    formula: N = [2 f I_1(u)/cosh u + j (4 f/pi)(1 - tanh(u)/u)]/A,  u = sigma A/f
+    assumes: pi I_1(u) = integral of e^(u cos t) cos t over 0..pi (DLMF 10.32.3)
     """
     s = sp.Symbol("s", real=True)
     rising = dahl_loop(s * A, A, f, sigma).subs(sigma, u * f / A)  # at x = A sin phi, s = sin phi
@@ -158,17 +143,14 @@ def dahl_friction() -> ProofSteps:
     )
 
 
-@shows(
-    19,
-    paper=BERNSTEIN,
-    place="figure 7",
-    formula="A ~ f^-p: abs(N) rises by 20 p dB/decade, 16 for p = 0.8; p = 1: N = j omega B, B "
-    "= 4 F_C/(pi V)",
-    printed="16 dB/decade and f^-0.8, with digits lost",
-)
+@shows(19, BERNSTEIN, "figure 7")
 def slope_over_frequency() -> ProofSteps:
     """Coulomb friction on a sweep of falling amplitude. At constant velocity amplitude it is
     indistinguishable from a damper.
+
+    formula: A ~ f^-p: abs(N) rises by 20 p dB/decade, 16 for p = 0.8; p = 1: N = j omega B, B = 4
+        F_C/(pi V)
+    printed: 16 dB/decade and f^-0.8, with digits lost
     """
     freq, p, c, omega, B = sp.symbols("freq p c omega B", positive=True)
     size = first_harmonic(coulomb(v, F_C)) / (c * freq**-p)

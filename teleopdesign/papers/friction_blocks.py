@@ -14,16 +14,13 @@ UP, DOWN = smoothed_coulomb(v, F_C, a), smoothed_coulomb(-v, F_C, a)
 SLOPE = sp.diff(UP, v)
 
 
-@shows(
-    12,
-    paper=BERNSTEIN,
-    place="eqs (1), (6)",
-    formula="F_S = F_C v/(a + abs(v));  F_C sgn(v) - F_S = F_C sgn(v) a/(a + abs(v))",
-    printed="digits of a are lost: 5, 15, 50 or 150 mm/s; no result here depends on it",
-)
+@shows(12, BERNSTEIN, "eqs (1), (6)")
 def smoothed_friction() -> ProofSteps:
     """Smoothed Coulomb friction is odd, increasing, below F_C and steepest at 0 with slope F_C/a.
     The Coulomb friction that remains after its cancellation has the shape of the schedule of H.
+
+    formula: F_S = F_C v/(a + abs(v));  F_C sgn(v) - F_S = F_C sgn(v) a/(a + abs(v))
+    printed: digits of a are lost: 5, 15, 50 or 150 mm/s; no result here depends on it
     """
     left = coulomb(v, F_C) - UP
     return proof(
@@ -39,17 +36,14 @@ def smoothed_friction() -> ProofSteps:
     )
 
 
-@shows(
-    13,
-    paper=BERNSTEIN,
-    place="blocks C and H",
-    formula="r(v) = F_C a (b + abs(v))/((a + abs(v)) (b + abs(v) + k b)),  r(0) = F_C/(1 + k); "
-    "falls with abs(v) throughout iff b (1 + k) >= a k",
-    printed="digits of k and b are lost (5, 15, 50; 8, 80, 18, 180, 800 mm/s)",
-)
+@shows(13, BERNSTEIN, "blocks C and H")
 def residual_friction_of_the_hybrid() -> ProofSteps:
     """Friction that remains with the hybrid in quasi-static motion, and when slow motion has more
     of it.
+
+    formula: r(v) = F_C a (b + abs(v))/((a + abs(v)) (b + abs(v) + k b)),  r(0) = F_C/(1 + k); falls
+        with abs(v) throughout iff b (1 + k) >= a k
+    printed: digits of k and b are lost (5, 15, 50; 8, 80, 18, 180, 800 mm/s)
     """
     r = (coulomb(v, F_C) - UP) / (1 + schedule(v, k, b))
     falls = b * (1 + k) - a * k
@@ -62,10 +56,7 @@ def residual_friction_of_the_hybrid() -> ProofSteps:
         Limit("at rest", r, v, sp.S(0), F_C / (1 + k)),
         Equal("its slope", sp.diff(r, v), -positive * bracket),
         NotNegative(
-            "falls throughout where b (1 + k) >= a k",
-            bracket,
-            v**2 + 2 * b * v + b * h,
-            {h: falls},
+            "falls throughout where b (1 + k) >= a k", bracket, v**2 + 2 * b * v + b * h, {h: falls}
         ),
         Limit(
             "otherwise, b (1 + k) = a k - e with e > 0, it rises at first: minus the bracket "
@@ -79,16 +70,13 @@ def residual_friction_of_the_hybrid() -> ProofSteps:
     )
 
 
-@shows(
-    14,
-    paper=BERNSTEIN,
-    place="block H",
-    formula="before: tau w' = g(v) e - w, output w;  after: tau w' = e - w, output g(v) w",
-    printed="does not say whether the schedule acts before the low-pass or after it",
-)
+@shows(14, BERNSTEIN, "block H")
 def place_of_the_schedule() -> ProofSteps:
     """A schedule before the filter and one after it are the same at constant speed, but not when
     speed changes.
+
+    formula: before: tau w' = g(v) e - w, output w;  after: tau w' = e - w, output g(v) w
+    printed: does not say whether the schedule acts before the low-pass or after it
     """
     orders = [
         scheduled_force_feedback(gain=1, scheduling_velocity=1, bandwidth=1, schedule=order)
@@ -118,17 +106,13 @@ def place_of_the_schedule() -> ProofSteps:
     )
 
 
-@shows(
-    15,
-    paper=BERNSTEIN,
-    place="eq (8)",
-    formula="a slow reference of amplitude A moves the rod only if abs(K(0)) A > F_C;  K(0) = g "
-    "z/p",
-    printed="digits of g, z and p are lost; K is not recovered",
-)
+@shows(15, BERNSTEIN, "eq (8)")
 def position_loop_against_friction() -> ProofSteps:
     """With a position loop that is too soft at zero frequency the rod stays stuck under a slow
     reference. For a lead the condition at zero frequency is the strictest.
+
+    formula: a slow reference of amplitude A moves the rod only if abs(K(0)) A > F_C;  K(0) = g z/p
+    printed: digits of g, z and p are lost; K is not recovered
     """
     g, z, d, w, part = sp.symbols("g z d omega part", positive=True)
     p = z + d  # a lead: the pole lies beyond the zero

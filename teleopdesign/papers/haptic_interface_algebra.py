@@ -12,16 +12,7 @@ import sympy as sp
 
 from ..derive import block_symbol, return_difference, transfer, transfer_functions
 from ..diagrams import ANY, Attached, haptic_interface
-from ._proof import (
-    BlocksDiffer,
-    BlocksEqual,
-    Equal,
-    Holds,
-    Limit,
-    NotNegative,
-    ProofSteps,
-    proof,
-)
+from ._proof import BlocksDiffer, BlocksEqual, Equal, Holds, Limit, NotNegative, ProofSteps, proof
 from ._statement import BERNSTEIN, shows
 
 Z_M, Z_H, C, H, K = map(block_symbol, ("Z_M", "Z_H", "C", "H", "K"))
@@ -34,15 +25,13 @@ FORCE = ALL.open_at("K")  # the loop is open at K: R_D comes from outside
 T = transfer_functions(ALL)
 
 
-@shows(
-    1,
-    paper=BERNSTEIN,
-    place="text at figure 1",
-    formula="R_H = -Z_H L",
-    printed="a sign is missing: R_H = Z_H L",
-)
+@shows(1, BERNSTEIN, "text at figure 1")
 def sign_of_the_passive_hand() -> ProofSteps:
-    """Only a hand that resists, R_H = -Z_H L, fits both R_M = -(R_H + R_V) and eq (2)."""
+    """Only a hand that resists, R_H = -Z_H L, fits both R_M = -(R_H + R_V) and eq (2).
+
+    formula: R_H = -Z_H L
+    printed: a sign is missing: R_H = Z_H L
+    """
     base = haptic_interface(device=ANY, hand=ANY)
     turned = tuple(replace(b, sign=1) if isinstance(b, Attached) else b for b in base.blocks)
     other = transfer(replace(base, blocks=turned), "R_M", ("R_D",))["R_D"]
@@ -53,15 +42,13 @@ def sign_of_the_passive_hand() -> ProofSteps:
     )
 
 
-@shows(
-    2,
-    paper=BERNSTEIN,
-    place="eq (2)",
-    formula="T_o = Z_H (Z_H + Z_M)^-1",
-    printed="the inverse is missing in the available text",
-)
+@shows(2, BERNSTEIN, "eq (2)")
 def desired_to_felt_force() -> ProofSteps:
-    """Desired force to force on the hand, without compensation."""
+    """Desired force to force on the hand, without compensation.
+
+    formula: T_o = Z_H (Z_H + Z_M)^-1
+    printed: the inverse is missing in the available text
+    """
     right = Z_H * (Z_H + Z_M) ** -1
     return proof(
         BlocksEqual("the wiring without C and H gives eq (2)", T["T_o"], right),
@@ -69,27 +56,23 @@ def desired_to_felt_force() -> ProofSteps:
     )
 
 
-@shows(
-    3,
-    paper=BERNSTEIN,
-    place="eq (3)",
-    formula="T_MBC = Z_H (Z_H + Z_M - C)^-1",
-    printed="the inverse and the minus sign are missing in the available text",
-)
+@shows(3, BERNSTEIN, "eq (3)")
 def motion_based_cancellation() -> ProofSteps:
-    """Desired force to force on the hand, with motion-based cancellation C alone."""
+    """Desired force to force on the hand, with motion-based cancellation C alone.
+
+    formula: T_MBC = Z_H (Z_H + Z_M - C)^-1
+    printed: the inverse and the minus sign are missing in the available text
+    """
     return proof(BlocksEqual("the wiring without H", T["T_MBC"], Z_H * (Z_H + Z_M - C) ** -1))
 
 
-@shows(
-    4,
-    paper=BERNSTEIN,
-    place="eq (4)",
-    formula="T_FF = (Z_M Z_H^-1 + Gamma)^-1 Gamma,  Gamma = I + H",
-    printed="the inverses are missing in the available text; Gamma (...)^-1 is wrong for matrices",
-)
+@shows(4, BERNSTEIN, "eq (4)")
 def force_feedback() -> ProofSteps:
-    """Desired force to force on the hand, with force feedback H alone."""
+    """Desired force to force on the hand, with force feedback H alone.
+
+    formula: T_FF = (Z_M Z_H^-1 + Gamma)^-1 Gamma,  Gamma = I + H
+    printed: the inverses are missing in the available text; Gamma (...)^-1 is wrong for matrices
+    """
     denominator = Z_M * Z_H**-1 + GAMMA
     return proof(
         BlocksEqual("the wiring without C", T["T_FF"], denominator**-1 * GAMMA),
@@ -97,15 +80,13 @@ def force_feedback() -> ProofSteps:
     )
 
 
-@shows(
-    5,
-    paper=BERNSTEIN,
-    place="eq (5)",
-    formula="T_H = ((Z_M - C) Z_H^-1 + Gamma)^-1 Gamma = Z_H (Zhat_M + Z_H)^-1",
-    printed="inverses and minus sign are missing in the available text",
-)
+@shows(5, BERNSTEIN, "eq (5)")
 def hybrid() -> ProofSteps:
-    """Desired force to force on the hand, with both: the device acts like a mechanism Zhat_M."""
+    """Desired force to force on the hand, with both: the device acts like a mechanism Zhat_M.
+
+    formula: T_H = ((Z_M - C) Z_H^-1 + Gamma)^-1 Gamma = Z_H (Zhat_M + Z_H)^-1
+    printed: inverses and minus sign are missing in the available text
+    """
     form = ((Z_M - C) * Z_H**-1 + GAMMA) ** -1 * GAMMA
     return proof(
         BlocksEqual("the wiring with C and H", T["T_H"], form),
@@ -113,15 +94,13 @@ def hybrid() -> ProofSteps:
     )
 
 
-@shows(
-    6,
-    paper=BERNSTEIN,
-    place="eq (7)",
-    formula="Zhat_M = Gamma^-1 (Z_M - C)",
-    printed="the order of factors cannot be read; (Z_M - C) Gamma^-1 needs commuting blocks",
-)
+@shows(6, BERNSTEIN, "eq (7)")
 def apparent_impedance() -> ProofSteps:
-    """Apparent impedance of the mechanism after compensation."""
+    """Apparent impedance of the mechanism after compensation.
+
+    formula: Zhat_M = Gamma^-1 (Z_M - C)
+    printed: the order of factors cannot be read; (Z_M - C) Gamma^-1 needs commuting blocks
+    """
     other = (Z_M - C) * GAMMA**-1
     scalars = {s: sp.Symbol(f"scalar_{s}") for s in (Z_M, C, H)}
     return proof(
@@ -132,14 +111,12 @@ def apparent_impedance() -> ProofSteps:
     )
 
 
-@shows(
-    7,
-    paper=BERNSTEIN,
-    place="figure 4",
-    formula="L = (Zhat_M + Z_H + K)^-1 (K L_D + R_V);  Zhat_M = (R_D - R_M)/L",
-)
+@shows(7, BERNSTEIN, "figure 4")
 def position_loop() -> ProofSteps:
-    """In the position loop a load changes the loop, but not the impedance measured in the loop."""
+    """In the position loop a load changes the loop, but not the impedance measured in the loop.
+
+    formula: L = (Zhat_M + Z_H + K)^-1 (K L_D + R_V);  Zhat_M = (R_D - R_M)/L
+    """
     closed = (ZHAT_M + Z_H + K) ** -1
     return proof(
         BlocksEqual("response to the reference", T["L/L_D"], closed * K),
@@ -149,14 +126,12 @@ def position_loop() -> ProofSteps:
     )
 
 
-@shows(
-    8,
-    paper=BERNSTEIN,
-    place="figure 3",
-    formula="R_D = 0: R_M = -Zhat_M L,  L = (Zhat_M + Z_H)^-1 R_V",
-)
+@shows(8, BERNSTEIN, "figure 3")
 def free_space() -> ProofSteps:
-    """In free space a hand feels the apparent impedance, which is the transparency error."""
+    """In free space a hand feels the apparent impedance, which is the transparency error.
+
+    formula: R_D = 0: R_M = -Zhat_M L,  L = (Zhat_M + Z_H)^-1 R_V
+    """
     felt = transfer(FORCE, "R_M", ("L",), given="L")["L"]
     moved = transfer(FORCE, "L", ("R_V",))["R_V"]
     return proof(
@@ -165,15 +140,12 @@ def free_space() -> ProofSteps:
     )
 
 
-@shows(
-    9,
-    paper=BERNSTEIN,
-    place="limits of eqs (3) to (5)",
-    formula="C = Z_M: T_MBC = I;  I - T_FF = (Z_M Z_H^-1 + Gamma)^-1 Z_M Z_H^-1 -> 0 for large "
-    "Gamma",
-)
+@shows(9, BERNSTEIN, "limits of eqs (3) to (5)")
 def limits() -> ProofSteps:
-    """Perfect cancellation and infinite force feedback each give the desired force exactly."""
+    """Perfect cancellation and infinite force feedback each give the desired force exactly.
+
+    formula: C = Z_M: T_MBC = I;  I - T_FF = (Z_M Z_H^-1 + Gamma)^-1 Z_M Z_H^-1 -> 0 for large Gamma
+    """
     x = Z_M * Z_H**-1
     q = sp.Symbol("q", positive=True)
 
@@ -199,16 +171,14 @@ def limits() -> ProofSteps:
     )
 
 
-@shows(
-    10,
-    paper=BERNSTEIN,
-    place="text on eq (4)",
-    formula="T_FF = Gamma/(Gamma + X), X = Z_M/Z_H;  abs(T_FF) <= 1 iff Re y >= -abs(y)^2/2, y "
-    "= X/Gamma",
-    printed="less than unity if Gamma has the sign of X: the case of real values",
-)
+@shows(10, BERNSTEIN, "text on eq (4)")
 def size_of_force_feedback() -> ProofSteps:
-    """One degree of freedom: condition for a force on the hand no larger than the desired force."""
+    """One degree of freedom: condition for a force on the hand no larger than the desired force.
+
+    formula: T_FF = Gamma/(Gamma + X), X = Z_M/Z_H;  abs(T_FF) <= 1 iff Re y >= -abs(y)^2/2, y =
+        X/Gamma
+    printed: less than unity if Gamma has the sign of X: the case of real values
+    """
     re, im = sp.symbols("re im", real=True)
     gamma, ratio = sp.symbols("gamma ratio")
     y = sp.Symbol("y", positive=True)
@@ -231,15 +201,12 @@ def size_of_force_feedback() -> ProofSteps:
     )
 
 
-@shows(
-    11,
-    paper=BERNSTEIN,
-    place="figure 3",
-    formula="FF: 1 + H (I + Z_M Z_H^-1)^-1;  MBC: 1 - C (Z_H + Z_M)^-1",
-)
+@shows(11, BERNSTEIN, "figure 3")
 def loops() -> ProofSteps:
     """Loops that must stay stable: force feedback, and motion-based cancellation, a positive
     feedback.
+
+    formula: FF: 1 + H (I + Z_M Z_H^-1)^-1;  MBC: 1 - C (Z_H + Z_M)^-1
     """
     m, m_h, h, s = sp.symbols("m m_H h s", positive=True)
     loop = return_difference(FORCE.without("C"), "H")
@@ -247,9 +214,7 @@ def loops() -> ProofSteps:
     return proof(
         BlocksEqual("force feedback", loop, 1 + H * (1 + Z_M * Z_H**-1) ** -1),
         BlocksEqual(
-            "cancellation",
-            return_difference(FORCE.without("H"), "C"),
-            1 - C * (Z_H + Z_M) ** -1,
+            "cancellation", return_difference(FORCE.without("H"), "C"), 1 - C * (Z_H + Z_M) ** -1
         ),
         Equal("two masses: loop gain H m_H/(m + m_H)", masses - 1, h * m_h / (m + m_h)),
         Limit("a free rod has loop gain 0", masses - 1, m_h, 0, 0),

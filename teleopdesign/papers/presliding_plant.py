@@ -77,16 +77,13 @@ def small_cycles(level: sp.Expr, stiffness: sp.Expr) -> sp.Expr:
     return sp.limit(scaled / A**3, A, 0, "+")
 
 
-@shows(
-    43,
-    paper=DERIVED,
-    place="extends Mahvash 2006, section IV-B",
-    formula="passive iff f_D <= f_C and sigma_D^2/f_D <= sigma_p^2/f_C (then sigma_D <= sigma_p)",
-    printed="the proof of the paper supposes ideal Coulomb friction at the measured coordinate",
-)
+@shows(43, DERIVED, "extends Mahvash 2006, section IV-B")
 def matched_bristles() -> ProofSteps:
     """Dahl friction with a Dahl compensator on the same position: necessary and sufficient
     condition for a passive pair.
+
+    formula: passive iff f_D <= f_C and sigma_D^2/f_D <= sigma_p^2/f_C (then sigma_D <= sigma_p)
+    printed: the proof of the paper supposes ideal Coulomb friction at the measured coordinate
     """
     signs = {LOWER: LEVELS, SOFTER: RATIOS}
     size = sp.Symbol("size", nonnegative=True)  # abs(p - d)
@@ -130,15 +127,12 @@ def matched_bristles() -> ProofSteps:
     )
 
 
-@shows(
-    44,
-    paper=DERIVED,
-    place="extends P43",
-    formula="sufficient: f_D <= F_min and sigma_D^2/f_D <= sigma_p^2/F_max",
-)
+@shows(44, DERIVED, "extends P43")
 def varying_level() -> ProofSteps:
     """The friction level of the plant may vary in any way between F_min and F_max (speed, position,
     load, drift): compensate the lowest level that can occur.
+
+    formula: sufficient: f_D <= F_min and sigma_D^2/f_D <= sigma_p^2/F_max
     """
     level, least, most = sp.symbols("F F_min F_max", positive=True)
     up, under = sp.symbols("up under", nonnegative=True)
@@ -157,17 +151,14 @@ def varying_level() -> ProofSteps:
     )
 
 
-@shows(
-    45,
-    paper=DERIVED,
-    place="LuGre; Barabanov, Ortega, IEEE TAC 45 (2000) 830",
-    formula="constant level: sigma_1 only dissipates;  level F_C..F_S: passive if sigma_2 >= "
-    "sigma_1 (F_S/F_C - 1)",
-    assumes="that the condition is also necessary is theirs and is not shown here",
-)
+@shows(45, DERIVED, "LuGre; Barabanov, Ortega, IEEE TAC 45 (2000) 830")
 def bristle_damping() -> ProofSteps:
     """LuGre friction: the effect of bristle damping, and the condition for passivity by itself with
     the energy of the bristle as storage.
+
+    formula: constant level: sigma_1 only dissipates;  level F_C..F_S: passive if sigma_2 >= sigma_1
+        (F_S/F_C - 1)
+    assumes: that the condition is also necessary is theirs and is not shown here
     """
     s0, s1, s2, extra, scale, level, FS = sp.symbols(
         "sigma_0 sigma_1 sigma_2 F_SC v_S g F_S", positive=True
@@ -207,15 +198,12 @@ def bristle_damping() -> ProofSteps:
     )
 
 
-@shows(
-    46,
-    paper=DERIVED,
-    place="consequence of P43",
-    formula="small cycles give out (4/3) A^3 (sigma_D^2/f_D - sigma_p^2/f_C)",
-)
+@shows(46, DERIVED, "consequence of P43")
 def stiff_compensator() -> ProofSteps:
     """A compensator stiffer than the plant releases energy in small motion, even with a level far
     below that of the plant. A lower sigma_D stops the release, a lower f_D increases it.
+
+    formula: small cycles give out (4/3) A^3 (sigma_D^2/f_D - sigma_p^2/f_C)
     """
     released = small_cycles(fD, sD) - small_cycles(fC, sP)
     stiffer, share = sp.symbols("stiffer share", positive=True)

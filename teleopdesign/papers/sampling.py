@@ -56,29 +56,47 @@ def least_damping(block: sp.Expr) -> sp.Expr:
     return T / 2 / (1 - c) * sp.re(sp.expand((1 - BACK) * block))
 
 
-@shows(
-    50,
-    paper=COLGATE,
-    place="passivity condition",
-    formula="b >= T/(2 (1 - cos wT)) Re[(1 - e^(-jwT)) H] and b >= 0;  enough at every w: K: b "
-    ">= K T/2;  K + B: b >= K T/2 + abs(B);  -sigma_D: any b >= 0, one sample late b >= sigma_D "
-    "T/2, two: b >= (5/8) sigma_D T;  -B: b >= B",
-    assumes="that steady oscillations are the worst motions (the theorem of Colgate and Schenkel), "
-    "for blocks whose pole at z = 1, if any, a spring of the body covers",
-)
+def late_springs(inside: sp.Symbol) -> list[ProofStep]:
+    """Damping for a Dahl compensator near rest, prompt and late;  inside: 1 + cos(theta)."""
+    v = sp.Symbol("v", positive=True)
+    one, two = -sigma * BACK, -sigma * BACK**2
+    return [
+        Equal("Dahl near rest is a spring", dahl_rate(sp.S(0), v, r, sigma), sigma * v),
+        Equal("cancelled: no damping needed", least_damping(-sigma), -sigma * T / 2),
+        Equal("one sample late", least_damping(one), -sigma * T / 2 * (1 + 2 * c)),
+        NotNegative(
+            "at most sigma_D T/2, at theta = pi",
+            sigma * T / 2 - least_damping(one),
+            sigma * T * inside,
+            {inside: 1 + c},
+        ),
+        Equal("two samples late", least_damping(two), -sigma * T / 2 * (4 * c**2 + 2 * c - 1)),
+        NotNegative(
+            "at most (5/8) sigma_D T, at cos = -1/4",
+            sp.Rational(5, 8) * sigma * T - least_damping(two),
+            sigma * T / 2 * (2 * c + sp.Rational(1, 2)) ** 2,
+        ),
+    ]
+
+
+@shows(50, COLGATE, "passivity condition")
 def held_blocks() -> ProofSteps:
     """Damping with which no steady oscillation at any frequency takes energy out of a sampled block
     with zero-order hold. A Dahl compensator near rest, a negative spring beside a stiffer spring,
     needs no damping; a delay of its computer needs damping.
+
+    formula: b >= T/(2 (1 - cos wT)) Re[(1 - e^(-jwT)) H] and b >= 0;  enough at every w: K: b >= K
+        T/2;  K + B: b >= K T/2 + abs(B);  -sigma_D: any b >= 0, one sample late b >= sigma_D T/2,
+        two: b >= (5/8) sigma_D T;  -B: b >= B
+    assumes: that steady oscillations are the worst motions (the theorem of Colgate and Schenkel),
+        for blocks whose pole at z = 1, if any, a spring of the body covers
     """
     jump = UNIT - 1
     h, g = sp.symbols("h_re h_im", real=True)
     block = h + sp.I * g
     spring, damper = K, B * (1 - BACK) / T
-    one, two = -sigma * BACK, -sigma * BACK**2
     inside = sp.Symbol("inside", nonnegative=True)  # 1 + cos
     short = sp.Symbol("short", nonnegative=True)  # 1 - cos
-    v = sp.Symbol("v", positive=True)
     return proof(
         damper_takes_most(),
         Equal(
@@ -107,35 +125,18 @@ def held_blocks() -> ProofSteps:
             B * short,
             {short: 1 - c},
         ),
-        Equal("Dahl near rest is a spring", dahl_rate(sp.S(0), v, r, sigma), sigma * v),
-        Equal("cancelled: no damping needed", least_damping(-sigma), -sigma * T / 2),
-        Equal("one sample late", least_damping(one), -sigma * T / 2 * (1 + 2 * c)),
-        NotNegative(
-            "at most sigma_D T/2, at theta = pi",
-            sigma * T / 2 - least_damping(one),
-            sigma * T * inside,
-            {inside: 1 + c},
-        ),
-        Equal("two samples late", least_damping(two), -sigma * T / 2 * (4 * c**2 + 2 * c - 1)),
-        NotNegative(
-            "at most (5/8) sigma_D T, at cos = -1/4",
-            sp.Rational(5, 8) * sigma * T - least_damping(two),
-            sigma * T / 2 * (2 * c + sp.Rational(1, 2)) ** 2,
-        ),
+        late_springs(inside),
         assuming=[1 + c, 1 - c],
     )
 
 
-@shows(
-    51,
-    paper=ABBOTT,
-    place="main result",
-    formula="passive iff K <= min(2 b/T, 2 f_c/Delta); with friction compensation K <= 2 (f_C - "
-    "f_D)/Delta",
-)
+@shows(51, ABBOTT, "main result")
 def encoder_steps() -> ProofSteps:
     """A sampled spring on an encoder of step Delta, with Coulomb friction and damping: full
     friction compensation leaves no margin for quantisation.
+
+    formula: passive iff K <= min(2 b/T, 2 f_c/Delta); with friction compensation K <= 2 (f_C -
+        f_D)/Delta
     """
     f_c, step, a = sp.symbols("f_c Delta a", positive=True)
     q = sp.Symbol("q", real=True)
@@ -208,17 +209,13 @@ def controlled_port() -> Numbers:
     return Numbers(tuple(figures))
 
 
-@shows(
-    52,
-    paper=HANNAFORD,
-    place="passivity observer and controller",
-    formula="E[n] = E[n-1] + T sum f_i v_i; where E < 0 add a damper alpha = -E/(T v^2)",
-    numbers=controlled_port,
-)
+@shows(52, HANNAFORD, "passivity observer and controller", numbers=controlled_port)
 def observer() -> ProofSteps:
     """At a sample with v != 0 a damper recovers a deficit of the sampled energy exactly. With
     friction counted below its level the budget is on the safe side, with friction counted above its
     level it is not.
+
+    formula: E[n] = E[n-1] + T sum f_i v_i; where E < 0 add a damper alpha = -E/(T v^2)
     """
     energy, v = sp.symbols("E v", real=True, nonzero=True)
     deficit, w, counted = sp.symbols("deficit w f_counted", positive=True)
@@ -245,15 +242,12 @@ def observer() -> ProofSteps:
     )
 
 
-@shows(
-    60,
-    paper=DERIVED,
-    place="sampled coupling of Mahvash 2006, eq (10)",
-    formula="passive iff b_m b_s/(b_m + b_s) >= P T/2",
-)
+@shows(60, DERIVED, "sampled coupling of Mahvash 2006, eq (10)")
 def sampled_coupling() -> ProofSteps:
     """Position-position coupling with forces held over a sample: the damping of both sides counts
     as in parallel.
+
+    formula: passive iff b_m b_s/(b_m + b_s) >= P T/2
     """
     P, b_m, b_s, a = sp.symbols("P b_m b_s a", positive=True)
     d_m, d_s, e = sp.symbols("D_m D_s e", real=True)

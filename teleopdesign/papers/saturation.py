@@ -35,19 +35,15 @@ def pair_power(force: sp.Expr, velocity: sp.Expr) -> sp.Expr:
     return (coulomb(velocity, f_C) - force) * velocity
 
 
-@shows(
-    37,
-    paper=MAHVASH,
-    place="eqs (12) to (21)",
-    formula="(f_C sgn v - f_dahl) v >= (f_C - abs(f_dahl)) abs(v) >= 0 for abs(f_dahl) <= f_D "
-    "<= f_C",
-    printed="f_c, f_C and f_D are mixed in (15), (16); the sign in (11) is that of the "
-    "resisting force",
-)
+@shows(37, MAHVASH, "eqs (12) to (21)")
 def saturated_compensator() -> ProofSteps:
     """Ideal Coulomb friction with any compensator that stays within the friction level is passive
     at every instant, with no stored energy. Such pairs, added to the joints of a passive
     teleoperator, keep the teleoperator passive.
+
+    formula: (f_C sgn v - f_dahl) v >= (f_C - abs(f_dahl)) abs(v) >= 0 for abs(f_dahl) <= f_D <= f_C
+    printed: f_c, f_C and f_D are mixed in (15), (16); the sign in (11) is that of the resisting
+        force
     """
     steps: list[ProofStep] = []
     for way in (1, -1):
@@ -73,18 +69,15 @@ def saturated_compensator() -> ProofSteps:
     )
 
 
-@shows(
-    38,
-    paper=MAHVASH,
-    place="section IV-B",
-    formula="only abs(f_comp) <= f_D <= f_C is used, at every instant",
-    printed="proved for the Dahl compensator; its forward Euler step leaves the level, here at "
-    "q = 3/2",
-)
+@shows(38, MAHVASH, "section IV-B")
 def only_saturation_counts() -> ProofSteps:
     """From a force within its level, eq (9) stays within the level for any next positions: late,
     held, rounded or noisy. So do smoothed Coulomb friction and a force of the wrong sign, and P37
     covers all of them. A step of forward Euler with q = 3/2 leaves the level and releases energy.
+
+    formula: only abs(f_comp) <= f_D <= f_C is used, at every instant
+    printed: proved for the Dahl compensator; its forward Euler step leaves the level, here at q =
+        3/2
     """
     above, below, rest = sp.symbols("above below rest", nonnegative=True)
     q = sp.Symbol("q", positive=True)
@@ -125,16 +118,13 @@ def only_saturation_counts() -> ProofSteps:
     )
 
 
-@shows(
-    39,
-    paper=DERIVED,
-    place="converse of Mahvash 2006, eq (21)",
-    formula="given out over X one way: (f_D - f_C) X - f_D lambda (1 - exp(-X/lambda)); passive "
-    "for all "
-    "motions iff f_D <= f_C",
-)
+@shows(39, DERIVED, "converse of Mahvash 2006, eq (21)")
 def unlimited_motion() -> ProofSteps:
-    """The bound is tight where the travel is unlimited."""
+    """The bound is tight where the travel is unlimited.
+
+    formula: given out over X one way: (f_D - f_C) X - f_D lambda (1 - exp(-X/lambda)); passive for
+        all motions iff f_D <= f_C
+    """
     s = sp.Symbol("s", positive=True)
     energy = sp.integrate(dahl_step(sp.S(0), s, 1, f_D, sigma) - coulomb(w, f_C), (s, 0, X))
     scale = f_D / sigma
@@ -198,18 +188,14 @@ def swing(ratio: float, bristle: float) -> float:
     return float(np.abs(output[-110:]).max() / 2e-3)  # the last cycle and a tenth
 
 
-@shows(
-    40,
-    paper=DERIVED,
-    place="converse of Mahvash 2006, eq (21)",
-    formula="a cycle of amplitude A gives out energy iff f_D (1 - tanh(u)/u) > f_C,  u = "
-    "sigma_D A/f_D",
-    numbers=needed_amplitude,
-)
+@shows(40, DERIVED, "converse of Mahvash 2006, eq (21)", numbers=needed_amplitude)
 def limited_motion() -> ProofSteps:
     """For plain cycles of limited amplitude the bound is not tight: with a soft compensator
     over-compensation shows only in large motion. Steps at the reversals show over-compensation
     earlier, see P56.
+
+    formula: a cycle of amplitude A gives out energy iff f_D (1 - tanh(u)/u) > f_C,  u = sigma_D
+        A/f_D
     """
     cycle = ENERGY.subs({LEVEL: f_D, STIFFNESS: sigma, AMPLITUDE: u * f_D / sigma})
     path = 4 * (u * f_D / sigma)
@@ -237,23 +223,19 @@ def limited_motion() -> ProofSteps:
 
 onset = claim(
     41,
-    paper=MAHVASH,
-    place="experiment",
-    words="Instability began when f_D exceeded the identified Coulomb level of the prismatic "
-    "joint.",
-    see=(39, 40),
+    MAHVASH,
+    "experiment",
+    "Instability began when f_D exceeded the identified Coulomb level of the prismatic joint.",
+    (39, 40),
 )
 
 
-@shows(
-    42,
-    paper=DERIVED,
-    place="with a damper",
-    formula="f_D > f_C: speed tends to v* = (f_D - f_C)/B",
-)
+@shows(42, DERIVED, "with a damper")
 def damped_excess() -> ProofSteps:
     """Viscous damping limits the effect of over-compensation: the device is not passive, but
     self-motion stops growing at v*.
+
+    formula: f_D > f_C: speed tends to v* = (f_D - f_C)/B
     """
     top = (f_C - f_D) / -B
     net = f_D - coulomb(w, f_C) - viscous(w, B)  # at w > 0, compensator at its level

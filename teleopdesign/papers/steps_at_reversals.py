@@ -101,20 +101,21 @@ def energy_of_cycle(turning: tuple[float, ...]) -> float:
 
 @shows(
     56,
-    paper=DERIVED,
-    place="search for motions beyond the cycles of P55",
+    DERIVED,
+    "search for motions beyond the cycles of P55",
     how="refuted",
-    formula="cycles with a small step back and forth at each reversal give out energy at the "
-    "limit of P55 for every "
-    "u_2; with the link stuck f_1 >= f_D (1 - e^(-2 u_2))^2 is enough for every closed path from a "
-    "bristle at rest, and any motion then gives out at most f_D^2 (1 - e^(-2 u_2))^2/(2 sigma_D)",
-    printed="not in the papers; an earlier random search (60 sets, up to 10 strokes) found no "
-    "motion that gives out energy where P55 holds",
     numbers=stepping_motor,
 )
 def steps_at_reversals() -> Correction:
     """The conditions of P55 are exact for plain cycles only. With a step back and forth at the
     reversals the bristle forgets the last stroke, and little energy is lost to friction.
+
+    formula: cycles with a small step back and forth at each reversal give out energy at the limit
+        of P55 for every u_2; with the link stuck f_1 >= f_D (1 - e^(-2 u_2))^2 is enough for every
+        closed path from a bristle at rest, and any motion then gives out at most f_D^2 (1 - e^(-2
+        u_2))^2/(2 sigma_D)
+    printed: not in the papers; an earlier random search (60 sets, up to 10 strokes) found no motion
+        that gives out energy where P55 holds
     """
     net = dithered_cycle()
     limit = 1 - sp.tanh(u) / u  # f_1 at the limit of P55
@@ -135,12 +136,7 @@ def steps_at_reversals() -> Correction:
                 {rest: bend},
             ),
             Holds("a case within P55: f_D = 1 <= f_1 + f_2", 1, "<=", sp.Rational(1, 12) + 1),
-            Holds(
-                "and within its simple bound",
-                1,
-                "<=",
-                2 * sp.sqrt(3 * sp.Rational(1, 12)),
-            ),
+            Holds("and within its simple bound", 1, "<=", 2 * sp.sqrt(3 * sp.Rational(1, 12))),
             Holds("gives out energy with one step of 0.1 at each reversal", net.subs(case), ">", 0),
         ),
         _force_within_a_bound(),

@@ -89,16 +89,12 @@ def free_space_force() -> Numbers:
     return Numbers(tuple(figures))
 
 
-@shows(
-    62,
-    paper=MAHVASH,
-    place="figure 6",
-    formula="user force (f_Cm + f_Cs - f_Dm - f_Ds) sgn v; position error (f_Cs - f_Ds)/P",
-    numbers=free_space_force,
-)
+@shows(62, MAHVASH, "figure 6", numbers=free_space_force)
 def free_space() -> ProofSteps:
     """The force that the user feels in slow free motion with both sides sliding, and the lag of the
     slave.
+
+    formula: user force (f_Cm + f_Cs - f_Dm - f_Ds) sgn v; position error (f_Cs - f_Ds)/P
     """
     f_Cm, f_Cs, f_Dm, f_Ds = sp.symbols("f_Cm f_Cs f_Dm f_Ds", positive=True)
     user = sp.Symbol("F_u", real=True)
@@ -145,16 +141,12 @@ def contact_force() -> Numbers:
     return Numbers(tuple(figures))
 
 
-@shows(
-    63,
-    paper=MAHVASH,
-    place="figure 7",
-    formula="P k_e/(P + k_e), hysteresis width 2 (f_Cs - f_Ds)/(1 + k_e/P)",
-    numbers=contact_force,
-)
+@shows(63, MAHVASH, "figure 7", numbers=contact_force)
 def soft_contact() -> ProofSteps:
     """The stiffness that the user feels in a contact of stiffness k_e: the coupling spring in
     series is itself a transparency error.
+
+    formula: P k_e/(P + k_e), hysteresis width 2 (f_Cs - f_Ds)/(1 + k_e/P)
     """
     k_e, f_Cs, f_Ds = sp.symbols("k_e f_Cs f_Ds", positive=True)
     felt = []
@@ -169,17 +161,13 @@ def soft_contact() -> ProofSteps:
     )
 
 
-@shows(
-    64,
-    paper=MAHVASH,
-    place="figures 6, 7",
-    how="checked numerically",
-    formula="stiffness ratio, hysteresis width/f_C, rms force difference/f_C over a slow cycle",
-    printed='"transparency plot", without a number to it',
-)
+@shows(64, MAHVASH, "figures 6, 7", how="checked numerically")
 def transparency_figures() -> Numbers:
     """Force against displacement at the user's hand, compared with that of the environment: three
     numbers state how close the two curves are.
+
+    formula: stiffness ratio, hysteresis width/f_C, rms force difference/f_C over a slow cycle
+    printed: "transparency plot", without a number to it
     """
     ratio = ENVIRONMENT / STIFFNESS
     figures = []
@@ -223,11 +211,11 @@ def quasi_static_difference(share: float) -> float:
 
 bench = claim(
     65,
-    paper=MAHVASH,
-    place="experiment",
-    words="The force sensor at the slave's tip is for checks only. The user force comes from the "
+    MAHVASH,
+    "experiment",
+    "The force sensor at the slave's tip is for checks only. The user force comes from the "
     "motor current of the master, so it lacks the master's friction and inertia. All forces are "
     "divided by f_c, from the force-velocity curve of smooth motion. sigma_D is the largest value "
     "without oscillation.",
-    see=(43, 46, 62),
+    (43, 46, 62),
 )

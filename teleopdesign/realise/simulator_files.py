@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, unknown
 from ..base.units import unit_after_number
 from ..blocks import Body
 from ..model import Model
@@ -61,9 +61,7 @@ def as_simulator_file(model: Model, form: str, *, name: str = "identified") -> S
     raises ModelError: the form is unknown, or an inertia is not positive
     """
     if form not in FORMS:
-        raise ModelError(
-            f'export: no form "{form}", has {", ".join(FORMS)}{did_you_mean(form, FORMS)}'
-        )
+        raise ModelError(f"export: {unknown('form', form, FORMS)}")
     for place, body in model.bodies.items():
         if not _inertia(body) > 0:
             raise ModelError(

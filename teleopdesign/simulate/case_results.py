@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, unknown
 from ..diagrams import Diagram
 from .setup import MOST_NUMBERS, Setup
 from .units import signal_units
@@ -185,10 +185,7 @@ def read_reduction(name: str, what: Any) -> tuple[Any, str]:
         raise Mistake(f"simulate_many: reduce: {name}: found {what!r}, {expected}")
     signal, kind = what
     if kind not in REDUCTIONS:
-        raise Mistake(
-            f'simulate_many: reduce: {name}: no reduction "{kind}", has {", ".join(REDUCTIONS)}'
-            f"{did_you_mean(str(kind), REDUCTIONS)}"
-        )
+        raise Mistake(f"simulate_many: reduce: {name}: {unknown('reduction', kind, REDUCTIONS)}")
     is_port = isinstance(signal, tuple) and len(signal) == 2
     if is_port != (kind == "energy"):
         raise Mistake(f"simulate_many: reduce: {name}: found {what!r}, {expected}")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, unknown
 from ..diagrams import Diagram
 from ..realise.simulated import refuse_massless
 from .case_results import CaseResults, GridKey, Mistake, Wave, read_reduction
@@ -259,10 +259,7 @@ class _Study:
                 isinstance(name, str) and name.startswith(f"{b.name}_") for b in self.diagram.blocks
             ):
                 return None
-            raise Mistake(
-                f'simulate_many: {where}: no signal "{name}", has {", ".join(names)}'
-                f"{did_you_mean(str(name), names)}"
-            )
+            raise Mistake(f"simulate_many: {where}: {unknown('signal', name, names)}")
 
         kept = {name: column(name, "keep") for name in self.keep}
         reductions: dict[str, Reduction] = {}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ..base.arguments import check_types
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, unknown
 
 
 @check_types
@@ -34,10 +34,7 @@ class Sampling:
     def __post_init__(self) -> None:
         names = ("difference", "filtered", "observer")
         if self.velocity not in names:
-            raise ModelError(
-                f'Sampling: no velocity "{self.velocity}", has {", ".join(names)}'
-                f"{did_you_mean(self.velocity, names)}"
-            )
+            raise ModelError(f"Sampling: {unknown('velocity', self.velocity, names)}")
         if not 0 < self.period < float("inf") or min(self.delay, self.encoder_step) < 0:
             raise ModelError(
                 "Sampling: expected a period > 0 s, delay and encoder_step >= 0, found "

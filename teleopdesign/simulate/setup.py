@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..base.errors import ModelError, UnknownSignal, did_you_mean
+from ..base.errors import ModelError, UnknownSignal, did_you_mean, unknown
 from ..diagrams import Diagram, Moving, with_shared_states
 from ..realise.delays import delay_in_samples, is_whole
 from ..realise.simulated import prepare_for_simulation, realise_in_computer, refuse_massless
@@ -62,9 +62,7 @@ def prepare(
     states = (*made.layout.states, *made.layout.computer_states)
     for name in initial:
         if name not in states:
-            raise UnknownSignal(
-                f'initial: no state "{name}", has {", ".join(states)}{did_you_mean(name, states)}'
-            )
+            raise UnknownSignal(f"initial: {unknown('state', name, states)}")
     return Setup(body, made, setting, duration, step, inputs, motion, initial)
 
 

@@ -165,11 +165,7 @@ def _is_sine(motion: Trajectory) -> bool:
 
 def _sine_parts(motion: Trajectory) -> dict[str, float]:
     made: Any = motion.position
-    return {
-        "amplitude": made.size,
-        "frequency": made.rate / (2 * np.pi),
-        "phase": made.phase,
-    }
+    return {"amplitude": made.size, "frequency": made.rate / (2 * np.pi), "phase": made.phase}
 
 
 def _sine_with(motion: Trajectory, part: str, value: float) -> Trajectory:

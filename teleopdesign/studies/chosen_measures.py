@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arguments import instance, number
-from ..base.errors import ModelError, UnknownSignal, did_you_mean
+from ..base.errors import ModelError, UnknownSignal, did_you_mean, unknown
 from ..base.expectations import describe_value, number_check
 from ..base.frozen import ByValue
 from ..simulate import Setup
@@ -199,8 +199,7 @@ def check_case(case: SimulatedCase, points: Points, measures: Iterable[Measure])
         for signal in measure.signals:
             if signal not in layout.columns:
                 raise ModelError(
-                    f'measure {measure.name}: no signal "{signal}", has '
-                    f"{', '.join(layout.columns)}{did_you_mean(signal, layout.columns)}"
+                    f"measure {measure.name}: {unknown('signal', signal, layout.columns)}"
                 )
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.errors import ModelError, TeleopDesignError, did_you_mean
+from ..base.errors import ModelError, TeleopDesignError, unknown
 from ..simulate.cases import bounds_of_value
 from .case import SimulatedCase
 from .evaluate import group_alike, simulate_rows
@@ -54,9 +54,7 @@ def check_slopes_exist(case: SimulatedCase, names: Sequence[str], signals: Seque
     known = setup.program.layout.columns
     for name in signals:
         if name not in known:
-            raise ModelError(
-                f'no signal "{name}", has {", ".join(known)}{did_you_mean(name, known)}'
-            )
+            raise ModelError(unknown("signal", name, known))
     for name in names:
         stem = name.partition(".")[0]
         of_simulation = name in ("duration", "step", "give")

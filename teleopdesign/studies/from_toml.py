@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
+from ..base.errors import ExperimentError, ModelError, did_you_mean, quote, unknown
 from ..base.toml import Table, describe_toml_value, read_toml
 from ..controllers import CONTROLLERS, ControlLaw
 from ..diagrams import Diagram, read_diagram
@@ -212,10 +212,7 @@ def _read_measures(table: Table) -> dict[str, Measure]:
         entry = table.table(name)
         kind = entry.text("measure", default=name)
         if kind not in MEASURES:
-            raise ExperimentError(
-                f"{entry.where()}: no measure {quote(kind)}, has {', '.join(MEASURES)}"
-                f"{did_you_mean(kind, MEASURES)}"
-            )
+            raise ExperimentError(f"{entry.where()}: {unknown('measure', kind, MEASURES)}")
         options = {k: v for k, v in entry.content.items() if k != "measure"}
         entry.allow(("measure", *MEASURES[kind].options))
         for option in options:

@@ -113,8 +113,6 @@ def _growth(point: Point, *, signal: str) -> Amount:
 
     -1 where the motion has died out, infinite where signals grow beyond all bounds
     """
-    from .measures import growth_of
-
     text = f"range of {signal} in the last third over the middle third, less 1"
     return Amount(growth_of(lambda: point.signal(signal).values), "1", text)
 
@@ -127,8 +125,6 @@ def _onset(
     by bisection of the logarithm: the least one only where growth, once begun, goes on up to high;
     NaN where the motion grows at low already, or not at high
     """
-    from .measures import find_onset, growth
-
     case = point.case
     case.check_names([parameter])
     if not 0 < low < high:
@@ -218,12 +214,7 @@ MEASURES: Catalogue[Kind] = Catalogue(
             Kind("peak", _peak, {"signal": ..., **_AFTER}, ("signal",)),
             Kind("force_error", _force_error, _AFTER, ("E",)),
             Kind("tracking_error", _tracking_error, _AFTER, ("X_e",)),
-            Kind(
-                "transparency_error",
-                _transparency_error,
-                _AFTER,
-                ("X_m", "F_m", "X_s", "F_s"),
-            ),
+            Kind("transparency_error", _transparency_error, _AFTER, ("X_m", "F_m", "X_s", "F_s")),
             Kind(
                 "impedance",
                 _impedance,

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
+from ..base.errors import ExperimentError, ModelError, quote
 from ..base.expectations import describe_value
 from ..base.toml import Table, describe_toml_value
 from .samples import (
@@ -219,7 +219,7 @@ def _read_axis(table: Table, name: str) -> Any:
                 f"{grid.where()}: found {count} points from {low:g} to {high:g}, expected at least "
                 "2 between two numbers"
             )
-        if _read_scale(grid) == "log":
+        if grid.choice("scale", _SCALES, default="linear") == "log":
             if min(low, high) <= 0:
                 raise ExperimentError(f"{grid.where()}: a log scale needs from and to above 0")
             return np.geomspace(low, high, count)
@@ -238,12 +238,7 @@ def _read_axis(table: Table, name: str) -> Any:
 
 def _read_samples(table: Table) -> Samples:
     table.allow(("method", "points", "seed", "ranges"))
-    method = table.text("method")
-    if method not in _METHODS:
-        raise ExperimentError(
-            f"{table.where('method')}: found {quote(method)}, expected {', '.join(_METHODS)}"
-            f"{did_you_mean(method, _METHODS)}"
-        )
+    method = table.choice("method", _METHODS)
     ranges = table.table("ranges")
     if not ranges.content:
         raise ExperimentError(f"{table.where('ranges')}: found none, expected at least one")
@@ -265,21 +260,11 @@ def _read_range(table: Table) -> Any:
         raise ExperimentError(f"{table.where()}: found {low:g} to {high:g}, expected from < to")
     if "step" in table.content:
         return low, high, table.number("step", above=0.0)
-    if _read_scale(table) == "log":
+    if table.choice("scale", _SCALES, default="linear") == "log":
         if low <= 0:
             raise ExperimentError(f"{table.where()}: a log scale needs from and to above 0")
         return loguniform(low, high)
     return low, high
-
-
-def _read_scale(table: Table) -> str:
-    scale = table.text("scale", default="linear")
-    if scale not in _SCALES:
-        raise ExperimentError(
-            f"{table.where('scale')}: found {quote(scale)}, expected {' or '.join(_SCALES)}"
-            f"{did_you_mean(scale, _SCALES)}"
-        )
-    return scale
 
 
 def read_whole(table: Table, key: str) -> int:

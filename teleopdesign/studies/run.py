@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path, PurePath
 from typing import Any, Literal
 
-from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
+from ..base.errors import ExperimentError, ModelError, quote, unknown
 from ..diagrams import Diagram
 from ..measurement.files import content_digest, is_experiment
 from ..simulate import Sampling, Trajectory
@@ -226,8 +226,7 @@ def _write_words(result: Study, words: _Words) -> None:
     for name in {**words.units, **words.labels}:
         if name not in names and result.measures:
             raise ModelError(
-                f'study: units, labels: no measure or parameter "{name}", has {", ".join(names)}'
-                f"{did_you_mean(name, names)}"
+                f"study: units, labels: {unknown('measure or parameter', name, names)}"
             )
     for name in variables:
         if name in words.units:

@@ -107,7 +107,7 @@ def climbed(monkeypatch, ladders, refused, why="no"):
     nothing = dict(floors=Floors(None, None), first=None, ranking=None, tone=None, supported=())
     state = LadderState(rungs=(Rung(None, fit_of("user's")),), **nothing)
     joint = PartSearch("joint1", SimpleNamespace(criteria=CRITERIA), state)
-    prepared = SimpleNamespace(is_linked=True)
+    prepared = SimpleNamespace(joints={"joint1": None})
     joint, rungs = ladder._climb_part(joint, (first,), prepared, lambda _: None)
     aside = [one.candidate.effect.name for one in joint.state.set_aside]
     return [r.added.effect.name for r in rungs[1:]], aside, estimated, joint

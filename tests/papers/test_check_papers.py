@@ -201,9 +201,12 @@ def test_no_steps_prove_nothing():
 def stated(evidence, how="proved", numbers=None):
     """A statement made for a test."""
 
-    @shows(1, paper=DERIVED, place="here", formula="f", how=how, numbers=numbers)
+    @shows(1, DERIVED, "here", how=how, numbers=numbers)
     def shown():
-        """Words."""
+        """Words.
+
+        formula: f
+        """
         return evidence
 
     return shown
@@ -234,7 +237,7 @@ def test_a_number_out_of_its_range_fails_a_proof_beside_it(number):
 
 
 def test_a_claim_stays_a_claim():
-    made = claim(1, paper=DERIVED, place="here", words="Words.", see=())
+    made = claim(1, DERIVED, "here", "Words.", ())
     assert check(made).outcome == "claim of the paper"
 
 

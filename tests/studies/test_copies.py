@@ -1,7 +1,10 @@
 """Worker processes that are copies of the calling process leave it, and each other, as they are."""
 
 import _thread
+import os
+import signal
 import subprocess
+import sys
 import threading
 import time
 
@@ -9,21 +12,13 @@ import numpy as np
 import pytest
 import study_models as models
 import xarray
-from study_processes import AXES, children, in_a_process, study_code, wait_for_points
+from study_processes import children, in_a_process, study_code, wait_for_points
 
 import teleopdesign as td
-from teleopdesign.studies import pool, worker_processes
-from teleopdesign.studies.chosen_measures import measures_of
-from teleopdesign.studies.evaluate import StudyTask
+from teleopdesign.studies import processes
 from teleopdesign.studies.journal import Journal
-from teleopdesign.studies.points import points_of
-from teleopdesign.studies.worker_processes import receive
 
 copied = pytest.mark.usefixtures("copies")
-
-
-def task_of(model, axes=AXES):
-    return StudyTask(model, {}, points_of(axes), measures_of(models.value))
 
 
 @pytest.mark.slow
@@ -39,23 +34,19 @@ def test_simulations_in_processes_give_the_data_set_of_one(start):
 @pytest.mark.slow
 @copied
 def test_every_copy_killed_in_the_middle_costs_no_point(monkeypatch):
-    copies = []
-    start_copies = pool.start_copies
-
-    def keep(*arguments):
-        copies.extend(start_copies(*arguments))
-        return copies
+    before, killed = children(), set()
 
     def kill_all(progress):
-        for copy in copies:
-            copy.process.kill()
+        if not killed:
+            killed.update(children() - before)
+            for number in killed:
+                os.kill(int(number), signal.SIGKILL)
 
-    monkeypatch.setattr(pool, "start_copies", keep)
     monkeypatch.setattr("teleopdesign.studies.outcomes._BETWEEN", 0.05)
     axes = {"x": np.arange(300.0), "y": 0.5}
     arguments = {"measures": models.value, "workers": 2, "progress": kill_all}
     dataset = td.study(models.slow_product, axes, **arguments)
-    assert len(copies) == 2 and not dataset.failures
+    assert len(killed) == 2 and not dataset.failures
     expected = [models.product(x, 0.5) for x in axes["x"]]
     np.testing.assert_array_equal(dataset["value"].values, expected)
 
@@ -82,8 +73,8 @@ import atexit, signal
 print("before", end=" ")
 atexit.register(print, "exit")
 signal.signal(signal.SIGTERM, lambda *_: print("terminated", flush=True))
-from teleopdesign.studies import pool
-pool.start_anew = None
+from teleopdesign.studies import processes
+processes._started_anew = None
 """ + study_code(tmp_path / "s.nc", "terminated_product", points=9, workers=2)
     with in_a_process(code, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.communicate(timeout=300) == ("before exit\n", "")
@@ -104,33 +95,25 @@ def test_copies_end_with_a_process_that_is_killed(tmp_path):
 
 
 @copied
-def test_a_copy_ends_when_its_pipe_ends_whatever_the_others_hold():
-    first, second = worker_processes.start_copies(task_of(models.product), 2)
-    first.questions.close()
-    assert first.process.wait() == 0
-    second.questions.close()
-    assert second.process.wait() == 0
-    first.close()
-    second.close()
+def test_a_copy_holds_no_lock_of_a_file(tmp_path, monkeypatch):
+    """A copy that outlives its study does not keep the study's file in use."""
+    part, journal = tmp_path / "s.nc.part", []
+
+    def close_and_open(progress):
+        journal[0].close()
+        Journal(part, "study", 1).close()  # where a copy had it, it would be in use
+
+    journal.append(Journal(part, "study", 1))
+    monkeypatch.setattr("teleopdesign.studies.outcomes._BETWEEN", -1.0)
+    arguments = {"measures": models.value, "workers": 2, "progress": close_and_open}
+    td.study(models.slow_product, {"x": np.arange(9.0), "y": 0.5}, **arguments)
 
 
-@copied
-def test_a_copy_holds_no_lock_of_a_file(tmp_path):
-    part = tmp_path / "s.nc.part"
-    journal = Journal(part, "study", 1)
-    (copy,) = worker_processes.start_copies(task_of(models.product), 1)
-    assert receive(copy.answers) is None  # it is ready
-    journal.close()
-    Journal(part, "study", 1).close()  # where the copy had it, it would be in use
-    copy.questions.close()
-    assert copy.process.wait() == 0
-    copy.close()
-
-
-@pytest.mark.parametrize("begin", [_thread.start_new_thread, threading.Thread])
-def test_a_process_with_another_thread_is_not_copied(begin):
+@pytest.mark.slow
+@pytest.mark.parametrize("begin", [None, _thread.start_new_thread, threading.Thread])
+def test_only_a_process_without_other_threads_is_copied(begin, monkeypatch):
     """Python counts threads of its module `threading`, but not those of libraries."""
-    stay, is_over, before = threading.Event(), threading.Event(), children()
+    stay, is_over = threading.Event(), threading.Event()
 
     def work():
         stay.wait()
@@ -138,29 +121,21 @@ def test_a_process_with_another_thread_is_not_copied(begin):
 
     if begin is threading.Thread:
         begin(target=work).start()
-    else:
+    elif begin is not None:
+        monkeypatch.setattr(processes, "can_copy", lambda: sys.platform == "linux")
         begin(work, ())
+    else:
+        monkeypatch.setattr(processes, "can_copy", lambda: sys.platform == "linux")
+        monkeypatch.setattr(processes, "has_hidden_threads", lambda: False)
+    monkeypatch.setattr(models, "mark", 1.0)
     try:
-        assert worker_processes.start_copies(task_of(models.product), 2) == []
+        dataset = td.study(models.has_mark, {"x": [1, 2, 3]}, measures=models.value, workers=2)
     finally:
         stay.set()
-        is_over.wait(60)
-    assert children() <= before
-
-
-@pytest.mark.slow
-def test_a_study_beside_another_thread_takes_processes_started_anew(monkeypatch):
-    stay, started = threading.Event(), []
-    start_anew = pool.start_anew
-    monkeypatch.setattr(pool, "start_anew", lambda: started.append(start_anew()) or started[-1])
-    other = threading.Thread(target=stay.wait)
-    other.start()
-    try:
-        td.study(models.product, AXES, measures=models.value, workers=2)
-    finally:
-        stay.set()
-        other.join()
-    assert len(started) == 2
+        if begin is not None:
+            is_over.wait(60)
+    expected = float(begin is None and sys.platform == "linux")
+    assert list(dataset["value"].values) == [expected] * 3
 
 
 @copied

@@ -15,7 +15,7 @@ from trust import stopping
 from trust.stopping import COMMANDS, environment, make_sources, prepare, run, violations
 
 from teleopdesign import cli
-from teleopdesign.commands import _ctrl_c
+from teleopdesign.cli import hear_ctrl_c
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="processes and signals of POSIX")
 
@@ -194,7 +194,7 @@ def test_a_command_that_is_called_from_python_leaves_signals_as_they_are(capsys)
 
 def test_what_is_not_the_main_thread_hears_no_signal():
     heard = []
-    thread = threading.Thread(target=lambda: heard.append(_ctrl_c.hear_ctrl_c(threading.Event())))
+    thread = threading.Thread(target=lambda: heard.append(hear_ctrl_c(threading.Event())))
     thread.start()
     thread.join(60)
     assert heard == [False]

@@ -21,9 +21,10 @@ import numpy as np
 import sympy as sp
 from mpmath.libmp import NoConvergence
 
+from ...derive.polynomials import even_part, fraction, where_negative
 from ...realise.lti import S
+from ..linear.gaussian import square_root
 from ..linear.impedance import Impedance
-from ..linear.polynomials import even_part, fraction, where_negative
 
 LONGEST = 500  # most periods of a wave that are sampled; each of them releases energy
 _DIGITS = 40  # decimal digits of a first numerical value
@@ -192,6 +193,19 @@ def _compile_in_doubles(z: sp.ImmutableMatrix) -> Callable[[np.complex128], list
     )
 
 
+def first_wave(
+    z: sp.ImmutableMatrix, points: Iterable[tuple[Fraction, Fraction]]
+) -> GrowingWave | None:
+    """The wave at the first of these points (rate, frequency) at which one releases energy."""
+    waves = (wave_of(z, rate, frequency) for rate, frequency in points)
+    return next((wave for wave in waves if wave is not None), None)
+
+
+def rates_at(frequency: Fraction, number: int) -> Iterable[tuple[Fraction, Fraction]]:
+    """Rates of growth, halved so many times, at a frequency."""
+    return ((rate, frequency) for rate in halvings(frequency, number))
+
+
 def growing_wave(z: Impedance) -> GrowingWave | None:
     """A wave that takes energy out of an impedance, with Re Z < 0 at its s verified exactly.
 
@@ -211,12 +225,6 @@ def _share(wave: GrowingWave) -> float:
     """-Re Z over abs(Z) at the wave of a one-port: the share that releases energy."""
     z = complex(wave.value[0, 0])
     return -z.real / abs(z)
-
-
-def square_root(x: Fraction, digits: int) -> Fraction:
-    """A rational number near the square root of x; relative error below 10^-digits."""
-    ten = 10**digits
-    return Fraction(math.isqrt(x.numerator * x.denominator * ten**2), x.denominator * ten)
 
 
 def halvings(start: Fraction, number: int) -> Iterable[Fraction]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.arguments import number as number_of
-from ...base.errors import ModelError, did_you_mean
+from ...base.errors import ModelError, did_you_mean, unknown
 from ...base.expectations import describe_value
 from ...base.sentences import unit_at_axis
 from ..figures.style import symbol
@@ -90,9 +90,7 @@ class StudyData:
     def require(self, name: str, known: Sequence[str]) -> None:
         """Raise ModelError if `name` is not a known axis."""
         if name not in known:
-            raise ModelError(
-                f'study: no axis "{name}", has {", ".join(known)}{did_you_mean(name, known)}'
-            )
+            raise ModelError(f"study: {unknown('axis', name, known)}")
 
     def pair(self, values: xarray.DataArray, x: str, y: str) -> tuple[str, str]:
         """The axes of a map, across and up: x and y if given, else the last two.
