@@ -16,6 +16,7 @@ import pickle
 import signal
 import threading
 import time
+import warnings
 from collections.abc import Iterable, Iterator
 from concurrent.futures.process import ProcessPoolExecutor
 from contextlib import contextmanager
@@ -128,7 +129,9 @@ def _copies(task: StudyTask, count: int) -> Iterator[Workers]:
     executor = ProcessPoolExecutor(count, context, _begin_copy, (task, os.getpid()))
     gc.freeze()  # else a collection in a copy would write to, and so copy, all memory
     try:
-        with one_thread(), shield_from_ctrl_c():
+        with one_thread(), shield_from_ctrl_c(), warnings.catch_warnings():
+            # Python 3.12 counts threads of linear algebra, which end before a copy and begin anew
+            warnings.simplefilter("ignore", DeprecationWarning)
             executor.submit(os.getpid)  # all processes start here
         yield Workers(executor, lambda: count, _evaluate_batch)
     finally:
