@@ -28,7 +28,7 @@ def draw(diagnosis: td.Diagnosis) -> plt.Figure:
     """Forces in a part of the check record, residual over velocity before and after, ladder."""
     experiment = diagnosis.experiment
     before, after = (
-        td.compare(fit.model, experiment).data for fit in (diagnosis.before, diagnosis.after)
+        td.compare(row.model, experiment).data for row in (diagnosis.before, diagnosis.after)
     )
     before, after = (d.isel(sample=d["use"].values == "check") for d in (before, after))
     added = " + ".join(str(r.added.effect.name) for r in diagnosis.rungs if r.added is not None)
@@ -69,7 +69,7 @@ def _ladder(ax: Any, diagnosis: td.Diagnosis) -> None:
     names, errors = [], []
     for rung in diagnosis.rungs:
         names.append("your model" if rung.added is None else f"+ {rung.added}")
-        errors.append(100 * rung.fit.check_error)
+        errors.append(100 * rung.check_error)
     rows = range(len(names))
     ax.barh(rows, errors, height=0.66, color=[BEFORE] + [AFTER] * (len(names) - 1))
     floor = 100 * diagnosis.floor.value

@@ -35,7 +35,7 @@ from _scoring import Truth, judge, load_answer, share
 from matplotlib.figure import Figure
 
 import teleopdesign as td
-from teleopdesign.diagnose.arms.answer import write_arm_answer
+from teleopdesign.diagnose import write_answer
 from teleopdesign.show import save_figure
 
 NAME = "hidden_in_arms"
@@ -143,10 +143,10 @@ def run(case: Case, seed: int, folder: Path, *, quick: bool = False) -> None:
     )
     among = QUICK_EFFECTS if quick else None
     begin = processor_seconds()
-    diagnosis = td.find_missing_in_arm(td.load_experiment(experiment), among=among)
+    diagnosis = td.find_missing(td.load_experiment(experiment), among=among)
     spent = processor_seconds() - begin
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_arm_answer(diagnosis, path)
+    write_answer(diagnosis, path)
     write_json(folder / "facts" / f"{case.name}.json", {"seconds": spent})
 
 

@@ -28,7 +28,6 @@ from _one_case import processor_seconds
 
 import teleopdesign as td
 from teleopdesign.base.errors import TeleopDesignError
-from teleopdesign.diagnose.arms import find_missing_in_arm
 from teleopdesign.diagnose.search_plan import PLAN, QUICK
 from teleopdesign.measurement import Experiment
 from teleopdesign.measurement.recordings import RECORDINGS
@@ -64,9 +63,7 @@ def row_of(
     """What is found on one recording; its figure and its text beside the table."""
     wall, processor = time.perf_counter(), processor_seconds()
     plan, among = (QUICK if quick else PLAN), (only or None)
-    is_arm = experiment.arm is not None
-    find = find_missing_in_arm if is_arm else td.find_missing
-    diagnosis: Any = find(experiment, plan=plan, among=among)
+    diagnosis = td.find_missing(experiment, plan=plan, among=among)
     seconds = time.perf_counter() - wall, processor_seconds() - processor
     return described(diagnosis, output, name) | {
         "seconds": {"wall": seconds[0], "processor": seconds[1]},
@@ -82,18 +79,18 @@ def described(diagnosis: Any, output: Path, name: str) -> dict[str, Any]:
     row = {
         "verdict": diagnosis.verdict,
         "ladder": [
-            {"added": rung.title or None, "check_error": rung.fit.check_error}
+            {"added": rung.title or None, "check_error": rung.check_error}
             for rung in diagnosis.rungs
         ],
         "missing": [str(c) for c in diagnosis.missing],
         "text": str(diagnosis).replace(str(diagnosis.experiment.folder), name),
-        "floor": diagnosis.floor if is_arm else diagnosis.floor.value,
+        "floor": diagnosis.floor.value,
         "trees": None if learned is None else learned.alone,
         "learnable": None if learned is None else learned.error,
     }
     if is_arm:
         return row
-    left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)[:SENTENCES]
+    left = where_it_fails(diagnosis.model, diagnosis.prepared, diagnosis.floor)[:SENTENCES]
     return row | {
         "indistinguishable": [[str(c) for c in group] for group in diagnosis.groups],
         "cannot_tell": [str(one) for one in diagnosis.undetermined],

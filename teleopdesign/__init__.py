@@ -19,8 +19,7 @@ The names that a user types:
     experiments   Experiment, experiment, load_experiment, check_experiment, example
     models        Model, Body
     effects       EFFECTS, load_effect
-    diagnosis     fit, compare, rank, find_missing, find_missing_in_arm, describe,
-                  propose_experiment
+    diagnosis     fit, compare, rank, find_missing, load_answer, describe, propose_experiment
     diagrams      Diagram, haptic_interface, teleoperator, hand, read_diagram, write_diagram
     controllers   CONTROLLERS, controller, from_control
     responses     derive_transfers, transfer_functions, bode, simulate_diagram, simulate_many,
@@ -114,14 +113,13 @@ if TYPE_CHECKING:
     from .design import Assumptions as Assumptions
     from .design import Design as Design
     from .design import design as design_compensation
-    from .diagnose import ArmDiagnosis as ArmDiagnosis
     from .diagnose import Comparison as Comparison
     from .diagnose import Diagnosis as Diagnosis
     from .diagnose import Ranking as Ranking
     from .diagnose import compare as compare
     from .diagnose import find_missing as find_missing
-    from .diagnose import find_missing_in_arm as find_missing_in_arm
     from .diagnose import fit as fit
+    from .diagnose import load_answer as load_answer
     from .diagnose import rank as rank
     from .diagrams import ANY as ANY
     from .diagrams import Diagram as Diagram
@@ -179,7 +177,7 @@ GROUPS = {
     "models": ("Model", "Body"),
     "effects": ("EFFECTS", "load_effect"),
     "diagnosis": (
-        "fit", "compare", "rank", "find_missing", "find_missing_in_arm", "describe",
+        "fit", "compare", "rank", "find_missing", "load_answer", "describe",
         "propose_experiment",
     ),
     "diagrams": (
@@ -199,7 +197,7 @@ GROUPS = {
 #: recordings
 FURTHER = {
     "results": (
-        "Comparison", "Ranking", "Diagnosis", "ArmDiagnosis", "Simulation", "Design", "Study",
+        "Comparison", "Ranking", "Diagnosis", "Simulation", "Design", "Study",
         "Claim", "Certificate",
     ),
     "parts of definitions": (

@@ -154,8 +154,8 @@ QUICK: Mapping[str, Callable[[], Any]] = {
 SLOW: Mapping[str, Callable[[], Any]] = {
     "model": model,
     "comparison": lambda: td.compare(model(), experiment()),
-    "ranking": lambda: diagnosis().rungs[1].ranking,
-    "fit": lambda: diagnosis().after,
+    "ranking": lambda: td.rank(model(), experiment()),
+    "fit": lambda: diagnosis().last_fit,
     "diagnosis": diagnosis,
     "finding": lambda: td.check_experiment(experiment())[0],
     "description": lambda: td.describe(model(), experiment()),

@@ -14,7 +14,7 @@ from teleopdesign.base.toml import Table
 from teleopdesign.base.units import QUANTITIES, to_si
 from teleopdesign.blocks import BLOCK_EFFECTS, Body, Value, with_block_effects
 from teleopdesign.blocks.described import body_of
-from teleopdesign.diagnose.answers.bodies import body_data, model_from
+from teleopdesign.diagnose.model_data import body_data, model_from
 from teleopdesign.diagrams import read_diagram
 from teleopdesign.diagrams.toml_writing import body_lines
 from teleopdesign.effects import EFFECTS
@@ -86,7 +86,7 @@ def test_what_is_written_of_a_body_is_read_as_the_same_body(name, axis, tmp_path
                        for e in body.effects)  # fmt: skip
     assert same(in_a_diagram(body_lines("blocks.Z_M", body), tmp_path), body)
     data = json.loads(json.dumps({"device": body_data(body)}))
-    assert same(model_from(data, EFFECTS, file="a.json", key="models").bodies["device"], body)
+    assert same(model_from(data, EFFECTS, "models").bodies["device"], body)
     if not at_a_contact and not any(e.channels() for e in body.effects):
         assert same(in_an_experiment(body_lines("model.device", body), tmp_path), body)
 

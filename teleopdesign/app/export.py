@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..base.errors import TeleopDesignError
 from ..base.files import write_beside, write_text
-from ..diagnose.answer import write_answer
+from ..diagnose import write_answer
 from .pages import propose_design
 from .workbench import Workbench
 
@@ -51,7 +51,7 @@ def write_all(
     target.mkdir(parents=True, exist_ok=True)
     say("report, answer and figure")
     diagnosis = bench.diagnosis()
-    left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)
+    left = where_it_fails(diagnosis.model, diagnosis.prepared, diagnosis.floor)
     write_report(diagnosis, target / "report.html", unexplained=left)
     write_answer(diagnosis, target / "answer.json")
     with write_beside(target / "figure.svg") as part:

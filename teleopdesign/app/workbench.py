@@ -10,12 +10,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..base.errors import ModelError, did_you_mean
+from ..diagnose.climb import make_next_move
 from ..diagnose.conclusion import conclude
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.error import force_error
-from ..diagnose.ladder import make_next_move
 from ..diagnose.ladder_state import LadderSearch, LadderState, begin, look, search_for
 from ..diagnose.ranking import Ranked
+from ..diagnose.result import diagnosis_of
 from ..diagnose.rung import Rung
 from ..effects import EFFECTS, Effect
 from ..measurement.experiment import Experiment, load_experiment
@@ -127,7 +128,7 @@ class Workbench:
         """The conclusion from the present rungs: verdict, probabilities, open questions."""
         bench = self.rank(progress)
         search = replace(self.search, progress=progress) if progress else self.search
-        return conclude(search, bench.state)
+        return diagnosis_of(conclude(search, bench.state))
 
     def errors(self, values: Mapping[str, float]) -> tuple[float, float]:
         """Fit and check error (relative) of the model with other parameter values (SI)."""

@@ -129,6 +129,7 @@ class CheckedRecording:
             self._signal(record, key, values)
             for record in self.experiment.records
             for key, values in record.signals.items()
+            if key in self.experiment.channels  # of one joint of an arm, its own
         )
 
     @cached_property
@@ -144,7 +145,7 @@ class CheckedRecording:
     def is_of_an_arm(self) -> bool:
         """Whether the bodies are the joints of an arm, or the body is one of them."""
         arm = self.experiment.arm is not None
-        return arm or (self.prepared is not None and self.prepared.is_of_an_arm)
+        return arm or (self.prepared is not None and self.prepared.is_linked)
 
     @property
     def lone_body(self) -> str | None:

@@ -9,6 +9,7 @@ from ..base.errors import ExperimentError, unknown
 from ._options import value_from
 
 if TYPE_CHECKING:
+    from ..diagnose import Diagnosis
     from ..measurement import Experiment
     from ..model import Model
 
@@ -48,32 +49,32 @@ def joint_of(experiment: Experiment, options: argparse.Namespace) -> str:
     return str(chosen)
 
 
-def place_at_pose(
-    model: Model, experiment: Experiment, joint: str, options: argparse.Namespace
-) -> Model:
+def place_at_pose(diagnosis: Diagnosis, joint: str, options: argparse.Namespace) -> Model:
     """The model of one joint, with the inertia of the links about the joint at the stated pose.
 
-    experiment: the experiment of the whole arm
+    diagnosis: of the whole arm
     raises ExperimentError: no such joint or unit, or the computed inertia there is not positive
     """
     import numpy as np
 
-    from ..diagnose.arms.other_motion import follows_another
-    from ..diagnose.arms.prepared import inertias_at
+    from ..diagnose.other_motion import follows_another
+    from ..diagnose.parts import inertias_at, motor_inertias
     from ..model import Model
 
-    name, body = f"{joint}.inertia", model.bodies[joint]
+    name, model = f"{joint}.inertia", diagnosis.model
+    body = model.bodies[joint]
     for effect in body.effects:
         if follows_another(effect):  # the others rest
             body = body.without_effect(effect.name)
     alone = Model({joint: body}, model.known, model.record_shift)
     if not options.pose:
         return alone
+    experiment = diagnosis.experiment
     pose = _read_pose(options.pose, experiment)
     position = np.array([[pose.get(j, 0.0)] for j in experiment.bodies])
-    motor = Model.from_experiment(experiment, model.known).parameters[name]
     inertias = inertias_at(experiment, model.links, position)
-    size = float(inertias[list(experiment.bodies).index(joint), 0]) + motor.value
+    size = float(inertias[list(experiment.bodies).index(joint), 0])
+    size += motor_inertias(experiment, model)[joint]
     if not size > 0:
         raise ExperimentError(
             f"--pose: {joint} would have an inertia of {size:.3g}: base parameters describe "

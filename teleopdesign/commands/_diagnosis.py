@@ -9,9 +9,9 @@ names the folder of its experiment.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError, ModelError, unknown
 from ._arms import inertia_line, joint_of, place_at_pose
@@ -20,14 +20,11 @@ from ._terminal import print_styled
 
 if TYPE_CHECKING:
     from ..blocks import Body
-    from ..diagnose import ArmDiagnosis, Diagnosis
+    from ..diagnose import Diagnosis
     from ..effects import Effect
     from ..measurement import Experiment
     from ..model import Model
     from ..realise.reach import Reach
-
-#: of one or two bodies, or of an arm
-Diagnosed = TypeVar("Diagnosed", bound="Diagnosis | ArmDiagnosis")
 
 
 def effects_by_name(options: argparse.Namespace) -> Mapping[str, Effect]:
@@ -72,9 +69,9 @@ def folder_of(path: Path) -> Path:
     answer = _answer_in(path)
     if answer is None:
         return path
-    from ..diagnose.answers import load_answer
+    from ..diagnose.answer import folder_of_answer
 
-    return load_answer(answer).folder
+    return folder_of_answer(answer)
 
 
 def experiment_and_answer(options: argparse.Namespace) -> Experiment:
@@ -83,13 +80,10 @@ def experiment_and_answer(options: argparse.Namespace) -> Experiment:
     raises ExperimentError: there is an answer in `options.answer` already
     """
     answer = _answer_in(options.folder)
-    if answer is None:
-        return experiment_of(options.folder)
-    if options.answer is not None:
-        raise ExperimentError(f"--answer: found beside {answer}, which is an answer itself")
-    from ..diagnose.answers import load_answer
-
-    options.answer, options.folder = answer, load_answer(answer).folder
+    if answer is not None:
+        if options.answer is not None:
+            raise ExperimentError(f"--answer: found beside {answer}, which is an answer itself")
+        options.answer, options.folder = answer, folder_of(answer)
     return experiment_of(options.folder)
 
 
@@ -111,47 +105,28 @@ def stated_model(experiment: Experiment, options: argparse.Namespace) -> Model:
 
 
 def diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
-    """The diagnosis of an experiment: read from the answer, or computed now with progress shown.
+    """The diagnosis of an experiment: read from the answer, or computed now with progress shown."""
+    from ..diagnose import load_answer
 
-    For an arm, the diagnosis of the joint that the options name.
-    """
-    if experiment.arm is not None:
-        joint = joint_of(experiment, options)
-        return arm_diagnosis_of(experiment, options).joints[joint]
     if options.answer is not None:
-        from ..diagnose.answers import load_answer, restore_diagnosis
-
-        return restore_diagnosis(load_answer(options.answer), experiment, effects_by_name(options))
+        return load_answer(options.answer, effects_by_name(options), experiment=experiment)
     return diagnose_experiment(experiment, options)
 
 
+def diagnosis_of_part(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
+    """As `diagnosis_of`; of an arm that of the joint that the options name."""
+    if experiment.arm is None:
+        return diagnosis_of(experiment, options)
+    joint = joint_of(experiment, options)
+    return diagnosis_of(experiment, options).joints[joint]
+
+
 def diagnose_experiment(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
-    """The diagnosis of an experiment, computed now with progress shown."""
-    from ..diagnose import find_missing
+    """The diagnosis of an experiment, computed now with progress shown.
 
-    return search_missing(find_missing, experiment, options)
-
-
-def arm_diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> ArmDiagnosis:
-    """The diagnosis of an arm: read from the answer, or computed now with progress shown."""
-    from ..diagnose.answers import load_answer
-    from ..diagnose.arms import find_missing_in_arm
-    from ..diagnose.arms.restored import restore_arm_diagnosis
-
-    if options.answer is not None:
-        return restore_arm_diagnosis(
-            load_answer(options.answer), experiment, effects_by_name(options)
-        )
-    return search_missing(find_missing_in_arm, experiment, options)
-
-
-def search_missing(
-    find: Callable[..., Diagnosed], experiment: Experiment, options: argparse.Namespace
-) -> Diagnosed:
-    """The result of a search, with the plan and the candidate effects that the options choose.
-
-    find: `find_missing` or `find_missing_in_arm`
+    The options choose its plan and its candidate effects.
     """
+    from ..diagnose import find_missing
     from ..diagnose.search_plan import PLAN, QUICK
 
     among = candidate_effects(
@@ -160,7 +135,7 @@ def search_missing(
     model = stated_model(experiment, options)
     plan = QUICK if getattr(options, "quick", False) else PLAN
     reporter = Reporter()
-    diagnosis = find(experiment, model, progress=reporter, plan=plan, among=among)
+    diagnosis = find_missing(experiment, model, progress=reporter, plan=plan, among=among)
     reporter.clear()
     return diagnosis
 
@@ -177,7 +152,7 @@ _STYLES = {
 }
 
 
-def print_diagnosis(diagnosis: Diagnosis | ArmDiagnosis) -> None:
+def print_diagnosis(diagnosis: Diagnosis) -> None:
     """Print the ladder and the verdict, in colours on a terminal."""
 
     def style(line: str) -> str:
@@ -191,43 +166,28 @@ def model_of_source(options: argparse.Namespace) -> tuple[Model, Path]:
 
     An answer alone (.json) needs no records. A folder without an answer is diagnosed now.
     """
-    from ..diagnose.answers import load_answer
+    from ..diagnose import load_answer
 
     alone = _answer_in(options.folder)
     if alone is not None and options.answer is None:
-        model = _model_of_answer(alone, options)
-        return (model if options.body is None else _select_body(model, options.body, alone)), alone
-    experiment = experiment_and_answer(options)
-    if options.answer is not None:
-        model = load_answer(options.answer).model(effects_by_name(options), experiment)
+        diagnosis, source = load_answer(alone, effects_by_name(options)), alone
     else:
-        model = diagnosis_of(experiment, options).model
-    source = options.folder if options.answer is None else options.answer
-    if experiment.arm is not None:
-        return place_at_pose(model, experiment, joint_of(experiment, options), options), source
-    return (model if options.body is None else _select_body(model, options.body, source)), source
+        experiment = experiment_and_answer(options)
+        diagnosis = diagnosis_of(experiment, options)
+        source = options.folder if options.answer is None else options.answer
+    if options.body is None and not diagnosis.joints:
+        return diagnosis.model, source
+    return model_at_place(diagnosis, source, options), source
 
 
-def _model_of_answer(file: Path, options: argparse.Namespace) -> Model:
-    """The model in an answer alone; for an arm, the model of the joint that the options name."""
-    from ..diagnose.answers import load_answer
+def model_at_place(diagnosis: Diagnosis, source: Path, options: argparse.Namespace) -> Model:
+    """The final model of one body; for a joint of an arm, at the pose that the options state."""
+    from ..diagnose.model_data import model_of_body
 
-    saved = load_answer(file)
-    model = saved.model(effects_by_name(options))
-    if "joints" not in saved.content:
-        return model
-    joint = _place(model, file, options.body)
-    if not options.pose:
-        return _select_body(model, joint, file)
-    return place_at_pose(model, experiment_of(saved.folder), joint, options)
-
-
-def _select_body(model: Model, body: str, source: Path) -> Model:
-    """The model of one body of several bodies."""
-    from ..model import Model
-
-    place = _place(model, source, body)
-    return Model({place: model.bodies[place]}, model.known)
+    place = _place(list(diagnosis.model.bodies), source, options.body)
+    if diagnosis.joints:
+        return place_at_pose(diagnosis, place, options)
+    return model_of_body(diagnosis.model, place)
 
 
 def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Reach | None]:
@@ -239,38 +199,31 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
     returns: the body, and the range that its records reached; None without records
     """
     from ..design.stated_motion import reach_of
+    from ..diagnose import load_answer
 
     if source.suffix == ".json" and not source.is_dir():
         if options.answer is not None:
             raise ExperimentError(f"--answer: found beside {source}, which is an answer itself")
-        model = _model_of_answer(source, options)
-        return model.bodies[_place(model, source, options.body)], None
+        model = model_at_place(load_answer(source, effects_by_name(options)), source, options)
+        return next(iter(model.bodies.values())), None
     experiment = experiment_of(source)
-    place = _place(stated_model(experiment, options), source, options.body)
-    if options.answer is not None:
-        from ..diagnose.answers import load_answer
-
-        model = load_answer(options.answer).model(effects_by_name(options), experiment)
-    else:
-        diagnosis = diagnosis_of(experiment, options)
+    place = _place(list(experiment.bodies), source, options.body)
+    diagnosis = diagnosis_of(experiment, options)
+    if options.answer is None:
         print_diagnosis(diagnosis)
         print()
-        model = diagnosis.model
-    if experiment.arm is not None:
-        from ..diagnose.arms.prepared import isolate_joint
-
-        model = place_at_pose(model, experiment, place, options)
+    model = model_at_place(diagnosis, source, options)
+    if diagnosis.joints:
         print(inertia_line(model, place, options))
-        experiment = isolate_joint(experiment, place)
+        experiment = diagnosis.joints[place].experiment
     return model.bodies[place], reach_of(experiment, place)
 
 
-def _place(model: Model, source: Path, body: str | None) -> str:
+def _place(bodies: list[str], source: Path, body: str | None) -> str:
     """The place of the chosen body; by default the only body.
 
     raises ExperimentError: no such body, or several bodies and none is chosen
     """
-    bodies = list(model.bodies)
     if body is None and len(bodies) > 1:
         raise ExperimentError(f"{source}: bodies {', '.join(bodies)}: choose one with --body")
     if body is not None and body not in bodies:

@@ -10,7 +10,7 @@ from ._options import say
 
 if TYPE_CHECKING:
     from ..base.finding import Finding
-    from ..diagnose import ArmDiagnosis, Diagnosis
+    from ..diagnose import Diagnosis
 
 
 def write_page(diagnosis: Diagnosis, path: Path) -> None:
@@ -20,9 +20,12 @@ def write_page(diagnosis: Diagnosis, path: Path) -> None:
     from ..unexplained import where_it_fails
 
     say("checking the recording")
-    soundness = check_experiment(diagnosis.experiment, diagnosis.before.model)
-    say("describing what is left")
-    left = where_it_fails(diagnosis.after, diagnosis.prepared, diagnosis.floor)
+    before = None if diagnosis.joints else diagnosis.before.model
+    soundness = check_experiment(diagnosis.experiment, before)
+    left = {}
+    for part, one in (diagnosis.joints or {"": diagnosis}).items():
+        say(f"describing what is left{f' at {part}' if part else ''}")
+        left[part] = where_it_fails(one.model, one.prepared, one.floor)
     steps = _next_steps(diagnosis)
     say("")
     write_report(diagnosis, path, soundness=soundness, unexplained=left, next_steps=steps)
@@ -32,26 +35,10 @@ def _next_steps(diagnosis: Diagnosis) -> tuple[Finding, ...]:
     """What to measure next; nothing where nothing is open, or no motion was shown to be safe."""
     from ..next_experiment import propose, shown_limits
 
-    if diagnosis.verdict != "undecided" and not diagnosis.groups:
+    if diagnosis.joints or (diagnosis.verdict != "undecided" and not diagnosis.groups):
         return ()
     try:
         shown_limits(diagnosis.prepared)
     except ModelError:
         return ()
     return propose(diagnosis, progress=say).findings()
-
-
-def write_arm_page(diagnosis: ArmDiagnosis, path: Path) -> None:
-    """Write the page of an arm, with findings on the recording and the residual of each joint."""
-    from ..fitted_checks import check_experiment
-    from ..show.report import write_arm_report
-    from ..unexplained import where_it_fails
-
-    say("checking the recording")
-    soundness = check_experiment(diagnosis.experiment)
-    left = {}
-    for joint, one in diagnosis.joints.items():
-        say(f"describing what is left at {joint}")
-        left[joint] = where_it_fails(one.after, one.prepared, one.floor)
-    say("")
-    write_arm_report(diagnosis, path, soundness=soundness, unexplained=left)

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 from ..base.errors import ModelError
 from ..base.files import write_beside, write_json
 from ._arms import add_body
-from ._diagnosis import diagnosis_of, experiment_and_answer, stated_model
+from ._diagnosis import diagnosis_of_part, experiment_and_answer, stated_model
 from ._options import add_experiment, add_output
 from ._paths import shell_word
 
 if TYPE_CHECKING:
-    from ..diagnose.fit import Fit
     from ..diagnose.noise_floor import NoiseFloor
     from ..measurement.prepare import Prepared
+    from ..model import Model
     from ..unexplained import ResidualDescription
 
 
@@ -54,9 +54,9 @@ def run(options: argparse.Namespace) -> int:
         raise ModelError(f"{options.effect_file}: expected a name such as my_effect.py")
     from ..unexplained import describe_residual
 
-    fit, prepared, floor, model_text = _fit_model(options)
+    model, prepared, floor, model_text = _model_to_describe(options)
     print(f"{model_text}\n")
-    description = describe_residual(fit, prepared, floor)
+    description = describe_residual(model, prepared, floor)
     print(description)
     if options.json is not None:
         write_json(options.json, {"model": model_text, **description.as_data()})
@@ -68,8 +68,10 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _fit_model(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor | None, str]:
-    """The fit, its data, its noise floor (if a diagnosis states one), and words for the model."""
+def _model_to_describe(
+    options: argparse.Namespace,
+) -> tuple[Model, Prepared, NoiseFloor | None, str]:
+    """The model, its data, its noise floor (if a diagnosis states one), and words for the model."""
     from ..diagnose.stated_fit import estimate_stated
     from ..measurement.prepare import prepare
 
@@ -77,9 +79,10 @@ def _fit_model(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor |
     if options.as_is and options.answer is None and experiment.arm is None:
         model = stated_model(experiment, options)
         prepared = prepare(experiment)
-        return estimate_stated(model, prepared), prepared, None, "Your model, re-estimated:"
-    diagnosis = diagnosis_of(experiment, options)
-    prepared, before = diagnosis.prepared, diagnosis.before
+        stated = estimate_stated(model, prepared).model
+        return stated, prepared, None, "Your model, re-estimated:"
+    diagnosis = diagnosis_of_part(experiment, options)
+    prepared, before = diagnosis.prepared, diagnosis.before.model
     added = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
     held = diagnosis.floor.held
     if options.as_is:
@@ -87,7 +90,7 @@ def _fit_model(options: argparse.Namespace) -> tuple[Fit, Prepared, NoiseFloor |
     if not added:
         return before, prepared, diagnosis.floor, "Your model, re-estimated:"
     if not diagnosis.more_is_missing or (diagnosis.missing and not held):
-        return diagnosis.after, prepared, diagnosis.floor, f"Your model with {added}:"
+        return diagnosis.model, prepared, diagnosis.floor, f"Your model with {added}:"
     why = "raise the noise of the sensors" if held else "explain less than half of what it leaves"
     return before, prepared, None, f"Your model, re-estimated ({added} would {why}):"
 

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import fields, replace
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError, unknown
 from ..base.files import write_json, write_text
 from ._arms import add_body, inertia_line, joint_of, place_at_pose
-from ._diagnosis import diagnosis_of, effects_by_name, experiment_and_answer, print_diagnosis
+from ._diagnosis import diagnosis_of, experiment_and_answer, print_diagnosis
 from ._options import add_experiment, add_output, check_output, make_folder, say, say_written
 from ._paths import shell_word
 
 if TYPE_CHECKING:
-    from ..design import Assumptions, Design, DiagnosedModel
+    from ..design import Assumptions, Design
+    from ..diagnose import Diagnosis
     from ..measurement import Experiment
 
 #: assumption -> (unit on the command line, what it is)
@@ -63,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
     assumptions = _assumptions(options)
     experiment = experiment_and_answer(options)
     places = _places(options, experiment)
-    diagnosis = _read_or_diagnose(experiment, options)
+    diagnosis = _diagnosis_to_design_for(experiment, options)
     designs = {}
     for place in places:
         designs[place] = _design(diagnosis, place, assumptions)
@@ -96,25 +97,21 @@ def _places(options: argparse.Namespace, experiment: Experiment) -> list[str]:
     return places
 
 
-def _read_or_diagnose(experiment: Experiment, options: argparse.Namespace) -> DiagnosedModel:
-    from ..design import diagnosed_model, read_answer
-
+def _diagnosis_to_design_for(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
+    """The diagnosis, printed where it is computed now; of an arm, of one joint at a pose."""
+    diagnosis = diagnosis_of(experiment, options)
     joint = None if experiment.arm is None else joint_of(experiment, options)
-    if options.answer is not None:
-        identified = read_answer(options.answer, experiment, effects_by_name(options), joint=joint)
-    else:
-        diagnosis = diagnosis_of(experiment, options)
-        print_diagnosis(diagnosis)
+    if options.answer is None:
+        print_diagnosis(diagnosis if joint is None else diagnosis.joints[joint])
         print()
-        identified = diagnosed_model(diagnosis)
     if joint is None:
-        return identified
-    model = place_at_pose(identified.model, experiment, joint, options)
+        return diagnosis
+    model = place_at_pose(diagnosis, joint, options)
     print(f"{inertia_line(model, joint, options)}\n")
-    return replace(identified, model=model)
+    return diagnosis.joints[joint].with_final_model(model)
 
 
-def _design(diagnosis: DiagnosedModel, place: str, assumptions: Assumptions) -> Design:
+def _design(diagnosis: Diagnosis, place: str, assumptions: Assumptions) -> Design:
     from ..design import design
 
     say(f"designing for {place}")

@@ -11,11 +11,15 @@ from typing import TYPE_CHECKING, Any
 from ..base.errors import ExperimentError, unknown
 from ..base.files import write_beside, write_json
 from ._arms import add_body
-from ._diagnosis import arm_diagnosis_of, diagnosis_of, experiment_and_answer, print_diagnosis
+from ._diagnosis import (
+    diagnosis_of,
+    diagnosis_of_part,
+    experiment_and_answer,
+    print_diagnosis,
+)
 from ._options import add_experiment, add_output, say, value_from
 
 if TYPE_CHECKING:
-    from ..diagnose import ArmDiagnosis
     from ..measurement import Experiment
     from ..next_experiment import Limits, SimulatedDiagnosis
 
@@ -82,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
     if experiment.arm is not None and options.body is None:
         return _run_arm(experiment, options)
     limits = _limits(_read_limits(options.limit, experiment), experiment)
-    diagnosis = diagnosis_of(experiment, options)
+    diagnosis = diagnosis_of_part(experiment, options)
     proposal = propose(diagnosis, duration=options.duration, limits=limits, progress=say)
     say("")
     print_diagnosis(diagnosis)
@@ -111,7 +115,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
     """Propose paths of all joints of an arm; with --body, `run` plans one joint instead."""
-    from ..next_experiment import propose_paths, write_reference
+    from ..next_experiment import propose_paths, shown_limits, write_reference
 
     for value, option in ((options.figure, "--figure"), (options.simulate, "--simulate")):
         if value is not None:
@@ -119,9 +123,11 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
                 f"{option}: not available for an arm: use --output, or --body JOINT"
             )
     stated = _read_limits(options.limit, experiment)
-    diagnosis = arm_diagnosis_of(experiment, options)
-    shown = {j: _shown_limits(diagnosis, j) for j in stated}
-    limits = {j: shown[j].with_values(**values) for j, values in stated.items()}
+    diagnosis = diagnosis_of(experiment, options)
+    limits = {
+        j: shown_limits(diagnosis.joints[j].prepared)[j].with_values(**values)
+        for j, values in stated.items()
+    }
     paths = propose_paths(diagnosis, duration=options.duration, limits=limits, progress=say)
     say("")
     print_diagnosis(diagnosis)
@@ -136,13 +142,6 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
         content = {**numbers, "period": paths.period, "standard_errors": dict(paths.errors)}
         write_json(options.json, content)
     return 0
-
-
-def _shown_limits(diagnosis: ArmDiagnosis, joint: str) -> Limits:
-    """The limits that the records of an arm have reached at one joint."""
-    from ..next_experiment import shown_limits
-
-    return shown_limits(diagnosis.prepared.joints[joint])[joint]
 
 
 def _wrap(text: str) -> str:

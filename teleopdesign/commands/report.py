@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ._diagnosis import arm_diagnosis_of, diagnosis_of, experiment_and_answer
+from ._diagnosis import diagnosis_of, experiment_and_answer
 from ._options import add_experiment, add_output, add_search, check_output
-from ._report import write_arm_page, write_page
+from ._report import write_page
 
 EXAMPLES = """
   teleopdesign report answer.json
@@ -34,16 +34,12 @@ def run(options: argparse.Namespace) -> int:
     else:
         path = Path("report.html") if answer is None else answer.with_suffix(".html")
         check_output(path, (".html",))
-    whole = None if experiment.arm is None else arm_diagnosis_of(experiment, options)
-    diagnosis = diagnosis_of(experiment, options) if whole is None else None
+    diagnosis = diagnosis_of(experiment, options)
     if answer is not None:
         print(
             f"{answer}: its models are computed along the records of {experiment.folder.name}; "
             "nothing is searched or estimated again"
         )
-    if whole is not None:
-        write_arm_page(whole, path)
-    elif diagnosis is not None:
-        write_page(diagnosis, path)
+    write_page(diagnosis, path)
     print(f"written: {path}")
     return 0

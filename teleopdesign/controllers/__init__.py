@@ -31,6 +31,7 @@ from ._exact import exact_decimal, make_exact, resolvent
 from ._from_control import from_control, invert_plant, matrices_of, unit_state
 from ._measured import measured_frequencies, measured_plant
 from ._opaque import calls_in, is_call, opaque_laws
+from ._state_space import sides_of
 
 __all__ = [
     "CONTROLLERS",
@@ -53,6 +54,7 @@ __all__ = [
     "laws_that_declare",
     "load_controller",
     "matrices_of",
+    "sides_of",
     "measured_frequencies",
     "measured_plant",
     "opaque_laws",

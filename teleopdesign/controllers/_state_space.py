@@ -222,8 +222,8 @@ def _meaning(entry: str) -> str:
     return ", ".join([matrix.upper(), *indices])
 
 
-def _transfer(values: Mapping[str, float], s: sp.Symbol) -> sp.Expr:
-    """The transfer function in exact numbers: a zero coefficient stays exactly zero."""
+def sides_of(values: Mapping[str, float], s: sp.Symbol) -> tuple[sp.Poly, sp.Poly]:
+    """Numerator and denominator in exact numbers, with a root of the latter for each state."""
     n = _order(values)
     if "denominator_0" in values:
         above, below = (
@@ -242,7 +242,12 @@ def _transfer(values: Mapping[str, float], s: sp.Symbol) -> sp.Expr:
         through = zip([Fraction(0), *numerator], det, strict=True)
         above = [sp.Rational(x + straight * y) for x, y in through]
         below = [sp.Rational(x) for x in det]
-    p, q = (sp.Poly(row, s, domain="QQ") for row in (above, below))
+    return sp.Poly(above, s, domain="QQ"), sp.Poly(below, s, domain="QQ")
+
+
+def _transfer(values: Mapping[str, float], s: sp.Symbol) -> sp.Expr:
+    """The transfer function in exact numbers: a zero coefficient stays exactly zero."""
+    p, q = sides_of(values, s)
     common = sp.gcd(p, q)
     return p.quo(common).as_expr() / q.quo(common).as_expr()
 

@@ -22,17 +22,17 @@ from .noncommutative import counterexample
 from .printing import block_symbol, delay_symbol, motion_controller_symbol
 
 #: an equation: signal -> coefficient (multiplied from the left); the sum of all products is zero
-Row = dict[str, sp.Expr]
+_Row = dict[str, sp.Expr]
 _OUTPUT = "output asked for"
 
 
-def rows(diagram: Diagram) -> list[Row]:
+def rows(diagram: Diagram) -> list[_Row]:
     """One equation (sum = 0) for each block and junction.
 
     raises ModelError: a block has the name that the derivation uses for a part of another block
     """
     _check_names(diagram)
-    equations: list[Row] = []
+    equations: list[_Row] = []
     for part in diagram.parts:
         if isinstance(part, Moving):
             command = -block_symbol(f"A_{part.name}") if has_actuation(part) else sp.S(-1)
@@ -90,16 +90,16 @@ def paths(diagram: Diagram, part: Control) -> list[tuple[str, sp.Expr]]:
     return [(part.input, law), (part.motion, along)]
 
 
-def _rows_of_link(part: Linked) -> list[Row]:
-    equations: list[Row] = [{force: sp.S(1)} for force in part.forces]
+def _rows_of_link(part: Linked) -> list[_Row]:
+    equations: list[_Row] = [{force: sp.S(1)} for force in part.forces]
     for i, j in part.entries:
         equations[i][part.motions[j]] = -part.sign * block_symbol(part.entry_name(i, j))
     return equations
 
 
-def _row(terms: list[tuple[str, sp.Expr]]) -> Row:
+def _row(terms: list[tuple[str, sp.Expr]]) -> _Row:
     """Terms summed by signal: a part may use the signal that it produces."""
-    row: Row = {}
+    row: _Row = {}
     for signal, coefficient in terms:
         row[signal] = row.get(signal, sp.S(0)) + _as_written(coefficient)
     return {signal: c for signal, c in row.items() if c != 0}
@@ -176,7 +176,7 @@ def _order(unknown: list[str], output: str, diagram: Diagram) -> list[str]:
     return [*forces, *(m for m in motions if m in unknown)]
 
 
-def _eliminate(system: list[Row], signal: str, diagram: Diagram) -> None:
+def _eliminate(system: list[_Row], signal: str, diagram: Diagram) -> None:
     having = [r for r in system if signal in r]
     able = [r for r in having if _OUTPUT not in r and not _vanishes(r[signal])]
     if not able:

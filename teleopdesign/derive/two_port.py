@@ -31,7 +31,8 @@ import sympy as sp
 from ..base.arguments import check_types
 from ..base.errors import ModelError, did_you_mean
 from ..base.frozen import Frozen
-from ..diagrams import Diagram
+from ..diagrams import Attached, Diagram
+from ..diagrams.parts import PortRole
 from ..realise.lti import S
 from .printing import block_symbol
 from .transfer_functions import Case, TransferFunctions
@@ -112,11 +113,14 @@ def impedance_from_hybrid(h: sp.Matrix, *, convention: Convention) -> sp.Matrix:
 
 
 def _second_port_turned(m: sp.Matrix, convention: Convention) -> sp.Matrix:
-    """The matrix with force and motion of port 2 exchanged; the same rule in both directions."""
+    """The matrix with force and motion of port 2 exchanged; the same rule in both directions.
+
+    With several axes the entries do not commute: the inverse acts first on what acts on port 2.
+    """
     sign = -1 if convention == "velocity" else 1
-    through, back = m[0, 1] / m[1, 1], m[1, 0] / m[1, 1]
-    corner = m[0, 0] - through * m[1, 0]
-    return sp.Matrix([[corner, sign * through], [-sign * back, 1 / m[1, 1]]])
+    inverse = sp.Pow(m[1, 1], -1)
+    through, back = m[0, 1] * inverse, inverse * m[1, 0]
+    return sp.Matrix([[m[0, 0] - m[0, 1] * back, sign * through], [-sign * back, inverse]])
 
 
 def _check_shape(matrix: sp.Matrix) -> None:
@@ -153,24 +157,31 @@ def two_port_cases(diagram: Diagram) -> dict[str, Case]:
     for name in _SIGNALS:
         if name not in diagram.signals:
             raise ModelError(f'{diagram.name}: no teleoperator: it has no signal "{name}"')
-    ports = diagram.without("Z_H", "Z_E")
+    hands, environments = (_find_roles(diagram, role) for role in ("hand", "environment"))
+    ports = diagram.without(*hands, *environments)
     both = ("X_m", "X_s")
     of: dict[str, tuple[str, str, tuple[str, ...]]]
     of = {f"Z_{i}{j}": (f"F_{i}", f"X_{j}", both) for i in "ms" for j in "ms"}
     for row, output in ((1, "F_m"), (2, "X_s")):
         of |= {f"h_{row}1": (output, "X_m", ("X_m",)), f"h_{row}2": (output, "F_d", ("X_m",))}
     cases = {n: Case(ports, *case, _TEXTS[n]) for n, case in of.items()}
-    if diagram.has("Z_E"):
-        touched = diagram.without("Z_H")
+    if environments:
+        touched = diagram.without(*hands)
         cases["Z_t"] = Case(touched, "F_m", "X_m", ("X_m",), _TEXTS["Z_t"])
     return cases
+
+
+def _find_roles(diagram: Diagram, role: PortRole) -> list[str]:
+    """Names of the blocks of that role at the master or at the slave."""
+    resisting = (b for b in diagram.blocks if isinstance(b, Attached))
+    return [b.name for b in resisting if b.role == role and b.motion in ("X_m", "X_s")]
 
 
 @check_types
 def two_port_functions(
     diagram: Diagram, *, convention: Convention = "position"
 ) -> TransferFunctions:
-    """Every function of a teleoperator; Z_t and Z_t - Z_E only with an environment Z_E.
+    """Every function of a teleoperator; Z_t and Z_t - Z_E only with an environment at the slave.
 
     convention: "position", or "velocity" as in Hannaford's hybrid matrix, see `conventions`
     raises ModelError: the diagram lacks X_m, F_m of a master or X_s, F_s of a slave; no convention
@@ -178,7 +189,8 @@ def two_port_functions(
     check_convention(convention)
     expressions = {name: case.derive() for name, case in two_port_cases(diagram).items()}
     if "Z_t" in expressions:
-        expressions["Z_t - Z_E"] = expressions["Z_t"] - block_symbol("Z_E")
+        touched = sum((block_symbol(n) for n in _find_roles(diagram, "environment")), sp.S(0))
+        expressions["Z_t - Z_E"] = expressions["Z_t"] - touched
     texts = {name: _TEXTS[name] for name in expressions}
     if convention == "velocity":
         expressions = {n: convert_convention(n, e, convention) for n, e in expressions.items()}

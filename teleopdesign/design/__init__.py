@@ -14,9 +14,6 @@ if TYPE_CHECKING:
     from .cancellation import ProposedController as ProposedController
     from .cancellation import Reason as Reason
     from .force_feedback import FeedbackLoop as FeedbackLoop
-    from .from_answer import DiagnosedModel as DiagnosedModel
-    from .from_answer import diagnosed_model as diagnosed_model
-    from .from_answer import read_answer as read_answer
     from .outcome import Design as Design
     from .prediction import CasePrediction as CasePrediction
     from .prediction import Prediction as Prediction

@@ -44,7 +44,7 @@ class Design(Shown, ByValue):
     residual: friction left in slow steady motion, in the middle of the travel
     transparency: T of the four cases, by linear theory, with the load in place of the hand
     claims: case -> claims on passivity, each with its proof or evidence
-    verdict, left: of the diagnosis, as in `DiagnosedModel`
+    verdict, left: of the diagnosis, as in `Diagnosis`
     """
 
     experiment: str

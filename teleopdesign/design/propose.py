@@ -26,7 +26,6 @@ from .cancellation import (
 )
 from .felt_impedance import felt_impedance
 from .force_feedback import FeedbackLoop, force_feedback, identified_delay, whole_inertia
-from .from_answer import DiagnosedModel, diagnosed_model
 from .linear import transparency
 from .outcome import Design
 from .prediction import Prediction, predict
@@ -64,21 +63,19 @@ class Trial:
 
 
 def design(
-    diagnosis: DiagnosedModel | Diagnosis,
+    diagnosis: Diagnosis,
     *,
     place: str | None = None,
     assumptions: Assumptions | None = None,
 ) -> Design:
     """Propose cancellation C and force feedback H for an identified body; predict their effect.
 
-    diagnosis: a diagnosis, or the content of an answer, from `read_answer`
+    diagnosis: computed now, or read from its answer by `load_answer`
     place: which body; may be omitted if there is only one
     Of the laws for C that are certain to be passive, the design has the one with the smaller force
     error.
     raises ModelError: no such body, an assumption that cannot hold, a motion beyond the records
     """
-    if isinstance(diagnosis, Diagnosis):
-        diagnosis = diagnosed_model(diagnosis)
     at = _place(diagnosis.model, place)
     reach = reach_of(diagnosis.experiment, at)
     body = free_space(diagnosis.model.body(at))

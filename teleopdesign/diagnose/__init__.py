@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
-    from .arms import ArmDiagnosis as ArmDiagnosis
-    from .arms import find_missing_in_arm as find_missing_in_arm
+    from .answer import load_answer as load_answer
+    from .answer import write_answer as write_answer
     from .by_simulation import HorizonError as HorizonError
     from .by_simulation import RecordedLoop as RecordedLoop
     from .by_simulation import SimulationComparison as SimulationComparison
@@ -19,6 +19,6 @@ if TYPE_CHECKING:
     from .ladder import find_missing as find_missing
     from .ranking import Ranked as Ranked
     from .ranking import Ranking as Ranking
-    from .rung import Rung as Rung
+    from .statements import LadderRow as LadderRow
 
 __getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -20,6 +21,22 @@ from .noise_floor import NoiseFloor
 from .one_moment import Moment, worst_moment
 from .outside_tone import Tone
 from .ranking import Ranking
+
+
+class Errors(Protocol):
+    """Relative errors of a model: of a fit, or as an answer states them.
+
+    blind: share of the sliding samples in which the command has no influence
+    """
+
+    @property
+    def fit_error(self) -> float: ...
+    @property
+    def check_error(self) -> float: ...
+    @property
+    def check_error_at_command(self) -> float: ...
+    @property
+    def blind(self) -> float: ...
 
 
 @dataclass(frozen=True)
@@ -82,32 +99,32 @@ def is_a_tone(fit: Fit, tone: Tone, floor: NoiseFloor, *, criteria: Criteria = C
     return is_noise(left, floor, criteria=criteria)
 
 
-def is_adequate(fit: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+def is_adequate(errors: Errors, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
     """Whether the check error counts as noise, both of the force and referred to the command.
 
     A model that is blind in much of the motion is not adequate: there its command shows nothing.
     """
-    command_error = fit.at_command
     at_command = (
-        command_error.error <= criteria.adequate * floor.value_at_command
-        and command_error.blind <= criteria.blind
+        errors.check_error_at_command <= criteria.adequate * floor.value_at_command
+        and errors.blind <= criteria.blind
     )
-    return is_noise(fit.check_error, floor, criteria=criteria) and at_command
+    return is_noise(errors.check_error, floor, criteria=criteria) and at_command
 
 
-def floors_left(fit: Fit, floor: NoiseFloor) -> float:
+def floors_left(errors: Errors, floor: NoiseFloor) -> float:
     """Check error as a multiple of the noise floor: of the force or at the command, the larger.
 
     inf where the floor is zero or the error at the command is not finite
     """
-    if not (floor.value and math.isfinite(fit.at_command.error)):
+    if not (floor.value and math.isfinite(errors.check_error_at_command)):
         return float("inf")
-    return max(fit.check_error / floor.value, fit.at_command.error / floor.value_at_command)
+    at_command = errors.check_error_at_command / floor.value_at_command
+    return max(errors.check_error / floor.value, at_command)
 
 
-def records_differ(fit: Fit, *, criteria: Criteria = CRITERIA) -> bool:
+def records_differ(errors: Errors, *, criteria: Criteria = CRITERIA) -> bool:
     """Whether the relative error on the check records is much larger than on the fit records."""
-    return fit.check_error >= criteria.differ * fit.fit_error > 0.0
+    return errors.check_error >= criteria.differ * errors.fit_error > 0.0
 
 
 def moment_above_noise(

@@ -1,221 +1,64 @@
-"""The answer of a diagnosis: text, JSON data, and the predicted forces as a table."""
+"""An answer as a file: a diagnosis as JSON, in the format that users and other programs read.
+
+    write_answer(diagnosis, "answer.json")
+    load_answer("answer.json")                 # equals the diagnosis that was written
+
+The keys are the fields of `Diagnosis`, except for two: the models of the ladder stand apart, under
+`models`, and `experiment` holds the folder of the experiment too, relative to the file.
+"""
 
 from __future__ import annotations
 
-import csv
-import gzip
+import json
 import os
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
-from io import TextIOWrapper
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Annotated, Any, NoReturn
 
-import numpy as np
-
-from ..base.files import harmless_cell, make_plain, write_beside, write_json
+from ..base.arguments import check_types
+from ..base.codec import At, DataForm, DataForms, from_data, to_data
+from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
+from ..base.files import read_whole, write_json
+from ..blocks import with_block_effects
+from ..effects import EFFECTS, Effect
 from ..measurement.experiment import Experiment
-from ..measurement.reading import reading_data
 from ..model import Model
-from ..realise.along_motion import residual_along
-from .answers.bodies import model_data
-from .answers.fingerprint import experiment_data
 from .by_simulation import SimulationComparison, simulation_data
+from .candidates import Candidate
 from .diagnosis import Diagnosis
-from .fit import Fit
-from .ladder_text import offset_rows
-from .learnable import learnable_data
-from .one_moment import Moment
-from .open_questions import open_questions
-from .probability import CandidateEvidence, evidence_of
-from .record_offsets import apply_record_offsets
-from .record_shift import shift_data
-from .repeats import repeats_data
-from .rung import Rung
+from .model_data import known_effect, model_data, model_from
+from .older_answers import Place, upgrade_content
+from .recording import DiagnosedRecording
+
+WRITER = "an answer of `teleopdesign diagnose --json`"
+
+
+def place_data(candidate: Candidate) -> dict[str, str]:
+    """An effect and its place, as answers write them."""
+    return {"effect": candidate.effect.name, "at": candidate.at}
 
 
 def answer(diagnosis: Diagnosis) -> dict[str, Any]:
     """The answer as plain data: verdict, ladder, candidates, parameters; SI units."""
-    checked, recorded = bool(diagnosis.experiment.check_records), diagnosis.recorded
-    return {
-        "verdict": diagnosis.verdict,
-        "missing": [_missing_place(r) for r in diagnosis.rungs if r.added in diagnosis.missing],
-        "ladder": [
-            {
-                "added": None if r.added is None else place_data(r.added.key),
-                "instead_of": None if r.instead_of is None else r.instead_of.effect.name,
-                "fit_error": r.fit.fit_error,
-                "check_error": r.fit.check_error,
-                "check_error_at_command": make_plain(r.fit.at_command.error),
-                "blind": r.fit.at_command.blind,
-                "could_be": None if r.could_be is None else [place_data(c.key) for c in r.could_be],
-            }
-            for r in diagnosis.rungs
-        ],
-        "blind": diagnosis.after.at_command.blind,
-        "noise_floor": diagnosis.floor.value,
-        "noise_floor_source": diagnosis.floor.source,
-        "check": "records" if checked else "blocks of fit",
-        "bandwidth": {"value": diagnosis.prepared.bandwidth, "unit": "Hz"},
-        "candidates": candidate_rows(diagnosis),
-        "indistinguishable": [
-            [place_data(c.key) for c in g] for g in (*diagnosis.groups, *diagnosis.look_alikes)
-        ],
-        "cannot_tell": undetermined_rows(diagnosis),
-        "set_aside": set_aside_rows(diagnosis),
-        "own": offset_rows(diagnosis),
-        "record_shift": shift_data(diagnosis.model, diagnosis.prepared.stretches),
-        "model_parameters": parameter_rows(diagnosis.after, _added_places(diagnosis)),
-        "left_over_noise_floors": make_plain(diagnosis.left),
-        **learnable_data(diagnosis.learnable, diagnosis.near_reversals),
-        "repeats": repeats_data(diagnosis.repeats),
-        "one_moment": _moment(diagnosis.moment),
-        "on_all_records": make_plain(diagnosis.on_all_records),
-        "at_bound": list(diagnosis.after.at_bound),
-        "evidence": (
-            [_evidence(one) for one in evidence_of(diagnosis) if one.share > 0]
-            if recorded is None
-            else recorded.get("evidence", [])
-        ),
-        "experiment": experiment_data(diagnosis.experiment),
-        "reading": reading_data(diagnosis.experiment.reading),
-        "models": {
-            "ladder": [model_data(r.fit.model) for r in diagnosis.rungs],
-            "estimated": model_data(diagnosis.estimated.model),
-        },
-        "floor": {"drawn": diagnosis.floor.drawn, "held": diagnosis.floor.held},
-        "open": _open(diagnosis),
-    } | ({"left_out": list(diagnosis.left_out)} if diagnosis.left_out else {})
-
-
-def _open(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """The open questions: an accepted effect, and its rivals with their models."""
-    return [
-        {
-            "added": None if question.added is None else place_data(question.added.key),
-            "others": [
-                place_data(c.key) | {"model": model_data(fit.model)} for c, fit in question.others
-            ],
-        }
-        for question in open_questions(diagnosis)
-    ]
-
-
-def _moment(moment: Moment | None) -> dict[str, Any] | None:
-    """The moment that holds all of the residual above noise, as plain data."""
-    if moment is None:
-        return None
-    return {
-        "record": moment.file,
-        "at": moment.body,
-        "begin": {"value": moment.begin, "unit": "s"},
-        "end": {"value": moment.end, "unit": "s"},
-        "left_over_noise_floors_without": moment.without,
+    forms = {
+        Model: DataForm(model_data, _refuse_reading),
+        Candidate: DataForm(place_data, _refuse_reading),
     }
+    return _with_models_apart(to_data(diagnosis, forms))
 
 
-def place_data(key: tuple[str, str]) -> dict[str, str]:
-    """An effect and its place, as answers write them."""
-    return {"effect": key[0], "at": key[1]}
+def _refuse_reading(data: Any, where: str) -> NoReturn:
+    raise AssertionError(f"{where}: {data!r} is written only")
 
 
-def _missing_place(rung: Rung) -> dict[str, str]:
-    """The effect that a rung added, with the effect of the user's model that it replaces."""
-    assert rung.added is not None
-    place = place_data(rung.added.key)
-    instead = rung.instead_of
-    return place if instead is None else place | {"instead_of": instead.effect.name}
-
-
-def _added_places(diagnosis: Diagnosis) -> set[str]:
-    return {f"{r.added.at}.{r.added.effect.name}" for r in diagnosis.rungs if r.added is not None}
-
-
-def _parameter(model: Model, name: str) -> dict[str, Any]:
-    value = model.parameters[name]
-    return {
-        "value": make_plain(value.value),
-        "stderr": make_plain(value.stderr),
-        "unit": model.unit(name),
-    }
-
-
-def parameter_rows(fit: Fit, without: Iterable[str] = ()) -> dict[str, Any]:
-    """Parameters of a fit with standard errors and units.
-
-    without: effects to leave out, as "PLACE.EFFECT"
-    """
-    skip = set(without)
-    return {
-        n: _parameter(fit.model, n)
-        for n in fit.model.parameters
-        if n.rpartition(".")[0] not in skip
-    }
-
-
-def undetermined_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """What the records cannot determine about accepted effects: one sentence each."""
-    return [
-        place_data(one.candidate.key) | {"sentence": one.sentence} for one in diagnosis.undetermined
-    ]
-
-
-def set_aside_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """Effects that were accepted and later removed, each with the reason."""
-    return [
-        place_data(one.candidate.key) | {"check_error": one.check_error, "reason": one.reason}
-        for one in diagnosis.set_aside
-    ]
-
-
-def candidate_rows(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """Every candidate, most probable first, with its fit at one step of the ladder.
-
-    The step is the one that accepted the candidate, else the one where it was most probable.
-    """
-    if diagnosis.recorded is not None:
-        return list(diagnosis.recorded["candidates"])
-    best: dict[tuple[str, str], CandidateEvidence] = {}
-    for one in evidence_of(diagnosis):
-        before = best.setdefault(one.ranked.candidate.key, one)
-        if (one.accepted, one.probability()) > (before.accepted, before.probability()):
-            best[one.ranked.candidate.key] = one
-    rows = [_row(diagnosis, one) for one in best.values()]
-    # rounded: candidates of equal probability keep the order of the rankings on every machine
-    return sorted(rows, key=lambda c: -round(c["probability"], 6))
-
-
-def _evidence(one: CandidateEvidence) -> dict[str, Any]:
-    """Evidence behind the probability of a candidate, one row for each step that considered it."""
-    return place_data(one.ranked.candidate.key) | {
-        "accepted": one.accepted,
-        "as_good": one.as_good,
-        "score": make_plain(one.ranked.score),
-        "share": one.share,
-        "explained": one.explained,
-    }
-
-
-def _row(diagnosis: Diagnosis, one: CandidateEvidence) -> dict[str, Any]:
-    candidate, fit = one.ranked.candidate, one.ranked.fit
-    effect, at = candidate.key
-    if one.accepted:  # the fit of the ladder: later exchanges and removals changed it
-        fit = next(r.fit for r in diagnosis.rungs if r.added == candidate)
-    model = fit.model
-    if one.accepted and diagnosis.model.body(at).has(effect):
-        model = diagnosis.model  # each later rung estimates all parameters again
-    return {
-        "effect": effect,
-        "at": at,
-        "probability": one.probability(),
-        "check_error": fit.check_error,
-        "check_error_at_command": make_plain(fit.at_command.error),
-        "blind": fit.at_command.blind,
-        "refused": one.barred or None,
-        "parameters": {
-            n: _parameter(model, f"{at}.{effect}.{n}") for n in candidate.effect.parameters
-        },
-    }
+def _with_models_apart(content: dict[str, Any]) -> dict[str, Any]:
+    """The content, with the models of all rows in one list; of the joints of an arm as well."""
+    models = [row.pop("model") for row in content["ladder"]]
+    content["models"] = {"ladder": models, **content["models"]}
+    for joint in content.get("joints", {}).values():
+        _with_models_apart(joint)
+    return content
 
 
 def write_answer(
@@ -225,84 +68,221 @@ def write_answer(
 
     simulation: a comparison by simulation, where one was made
     """
-    content = with_folder(answer(diagnosis), diagnosis.experiment, path)
     if simulation is not None:
-        content["simulation"] = simulation_data(simulation)
+        diagnosis = replace(diagnosis, simulation=simulation_data(simulation))
+    content, folder = answer(diagnosis), diagnosis.experiment.folder
+    if folder.is_dir():  # an experiment of arrays has none
+        place = os.path.relpath(folder.resolve(), Path(path).resolve().parent)
+        content["experiment"]["folder"] = Path(place).as_posix()
     write_json(path, content)
 
 
-def with_folder(
-    content: dict[str, Any], experiment: Experiment, path: str | Path
-) -> dict[str, Any]:
-    """An answer with the folder of its experiment, relative to the answer's path."""
-    folder = experiment.folder
-    if not folder.is_dir():  # an experiment of arrays has none
-        return content
-    place = os.path.relpath(folder.resolve(), Path(path).resolve().parent)
-    described = content["experiment"] | {"folder": Path(place).as_posix()}
-    return content | {"experiment": described}
+@check_types
+def load_answer(
+    path: str | Path,
+    known: Mapping[str, Effect] = EFFECTS,
+    *,
+    experiment: Experiment | None = None,
+) -> Diagnosis:
+    """The diagnosis in an answer that `teleopdesign diagnose --json` or `write_answer` wrote.
 
-
-def write_predictions(diagnosis: Diagnosis, path: str | Path) -> None:
-    """Write measured and modelled forces: one row per sample of every record; .csv or .csv.gz.
-
-    `BODY.measured` is the actuator force plus the interaction force as recorded. Residuals are
-    low-passed only by the smoothing of the motion, so their low-passed values can be recomputed.
+    Nothing is searched or estimated again. Of an answer of an earlier version the final model is
+    there, and what else it holds.
+    known: effects by name, with those of the user
+    experiment: of this answer; None: it is read from the folder that the answer names, when it is
+        first needed
+    raises ExperimentError: the file cannot be read, is no answer or one to another experiment, or
+        an effect is unknown
     """
-    path = Path(path)
-    bodies = list(diagnosis.experiment.bodies)
-    head = ["record", "t"]
-    for body in bodies:
-        head += [f"{body}.{q}" for q in ("measured", "model_before", "model_after")]
-        head += [f"{body}.residual_before", f"{body}.residual_after"]
-    with write_beside(path) as part, open_for_writing(part, path) as file:
-        out = csv.writer(file)
-        out.writerow(head)
-        for record in diagnosis.experiment.records:
-            columns = _predicted_forces(diagnosis, record.file)
-            for k in range(len(record.time)):
-                out.writerow(
-                    [
-                        harmless_cell(record.file),
-                        f"{record.time[k]:.9g}",
-                        *(f"{c[k]:.7g}" for c in columns),
-                    ]
-                )
+    content = _content(path)
+    try:
+        diagnosis = _diagnosis_from(content, known, experiment)
+        recording = replace(_recording_of(content, path), stated=experiment)
+    except (ExperimentError, ModelError) as error:
+        raise ExperimentError(f"{path}: {error}") from error
+    diagnosis = with_recording(diagnosis, replace(recording, fingerprint=diagnosis.fingerprint))
+    if experiment is not None:
+        diagnosis.recording.require(experiment)
+    return diagnosis
 
 
-@contextmanager
-def open_for_writing(part: Path, path: Path) -> Iterator[TextIO]:
-    """A text file to write to, compressed where the path ends in .gz.
+def folder_of_answer(path: str | Path) -> Path:
+    """The folder of the experiment that an answer belongs to; the effects of its models may be any.
 
-    part: the file that is written;  path: its final name, also written into the compressed file
+    raises ExperimentError: the file is no answer, or there is no such folder
     """
-    with part.open("wb") as raw:
-        if path.suffix != ".gz":
-            with TextIOWrapper(raw, encoding="utf-8", newline="") as file:
-                yield file
-            return
-        with gzip.GzipFile(path.name, "wb", fileobj=raw) as packed:
-            with TextIOWrapper(packed, encoding="utf-8", newline="") as file:
-                yield file
+    return _recording_of(_content(path), path).place
 
 
-def _predicted_forces(diagnosis: Diagnosis, file: str) -> list[np.ndarray]:
-    record = next(r for r in diagnosis.experiment.records if r.file == file)
-    columns: list[np.ndarray] = []
-    stretches = [s for s in diagnosis.prepared.stretches if s.motion.file == file]
-    models = (diagnosis.before.model, diagnosis.model)
-    along = [apply_record_offsets(model, stretches) for model in models]
-    for body in diagnosis.experiment.bodies:
-        interaction = record.signals.get(f"{body}.interaction_force")
-        measured = record.signals[f"{body}.actuator_force"] + (
-            0.0 if interaction is None else interaction
+@dataclass(frozen=True)
+class _Whereabouts:
+    """The part of an answer that says where its experiment is."""
+
+    verdict: str
+    folder: Annotated[str | None, At("experiment.folder")] = None
+
+
+def _recording_of(content: Any, path: str | Path) -> DiagnosedRecording:
+    folder = from_data(_Whereabouts, content, "", {}, whole=WRITER).folder
+    return DiagnosedRecording(folder=folder, file=str(path))
+
+
+def with_recording(diagnosis: Diagnosis, recording: DiagnosedRecording) -> Diagnosis:
+    """The diagnosis with the recording that it belongs to, and so those of an arm's joints."""
+    bandwidth = diagnosis.bandwidth
+    here = replace(
+        recording,
+        bandwidth=bandwidth if bandwidth == bandwidth else None,
+        model=diagnosis.after.fitted,
+        other_motion=diagnosis.other_motion,
+    )
+    joints = {
+        name: replace(one, recording=here.of_joint(name, one.after.fitted))
+        for name, one in diagnosis.joints.items()
+    }
+    return replace(diagnosis, recording=here, joints=joints)
+
+
+def _content(path: str | Path) -> dict[str, Any]:
+    """The content of a JSON file.
+
+    raises ExperimentError: the file cannot be read, or is no JSON
+    """
+    try:
+        content = json.loads(read_whole(path).decode("utf-8-sig"), parse_constant=_constant)
+    except OSError as error:
+        raise ExperimentError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise ExperimentError(f"{path}: not UTF-8 text (byte {error.start})") from None
+    except json.JSONDecodeError as error:
+        raise ExperimentError(f"{path}: line {error.lineno}: no JSON: {error.msg}") from None
+    except RecursionError:
+        raise ExperimentError(f"{path}: brackets nested too deeply") from None
+    except ValueError as error:  # a number too long to convert, NaN, a null character in the path
+        raise ExperimentError(f"{path}: no JSON: {error}") from None
+    try:
+        from_data(_Whereabouts, content, "", {}, whole=WRITER)
+    except ExperimentError as error:
+        raise ExperimentError(f"{path}: {error}") from None
+    return content  # type: ignore[no-any-return]
+
+
+def _constant(name: str) -> NoReturn:
+    raise ValueError(f"found {name}, expected a finite number or null")
+
+
+def _diagnosis_from(
+    content: dict[str, Any], known: Mapping[str, Effect], experiment: Experiment | None
+) -> Diagnosis:
+    """The diagnosis that the content of a file describes.
+
+    raises ExperimentError: with the key in front, without the file
+    """
+    content = upgrade_content(content, known, experiment, whole=WRITER)
+    names = from_data(tuple[str, ...], content.get("considered", []), "considered", {})
+    effects, considered = with_block_effects(known), {n: known[n] for n in names if n in known}
+    may_take = considered if 0 < len(considered) < len(known) else known
+
+    def read_model(data: Any, where: str) -> Model:
+        if isinstance(data, Model):
+            return data
+        return model_from(data, known, where, may_take=may_take)
+
+    def read_candidate(data: Any, where: str) -> Candidate:
+        place = from_data(Place, data, where, {})
+        return Candidate(known_effect(place.effect, effects, where=where), place.at)
+
+    forms = {
+        Model: DataForm(model_data, read_model),
+        Candidate: DataForm(place_data, read_candidate),
+    }
+    joined = _with_models_beside(content, forms)
+    diagnosis: Diagnosis = from_data(Diagnosis, joined, "", forms, whole=WRITER)
+    _check_parts(diagnosis)
+    return diagnosis
+
+
+def _with_models_beside(content: dict[str, Any], forms: DataForms, at: str = "") -> dict[str, Any]:
+    """The content, with each model beside the errors of its row; at: place of the content."""
+    models = from_data(_Models, content["models"], f"{at}models", forms).ladder
+    rows = content["ladder"]
+    if len(models) != len(rows):
+        raise ExperimentError(
+            f"{at}models.ladder: found {len(models)} models, expected {len(rows)}, one for each "
+            "row of the ladder"
         )
-        before, after = np.zeros_like(measured), np.zeros_like(measured)
-        for i, stretch in enumerate(stretches):
-            motion = stretch.motion
-            if motion.body != body:
-                continue
-            for arguments, out in zip(along, (before, after), strict=True):
-                out[motion.rows] = residual_along(*arguments[i]).residual.value
-        columns += [measured, measured - before, measured - after, before, after]
-    return columns
+    if models[-1] is None:
+        raise ExperimentError(f"{at}models.ladder[{len(models)}]: found null, expected a table")
+    joints = {
+        name: _with_models_beside(one, forms, f"{at}joints.{name}.")
+        for name, one in content.get("joints", {}).items()
+    }
+    pairs = zip(rows, models, strict=True)
+    return content | {"ladder": [row | {"model": m} for row, m in pairs], "joints": joints}
+
+
+@dataclass(frozen=True)
+class _Models:
+    ladder: tuple[Model | None, ...]
+
+
+def _check_parts(diagnosis: Diagnosis, at: str = "") -> None:
+    """Refuse parts that contradict each other.
+
+    at: place of the diagnosis in the file
+    raises ExperimentError: with both in words
+    """
+    first, *others = diagnosis.rungs
+    if first.added is not None or any(r.added is None for r in others):
+        raise ExperimentError(
+            f"{at}ladder: expected the user's model first (added: null), then effects"
+        )
+    if first.instead_of is not None:
+        raise ExperimentError(f"{at}ladder: instead_of: found it beside added: null")
+    last = [m for m in (diagnosis.after.fitted, diagnosis.estimated) if m is not None]
+    for row in others:
+        if row.added is not None:
+            _require_effect(row.added, last, f"{at}ladder")
+        if row.instead_of is not None and first.fitted is not None and row.added is not None:
+            there = first.model.body(row.added.at)
+            if not there.has(row.instead_of):
+                raise ExperimentError(f"{at}ladder: instead_of: no {quote(row.instead_of)} there")
+    for question in diagnosis.open or ():
+        if question.added is not None:
+            _require_effect(question.added, last, f"{at}open")
+        for rival in question.others:
+            _require_effect(rival.candidate, [rival.model], f"{at}open")
+    for name in diagnosis.at_bound:
+        if any(name not in model.parameters for model in last):
+            raise ExperimentError(f"{at}at_bound: the model has no parameter {quote(name)}")
+    _check_joints(diagnosis, at)
+
+
+def _check_joints(diagnosis: Diagnosis, at: str) -> None:
+    """Refuse an arm whose joints are not those of its model, or lack an effect of its ladder."""
+    joints = diagnosis.joints
+    if not joints:
+        return
+    for joint in diagnosis.model.bodies:
+        if joint not in joints:
+            raise ExperimentError(
+                f"{at}joints: no joint {quote(joint)}, has {', '.join(joints) or 'none'}"
+                f"{did_you_mean(joint, joints)}"
+            )
+    for joint, one in joints.items():
+        _check_parts(one, f"{at}joints.{joint}.")
+    added = {r.added.key for one in joints.values() for r in one.rungs if r.added is not None}
+    for row in diagnosis.rungs:
+        if row.added is not None and row.added.key not in added:
+            raise ExperimentError(f"{at}ladder: {row.added}: no joint's own ladder has it")
+
+
+def _require_effect(candidate: Candidate, models: Sequence[Model], where: str) -> None:
+    """Refuse a candidate of which a model that should have its effect has none."""
+    for model in models:
+        try:
+            there = model.body(candidate.at).has(candidate.effect.name)
+        except ModelError as error:
+            raise ExperimentError(f"{where}: {candidate}: {error}") from error
+        if not there:
+            raise ExperimentError(f"{where}: {candidate}: its model has no such effect")

@@ -6,6 +6,8 @@ is the deviation of its position and velocity. Without a loop that holds the mod
 force leads it away with t^2, and friction decides where it stops. Short horizons test the model;
 the whole record tests the sum of its errors.
 
+The joints of an arm move together, so a joint that deviates pulls the others along.
+
 In the recorded closed loop a controller pulls the model back. Its force is the recorded command
 plus its response to the deviation: for a spring and damper -(K + B s)(x - x_measured), whatever the
 reference was.
@@ -15,34 +17,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.errors import ModelError
+from ..base.errors import ModelError, did_you_mean, quote
 from ..base.files import make_plain
 from ..base.frozen import ByValue
 from ..base.shown import html_table
 from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
-from ..measurement.motion import Motion
-from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .cores import map_in_threads
+from .driven import Driven, driven_stretches
 from .error import force_error
-from .record_offsets import apply_record_offsets
-from .simulated_course import LedBody, course_of, led_body, with_whole_dead_times
-
-if TYPE_CHECKING:
-    from .arms.prepared import PreparedArm
+from .model_data import model_of_body
+from .parts import PreparedParts, prepare_parts, remove_links, with_bodies_of
+from .parts_fit import error_over_joints
 
 #: s: times after which the simulation restarts on the measured motion; at last the whole record
 HORIZONS = (0.1, 0.3, 1.0, 3.0, 10.0)
-#: deflection of ideal friction before it slides, as a part of the travel: far below any error of a
-#: free motion. A smaller part needs shorter steps
-BRISTLE_SHARE = 2e-5
 
 
 @check_types
@@ -93,7 +89,7 @@ class SimulationComparison(ByValue):
     """
 
     model: Model
-    prepared: Prepared | PreparedArm
+    prepared: PreparedParts
     fit_error: float
     check_error: float
     errors: tuple[HorizonError, ...]
@@ -153,46 +149,52 @@ class SimulationComparison(ByValue):
         return "\n".join([*lines, f"  {self._forces()}"])
 
 
-@dataclass(frozen=True)
-class _Driven:
-    """A body to be driven along one stretch, and the rows first to end that count in errors."""
-
-    led: LedBody
-    motion: Motion
-    first: int
-    end: int
-
-    @property
-    def length(self) -> float:
-        """Seconds from the first to the last row that counts."""
-        return (self.end - 1 - self.first) * self.motion.sample_time
-
-
 def compare_by_simulation(
-    model: Model, experiment: Experiment | Prepared, *, loop: RecordedLoop | None = None
+    model: Model,
+    experiment: Experiment | PreparedParts,
+    *,
+    loop: RecordedLoop | Mapping[str, RecordedLoop] | None = None,
 ) -> SimulationComparison:
     """Drive the model by the recorded forces, over horizons from 0.1 s to the whole record.
 
-    loop: the controller that held the device; None: nothing holds the model
+    model: of an arm with base parameters where they are estimated
+    loop: the controller that held the device or each joint of an arm, or a mapping joint ->
+        controller; None: nothing holds the model
     raises ExperimentError: the experiment lacks what the comparison needs
-    raises ModelError: the model has an effect that has no simulated form
+    raises ModelError: an effect has no simulated form, or a loop names no joint
     """
-    prepared = experiment if isinstance(experiment, Prepared) else prepare(experiment)
-    errors = []
+    prepared = experiment if isinstance(experiment, PreparedParts) else prepare_parts(experiment)
+    model = model if model.links else model.with_links(prepared.initial)
+    prepared = with_bodies_of(model, prepared)
+    models = {j: model_of_body(model, j) if j else model for j in prepared.parts}
+    errors, by_force = [], {}
     for use in ("fit", "check"):
-        for place in model.bodies:
-            driven = _driven_stretches(model, prepared, use, place, loop)
-            longest = max((d.length for d in driven), default=0.0)
-            horizons = [h for h in HORIZONS if h < longest] + [np.inf] * bool(driven)
-            errors += [_error(driven, use, place, horizon) for horizon in horizons]
+        for driven in driven_stretches(models, prepared, use, _gains(loop, tuple(model.bodies))):
+            errors += _horizon_errors(driven, use)
+        by_force[use] = error_over_joints(
+            {j: force_error(models[j], remove_links(p.of(use))) for j, p in prepared.parts.items()}
+        )
     return SimulationComparison(
-        model,
-        prepared,
-        force_error(model, prepared.of("fit")),
-        force_error(model, prepared.of("check")),
-        tuple(errors),
-        loop,
+        model, prepared, by_force["fit"], by_force["check"], tuple(errors), loop
     )
+
+
+def _gains(
+    loop: RecordedLoop | Mapping[str, RecordedLoop] | None, places: Sequence[str]
+) -> dict[str, tuple[float, float]]:
+    """Place -> stiffness and damping of its controller.
+
+    raises ModelError: the loop names no joint
+    """
+    if not isinstance(loop, Mapping):
+        loop = dict.fromkeys(places, loop or RecordedLoop(0.0))
+    for name in loop:
+        if name not in places:
+            raise ModelError(
+                f"loop: no joint {quote(name)}, has {', '.join(places)}{did_you_mean(name, places)}"
+            )
+    each = {place: loop.get(place, RecordedLoop(0.0)) for place in places}
+    return {place: (one.stiffness, one.damping) for place, one in each.items()}
 
 
 def simulation_data(comparison: SimulationComparison) -> dict[str, Any]:
@@ -228,58 +230,64 @@ def _loop_data(loop: RecordedLoop | None) -> dict[str, float] | None:
     return None if loop is None else {"stiffness": loop.stiffness, "damping": loop.damping}
 
 
-def _driven_stretches(
-    model: Model, prepared: Prepared, use: str, place: str, loop: RecordedLoop | None
-) -> list[_Driven]:
-    """The stretches of one use and body, each with the body corrected by its record's offsets."""
-    stretches = prepared.of(use)
-    loop = loop or RecordedLoop(0.0)
-    driven = []
-    for stretch, (body, motion) in zip(
-        stretches, apply_record_offsets(model, stretches), strict=True
-    ):
-        if motion.body != place:
-            continue
-        led = led_body(
-            with_whole_dead_times(body, motion),
-            bristle=max(motion.step, BRISTLE_SHARE * float(np.ptp(motion.position))),
-            stiffness=loop.stiffness,
-            damping=loop.damping,
-        )
-        driven.append(_Driven(led, motion, int(stretch.keep[0]), int(stretch.keep[-1]) + 1))
-    return driven
+def _horizon_errors(driven: Sequence[Driven], use: str) -> list[HorizonError]:
+    """Errors of bodies that move together, body by body, the shortest horizon first.
 
-
-def _error(driven: Sequence[_Driven], use: str, place: str, horizon: float) -> HorizonError:
-    """Errors over one horizon (s), of all stretches together."""
-    parts = map_in_threads(lambda d: _deviations(d, horizon), driven)
-    x, v = (np.concatenate([part[i] for part in parts]) for i in range(2))
-    rows = [(d.motion, d.first, d.end) for d in driven]
-    return horizon_error(use, place, horizon, x, v, rows)
-
-
-def horizon_error(
-    use: str,
-    at: str,
-    horizon: float,
-    position: Array,
-    velocity: Array,
-    rows: Sequence[tuple[Motion, int, int]],
-) -> HorizonError:
-    """The errors of a body over one horizon, from its deviations at all rows together.
-
-    position, velocity: simulated less measured, (rows,)
-    rows: of each stretch its motion, the first row that counts and the row after the last one
+    driven: the bodies along all stretches of one use
     """
+    longest = max((one.length for one in driven), default=0.0)
+    horizons = [h for h in HORIZONS if h < longest] + [np.inf] * bool(driven)
+    parts = map_in_threads(lambda one: _deviations(one, horizons), driven)
+    return [
+        _horizon_error(driven, parts, use, body, (h, horizon))
+        for body in range(len(driven[0].places) if driven else 0)
+        for h, horizon in enumerate(horizons)
+    ]
+
+
+def _deviations(driven: Driven, horizons: Sequence[float]) -> list[Array]:
+    """Simulated less measured position and velocity (2, k, rows) along one stretch, per horizon."""
+    rows, step = driven.end - driven.first, driven.motions[0].sample_time
+    spans: list[list[slice]] = []
+    for horizon in horizons:
+        each = rows if np.isinf(horizon) else max(round(horizon / step), 2)
+        # one extra row, which is not counted: no command follows the last row of a course
+        spans.append(
+            [
+                slice(begin, min(begin + each + 1, driven.end))
+                for begin in range(driven.first, driven.end - 1, each)
+            ]
+        )
+    measured = np.array([[getattr(m, q) for m in driven.motions] for q in ("position", "velocity")])
+    courses = iter(driven.courses([span for part in spans for span in part]))
+    return [
+        np.concatenate([next(courses) - measured[:, :, span] for span in part], axis=2)
+        for part in spans
+    ]
+
+
+def _horizon_error(
+    driven: Sequence[Driven],
+    parts: Sequence[Sequence[Array]],
+    use: str,
+    body: int,
+    horizon: tuple[int, float],
+) -> HorizonError:
+    """The errors of one body over one horizon, from its deviations along all stretches together.
+
+    parts: of each stretch, the deviations of each horizon;  horizon: its index and its time (s)
+    """
+    h, seconds = horizon
+    position, velocity = np.concatenate([part[h][:, body] for part in parts], axis=1)
     measured = {
-        name: np.concatenate([getattr(m, name)[first:end] for m, first, end in rows])
+        name: np.concatenate([getattr(d.motions[body], name)[d.first : d.end] for d in driven])
         for name in ("position", "velocity")
     }
     by_position, by_velocity = _rms(position), _rms(velocity)
     return HorizonError(
         use,
-        at,
-        horizon,
+        driven[0].places[body],
+        seconds,
         by_position,
         by_velocity,
         by_position / max(float(np.std(measured["position"])), 1e-300),
@@ -290,18 +298,3 @@ def horizon_error(
 def _rms(values: Array) -> float:
     """Root of the mean square; inf where a value is not finite."""
     return float(np.sqrt(np.mean(values**2))) if np.isfinite(values).all() else float("inf")
-
-
-def _deviations(driven: _Driven, horizon: float) -> tuple[Array, Array]:
-    """Simulated less measured position and velocity along one stretch, restarted each horizon."""
-    motion, first, end = driven.motion, driven.first, driven.end
-    rows = end - first
-    each = rows if np.isinf(horizon) else max(round(horizon / motion.sample_time), 2)
-    x, v = [], []
-    for begin in range(first, end - 1, each):
-        # one extra row, which is not counted: no command follows the last row of a course
-        part = slice(begin, min(begin + each + 1, end))
-        course = course_of(driven.led, motion, part)
-        x.append(course.position - motion.position[part])
-        v.append(course.velocity - motion.velocity[part])
-    return np.concatenate(x), np.concatenate(v)

@@ -18,7 +18,6 @@ from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from ..realise.along_motion import residual_along
-from .arms.by_simulation import compare_arm_by_simulation
 from .by_simulation import RecordedLoop, SimulationComparison, compare_by_simulation
 from .error import force_error
 from .noise_floor import NoiseFloor, noise_floor
@@ -105,10 +104,6 @@ def compare(
     raises ModelError: a loop is given without a simulation, or the model cannot be simulated
     """
     if by == "simulation":
-        if experiment.arm is not None:
-            return compare_arm_by_simulation(model, experiment, loop=loop)
-        if isinstance(loop, Mapping):
-            raise ModelError("compare: found a loop for each joint, but the experiment has no arm")
         return compare_by_simulation(model, experiment, loop=loop)
     if loop is not None:
         raise ModelError('compare: a loop is simulated: found by="force", expected "simulation"')

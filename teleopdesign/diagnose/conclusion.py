@@ -12,20 +12,21 @@ from dataclasses import replace
 from itertools import pairwise
 
 from ..base.errors import ModelError
+from ..check import why_silent
 from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared
 from ..model import Model
 from .adequacy import moment_above_noise, records_differ
 from .between_rows import floor_between_rows
 from .candidates import Candidate
-from .corrected_fit import correct_fit
 from .criteria import CRITERIA, Criteria
-from .decision import refusal, verdict
-from .diagnosis import Diagnosis, SetAside
+from .decision import refusal
 from .error import force_error
 from .error_at_command import refer_to_command
+from .estimates import correct_fit
 from .fit import Fit
 from .identifiability import doubt, explains_most
+from .ladder_end import LadderEnd
 from .ladder_state import LadderSearch, LadderState
 from .learnable import error_near_reversals, learnable
 from .order import select_other_helpers
@@ -36,7 +37,9 @@ from .repeats import repeatability
 from .rung import Rung
 from .rungs import estimate_without, first_rise, reorder_and_refit, without_rise
 from .stand_in import check_error_on_all
+from .statements import SetAside
 from .undetermined import find_undetermined
+from .verdict import verdict
 
 
 def conclude(
@@ -45,8 +48,8 @@ def conclude(
     rungs: tuple[Rung, ...] | None = None,
     *,
     beside: Sequence[Sequence[Motion]] = (),
-) -> Diagnosis:
-    """The diagnosis that a ladder ends with.
+) -> LadderEnd:
+    """What a ladder ends with.
 
     rungs: of the state, with the reading error removed from the last fit; None: it is removed here
     beside: of each stretch, the motions of an arm's other joints, from which trees learn too
@@ -74,31 +77,30 @@ def conclude(
     repeats = repeatability(last.model, whole, beside=beside)
     floor = floor_between_rows(last, floor, trees, whole, search.generator(), criteria=criteria)
     moment = moment if floor is state.floor else None  # else all that is left is noise
-    diagnosis = Diagnosis(
-        experiment=search.experiment,
-        prepared=whole,
+    end = LadderEnd(
+        search=search,
         verdict=verdict(rungs, floor, moment, trees=trees, repeats=repeats, criteria=criteria),
         rungs=rungs,
         last=state.ranking,
         estimated=estimated,
         floor=floor,
-        sensor_floor=None if floor is state.floor else state.floor,
+        sensor_floor=state.floor,
         moment=moment,
         learnable=trees,
         near_reversals=error_near_reversals(last.model, whole),
         repeats=repeats,
-        left_out=search.plan.omissions(),
         undetermined=find_undetermined(rungs, whole),
         set_aside=_select_left_out(set_aside, rungs),
         on_all_records=check_error_on_all(last, prepared) if records_differ(last) else None,
+        silence=why_silent(whole, rungs[0].fit.model),
     )
-    if diagnosis.why_silent:
-        return replace(diagnosis, verdict="undecided")
-    named = probable(diagnosis, criteria=criteria)
-    diagnosis = replace(diagnosis, rungs=tuple(_leave_unnamed(r, named) for r in rungs))
-    if diagnosis.verdict == "effects_missing" and not named:
-        return replace(diagnosis, verdict="undecided")
-    return replace(diagnosis, named=named)
+    if end.silence:
+        return replace(end, verdict="undecided")
+    named = probable(end, criteria=criteria)
+    end = replace(end, rungs=tuple(_leave_unnamed(r, named) for r in rungs))
+    if end.verdict == "effects_missing" and not named:
+        return replace(end, verdict="undecided")
+    return replace(end, named=named)
 
 
 def _select_left_out(set_aside: Sequence[SetAside], rungs: Sequence[Rung]) -> tuple[SetAside, ...]:

@@ -1,132 +1,150 @@
-"""The result of a diagnosis: the ladder of effects, and the verdict."""
+"""The result of a diagnosis: all that it states, the same from memory and from its answer file.
+
+The fields of `Diagnosis` are the content of an answer (`answer.py` writes and reads it). What needs
+the recording is computed from the models of the answer when it is asked for (`recording.py`).
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
+from ..base.codec import INLINE, NEVER, OMIT, At, Bounds, Error, Filled, InUnit
+from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
-from ..base.shown import figure_of
-from ..check import why_silent
+from ..base.shown import Shown, figure_of
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared
 from ..model import Model
 from .adequacy import floors_left, is_adequate
-from .candidates import Candidate, list_look_alikes
-from .decision import verdict
-from .fit import Fit
-from .ladder_text import ladder_html, ladder_text, sentence
+from .candidates import Candidate
+from .fingerprint import Fingerprint
 from .learnable import Learnable, NearReversals
+from .model_data import model_of_body
 from .noise_floor import NoiseFloor
 from .one_moment import Moment
-from .ranking import Ranking
+from .record_offsets import Offset
+from .record_shift import RecordShift
+from .recording import DiagnosedRecording
 from .repeats import Repeatability
-from .rung import Rung
+from .statements import (
+    ANEW,
+    CandidateResult,
+    EstimatedValue,
+    LadderRow,
+    Nearest,
+    NotAccepted,
+    OpenQuestion,
+    SetAside,
+    StepEvidence,
+    Undetermined,
+    estimate_of,
+)
+from .verdict import VerdictName, verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-
-@dataclass(frozen=True, eq=False)
-class OpenQuestion(ByValue):
-    """An accepted effect and its rivals that the records cannot exclude.
-
-    added: the accepted effect; None: none was accepted
-    others: each rival with the fit that it was compared by
-    """
-
-    added: Candidate | None
-    others: tuple[tuple[Candidate, Fit], ...]
-
-
-@dataclass(frozen=True)
-class Undetermined:
-    """A sentence on parameters of an accepted effect that the records do not determine."""
-
-    candidate: Candidate
-    sentence: str
-
-    def __str__(self) -> str:
-        return f"{self.candidate}: {self.sentence}"
-
-
-@dataclass(frozen=True)
-class SetAside:
-    """An effect that lowered the error and was removed again, with its error and the reason.
-
-    of_readings: whether the effect only weakens errors of the readings: its own error then does not
-        limit the noise floor of the model without it
-    """
-
-    candidate: Candidate
-    check_error: float
-    reason: str
-    of_readings: bool = False
-
-    def __str__(self) -> str:
-        return f"{self.candidate} ({100 * self.check_error:.2f} %): {self.reason}"
+    from ..measurement.prepare import Prepared
+    from .fit import Fit
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis(ByValue):
-    """Result of a diagnosis: the ladder of effects, its fits, and the verdict.
+class Diagnosis(Shown, ByValue):
+    """Result of a diagnosis: the ladder of effects, its models, and the verdict.
 
-    verdict: "effects_missing", "model_adequate" or "undecided"
-    rungs: the user's model re-estimated, then one rung an effect
-    last: ranking after the last rung, none of which was accepted
-    estimated: the last rung's fit, parameters not yet corrected for errors of the readings; use it
-        where fits are compared with each other
+    rungs: the user's model re-estimated, then one row an effect
     floor: the noise floor: the error that the sensors alone would leave
-    moment: the single time span that holds all of the residual above noise; None: there is no such
-        span
-    open: questions that the records leave open, where they are stored: in a diagnosis read from a
-        file, or of an arm's joint; None: they follow from the rankings
-    named: accepted effects that are probable enough to be called missing
-    learnable: how much of the residual a black box can learn; None without the extra `learn`
-    near_reversals: the check error near reversals of the motion; None where there are none
-    repeats: how far the residual repeats with the motion; None where no motion is repeated
-    left_out: parts of a full search that this one left out, in words
+    check: what the check errors are of, by the experiment;  held_out: whether they are those of
+        blocks of the fit records, because no check record is long enough, either
+    bandwidth: Hz, up to which forces are compared;  bandwidth_source: where it comes from, in words
+    candidates: every effect tried, most probable first
+    indistinguishable: groups of effects that explain the records equally well, the accepted one
+        first, and pairs that the travel hardly distinguishes
     undetermined: what the records cannot determine about the accepted effects
     set_aside: effects that were accepted first and removed again, because the final errors do not
         support them
+    offsets: offsets that belong to one record, with the final model
+    record_shift: log -> delay of the log, by the final model
+    at_bound: parameters of the final model that ended at a bound
+    learnable: how much of the residual a black box can learn; None without the extra `learn`
+    near_reversals: the check error near reversals of the motion; None where there are none
+    repeats: how far the residual repeats with the motion; None where no motion is repeated
+    moment: the single time span that holds all of the residual above noise; None: no such span
     on_all_records: check error of the final model estimated on all records; None: not computed,
         because the check error is not much larger than the fit error
-    sensor_floor: error that the sensors alone leave, used for the probability of effects; None:
-        equal to the floor. Where the scatter of a command is noise too (`between_rows`), an effect
-        may imitate it
-    recorded: content of the answer file that the diagnosis was read from; else None
+    fingerprint: of the experiment;  reading: corrections of its logs, as plain data
+    estimated: the final model, not yet corrected for errors of the readings; None: as `fitted`
+    open: questions that the records leave open; None: an older answer does not say
+    not_accepted, nearest: candidates that leave less than the final model, and do not count
+    silence: why the records tell no effect, as the end of a verdict; "": they may tell one
+    remarks: further sentences on the records
+    left_out: parts of a full search that this one left out, in words
+    considered: names of the effects that the model may take
+    joints: joint of an arm -> its own diagnosis, with the information of the others on the links
+    other_motion: joint -> the joint whose motion is its channel `other_position`
+    links: name -> base parameter of the links of an arm
+    simulation: comparison of the final model by simulation, as plain data
+    recording: of the experiment; no part of the content
     """
 
-    experiment: Experiment
-    prepared: Prepared
-    verdict: str
-    rungs: tuple[Rung, ...]
-    last: Ranking
-    estimated: Fit
-    floor: NoiseFloor
-    moment: Moment | None = None
-    open: tuple[OpenQuestion, ...] | None = None
-    named: tuple[Candidate, ...] = ()
-    learnable: Learnable | None = None
+    verdict: VerdictName
+    rungs: Annotated[tuple[LadderRow, ...], Filled(1), At("ladder")]
+    floor: Annotated[NoiseFloor, INLINE]
+    candidates: tuple[CandidateResult, ...]
+    indistinguishable: tuple[Annotated[tuple[Candidate, ...], Filled(2)], ...]
+    check: Literal["records", "blocks of fit"] = "records"
+    held_out: bool = False
+    bandwidth: Annotated[float, InUnit("Hz"), Bounds(1e-9)] = math.nan
+    bandwidth_source: Annotated[str, At("bandwidth.source")] = ""
+    undetermined: Annotated[tuple[Undetermined, ...], At("cannot_tell")] = ()
+    set_aside: tuple[SetAside, ...] = ()
+    offsets: Annotated[tuple[Offset, ...], At("own")] = ()
+    record_shift: Mapping[str, RecordShift] = field(default_factory=dict)
+    learnable: Annotated[Learnable | None, INLINE] = None
     near_reversals: NearReversals | None = None
     repeats: Repeatability | None = None
-    left_out: tuple[str, ...] = ()
-    undetermined: tuple[Undetermined, ...] = ()
-    set_aside: tuple[SetAside, ...] = ()
-    on_all_records: float | None = None
-    sensor_floor: NoiseFloor | None = None
-    recorded: Mapping[str, Any] | None = None
+    moment: Annotated[Moment | None, At("one_moment")] = None
+    on_all_records: Error | None = None
+    at_bound: tuple[str, ...] = ()
+    evidence: tuple[StepEvidence, ...] = ()
+    fingerprint: Annotated[Fingerprint | None, At("experiment")] = None
+    reading: tuple[Any, ...] = ()
+    estimated: Annotated[Model | None, At("models.estimated")] = None
+    open: tuple[OpenQuestion, ...] | None = None
+    not_accepted: tuple[NotAccepted, ...] = ()
+    nearest: Nearest | None = None
+    silence: str = ""
+    remarks: tuple[str, ...] = ()
+    left_out: Annotated[tuple[str, ...], OMIT] = ()
+    considered: tuple[str, ...] = ()
+    joints: Annotated[Mapping[str, Diagnosis], OMIT] = field(default_factory=dict)
+    other_motion: Annotated[Mapping[str, str], OMIT] = field(default_factory=dict)
+    links: Annotated[Mapping[str, EstimatedValue], OMIT] = field(default_factory=dict)
+    simulation: Annotated[Any, OMIT] = None
+    recording: Annotated[DiagnosedRecording, NEVER] = field(
+        default=DiagnosedRecording(), compare=False, repr=False
+    )
+
+    ALSO_WRITTEN: ClassVar[Mapping[str, str]] = {
+        "missing": "missing_places",
+        "blind": "blind",
+        "left_over_noise_floors": "left",
+        "model_parameters": "parameters",
+    }
 
     @property
-    def before(self) -> Fit:
-        """The fit of the user's model, re-estimated."""
-        return self.rungs[0].fit
+    def before(self) -> LadderRow:
+        """The user's model, re-estimated."""
+        return self.rungs[0]
 
     @property
-    def after(self) -> Fit:
-        """The fit of the model with every accepted effect."""
-        return self.rungs[-1].fit
+    def after(self) -> LadderRow:
+        """The model with every accepted effect."""
+        return self.rungs[-1]
 
     @property
     def model(self) -> Model:
@@ -134,14 +152,45 @@ class Diagnosis(ByValue):
         return self.after.model
 
     @property
+    def blind(self) -> float:
+        """Share of the sliding samples in which the command has no influence, at the end."""
+        return self.after.blind
+
+    @property
+    def named(self) -> tuple[Candidate, ...]:
+        """Accepted effects that are probable enough to be called missing."""
+        return tuple(r.added for r in self.rungs if r.added is not None and r.named)
+
+    @property
     def missing(self) -> tuple[Candidate, ...]:
         """Effects that are called missing, in the order added; none where they cannot be named."""
         return self.named if self.verdict == "effects_missing" else ()
 
     @property
-    def why_silent(self) -> str:
-        """Why the records tell no effect, so that none was a candidate; "": they may tell one."""
-        return why_silent(self.prepared, self.rungs[0].fit.model)
+    def missing_places(self) -> list[dict[str, str]]:
+        """The effects that are called missing, as an answer writes them."""
+        rows = [r for r in self.rungs if r.added is not None and r.added in self.missing]
+        more = ({"follows": r.follows, "instead_of": r.instead_of} for r in rows)
+        return [
+            {"effect": r.added.effect.name, "at": r.added.at}  # type: ignore[union-attr]
+            | {key: word for key, word in one.items() if word is not None}
+            for r, one in zip(rows, more, strict=True)
+        ]
+
+    @property
+    def parameters(self) -> dict[str, EstimatedValue]:
+        """Parameters of the final model without those of added effects; base parameters of links.
+
+        The inertia of an arm's joint is left out: it includes that of the links.
+        """
+        added = {f"{r.added.at}.{r.added.effect.name}" for r in self.rungs if r.added is not None}
+        ours = {f"{joint}.inertia" for joint in self.joints}
+        rows = {
+            name: estimate_of(self.model, name)
+            for name in self.model.parameters
+            if name.rpartition(".")[0] not in added and name not in ours
+        }
+        return rows | {f"arm.{name}": one for name, one in self.links.items()}
 
     def reason_set_aside(self, key: tuple[str, str]) -> str:
         """Why an effect (name, place) was accepted and removed again; "" for all other effects."""
@@ -158,24 +207,16 @@ class Diagnosis(ByValue):
     def groups(self) -> tuple[tuple[Candidate, ...], ...]:
         """Groups of effects that explain the records equally well, the accepted one first."""
         return tuple(
-            (r.added, *r.alternatives) for r in self.rungs if r.added is not None and r.alternatives
+            (r.added, *(one.candidate for one in r.alternatives))
+            for r in self.rungs
+            if r.added is not None and r.alternatives
         )
-
-    @property
-    def look_alikes(self) -> tuple[tuple[Candidate, Candidate], ...]:
-        """Accepted effects, each with one that gives nearly the same force over this travel.
-
-        They are named nonetheless, because one of the two is the commoner by its file
-        (`Effect.commoner`).
-        """
-        if self.prepared.is_of_an_arm:  # the links of an arm include gravity
-            return ()
-        doubted = dict.fromkeys(one.candidate for one in self.undetermined)
-        return tuple((one, other) for one in doubted for other in list_look_alikes(one, self.model))
 
     @property
     def more_is_missing(self) -> bool:
         """Whether the final model leaves more than noise."""
+        if self.joints:
+            return any(one.more_is_missing for one in self.joints.values())
         return not is_adequate(self.after, self.floor) and self.moment is None
 
     @property
@@ -188,21 +229,58 @@ class Diagnosis(ByValue):
         return self.more_is_missing and self.floor.held and is_adequate(self.after, drawn)
 
     @property
-    def floor_of_belief(self) -> NoiseFloor:
-        """The noise floor that the probabilities of effects are computed with."""
-        return self.floor if self.sensor_floor is None else self.sensor_floor
+    def left(self) -> float:
+        """Final error over the noise floor: of the force or at the command, the larger ratio.
+
+        Of an arm: at the joint where it is largest.
+        """
+        if self.joints:
+            return max(one.left for one in self.joints.values())
+        return floors_left(self.after, self.floor)
 
     @property
-    def left(self) -> float:
-        """Final error over the noise floor: of the force or at the command, the larger ratio."""
-        return floors_left(self.after, self.floor)
+    def questions(self) -> tuple[OpenQuestion, ...]:
+        """The open questions; raises ExperimentError: an older answer does not say them."""
+        if self.open is None:
+            raise ExperimentError(f'no key "open": {ANEW}; diagnose anew, or leave --answer out')
+        return self.open
+
+    @property
+    def experiment(self) -> Experiment:
+        """The experiment: as given, or read now from the folder that the answer names.
+
+        raises ExperimentError: there is no such folder, or it holds another experiment now
+        """
+        return self.recording.experiment
+
+    @property
+    def prepared(self) -> Prepared:
+        """The records, prepared for comparison at the bandwidth of this diagnosis."""
+        return self.recording.prepared
+
+    def with_final_model(self, model: Model) -> Diagnosis:
+        """The same diagnosis with another final model, such as one body of several."""
+        return replace(self, rungs=(*self.rungs[:-1], replace(self.after, fitted=model)))
+
+    def parts(self, row: int = -1) -> list[tuple[Prepared, Model]]:
+        """Records and model of each part that is compared alone: all bodies, or each joint.
+
+        row: of the ladder
+        """
+        model = self.rungs[row].model
+        if not self.joints:
+            return [(self.prepared, model)]
+        return [(one.prepared, model_of_body(model, name)) for name, one in self.joints.items()]
+
+    def fit(self, model: Model) -> Fit:
+        """A model of this diagnosis along its records: residuals and their derivatives."""
+        return self.recording.evaluate(model)
+
+    @cached_property
+    def last_fit(self) -> Fit:
+        """The final model along the records."""
+        return self.fit(self.model)
 
     def plot(self) -> Figure:
         """Figure of forces, of the residual over time, velocity and position, and of the ladder."""
         return figure_of(self)
-
-    def _repr_html_(self) -> str:
-        return ladder_html(self.rungs, floor=self.floor.value, note=sentence(self))
-
-    def __repr__(self) -> str:
-        return ladder_text(self)

@@ -1,14 +1,21 @@
-"""A user's model, re-estimated; and the effects that it may lack, ranked."""
+"""A user's model, re-estimated and corrected for errors of the readings; and what it may lack."""
 
 from __future__ import annotations
 
 from ..measurement.experiment import Experiment
-from ..measurement.prepare import prepare
+from ..measurement.prepare import Prepared, prepare
 from ..model import Model
-from .corrected_fit import corrected_fit
-from .ladder_state import search_for
+from .adequacy import is_adequate, limit_noise_floor
+from .clock import with_paying_shift
+from .effort import EFFORTS
+from .evidence import check_squares
+from .fit import Fit, estimate, fit_squares
+from .ladder_state import LadderSearch, search_for
+from .noise_floor import NoiseFloor, noise_floor
 from .rank import rank_candidates
 from .ranking import Ranking
+from .reading_error import with_reading_error
+from .search_plan import PLAN
 from .stated_fit import estimate_stated
 
 
@@ -24,7 +31,10 @@ def fit(model: Model, experiment: Experiment, *, seed: int = 0) -> Model:
     seed: of the random numbers for the noise floor and for the simulated readings
     raises ExperimentError: the experiment lacks what the comparison needs
     """
-    return corrected_fit(search_for(experiment, model, seed=seed)).model
+    search = search_for(experiment, model, seed=seed)
+    fit = with_paying_shift(estimate_stated(search.stated, search.prepared), search.prepared)
+    drawn = noise_floor(fit.model, search.prepared, search.generator())
+    return correct_fit(search, fit, limit_noise_floor(drawn, fit, Ranking(fit, ()))).model
 
 
 def rank(model: Model, experiment: Experiment) -> Ranking:
@@ -35,3 +45,32 @@ def rank(model: Model, experiment: Experiment) -> Ranking:
     """
     prepared = prepare(experiment)
     return rank_candidates(estimate_stated(model, prepared), prepared)
+
+
+def correct_fit(search: LadderSearch, fit: Fit, floor: NoiseFloor) -> Fit:
+    """A fit without its reading error if it leaves only noise; else with wider standard errors.
+
+    The standard errors are widened too where the corrected fit leaves clearly more
+    (`Criteria.of_floor`). Then the simulated readings do not describe the recorded ones.
+    """
+    criteria = search.criteria
+    fit = _with_parts_in_order(fit, search.prepared)
+    most = (1.0 + criteria.of_floor) * check_squares(fit)
+
+    def leaves_noise(other: Fit) -> bool:
+        return is_adequate(other, floor, criteria=criteria) and check_squares(other) <= most
+
+    return with_reading_error(fit, search.prepared, search.generator(), adequate=leaves_noise)
+
+
+def _with_parts_in_order(fit: Fit, prepared: Prepared) -> Fit:
+    """The fit with interchangeable parts of its effects in order, if it leaves no more.
+
+    Beside friction that varies with the speed the parts are not quite the same: one of them varies.
+    """
+    model = fit.model.in_order()
+    if model is fit.model:
+        return fit
+    ordered = estimate(model, prepared, effort=EFFORTS.stay)
+    alike = fit_squares(ordered) <= (1.0 + PLAN.elsewhere) * fit_squares(fit)
+    return ordered if alike else fit

@@ -69,6 +69,16 @@ class Fit(ByValue):
     scale: Array
     by_shift: Array
 
+    @property
+    def check_error_at_command(self) -> float:
+        """The check error as one of the recorded command; NaN: all is blind."""
+        return self.at_command.error
+
+    @property
+    def blind(self) -> float:
+        """Share of the sliding samples in which the command has no influence."""
+        return self.at_command.blind
+
     def __repr__(self) -> str:
         return (
             f"Fit of {len(self.free)} parameters: fit error {100 * self.fit_error:.2f} %, check "

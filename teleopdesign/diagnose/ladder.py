@@ -1,4 +1,8 @@
-"""The ladder of a diagnosis: effects added one at a time, each supported by check records."""
+"""The ladder of a diagnosis, over the parts of an experiment.
+
+A part is what is searched together: the one or two bodies of an experiment, or one joint of an arm.
+The joints of an arm share the parameters of its links.
+"""
 
 from __future__ import annotations
 
@@ -7,23 +11,12 @@ from dataclasses import replace
 
 from ..measurement.experiment import Experiment
 from ..model import Model
-from .adequacy import is_a_tone
-from .commoner import compare_look_alikes
-from .conclusion import conclude, remove_doubtful_rung, with_last_corrected
 from .diagnosis import Diagnosis
-from .exchange import compare_alternatives, exchange
-from .ladder_state import LadderSearch, LadderState, begin, look, restrict_candidates, search_for
-from .led_astray import return_from_astray
-from .moves import add, remove
+from .ladder_state import restrict_candidates
 from .narrower_band import choose_band, narrower_to_search
-from .noise_floor import noise_floor
-from .pairs import add_pair, replace_by_pair
-from .rung import Rung
+from .parts_ladder import begin_parts, climb_parts, conclude_parts
+from .parts_result import diagnosis_of_parts
 from .search_plan import PLAN, SearchPlan
-from .stand_in import stands_in_for_moments, stands_in_for_readings, stands_in_for_values
-from .straight import straighten
-from .together import add_together
-from .transmission import add_transmission
 
 
 def find_missing(
@@ -37,135 +30,36 @@ def find_missing(
 ) -> Diagnosis:
     """Compare a model with an experiment and add the effects that its check records support.
 
-    model: None: the model that the experiment describes
+    model: of an arm with a body for each joint; None: the model that the experiment describes
     Of more than `SearchPlan.long` samples, only `SearchPlan.windows` samples are searched, in
-    windows spread evenly over the records; errors are those of the whole records.
+    windows spread evenly over the records; errors are those of the whole records. Those of an arm
+    are searched whole.
     progress: called with a line of text at each step (a `ProgressLine` while candidates are fitted)
     seed: of the random numbers for the noise floor;  plan: extent of the search, such as `QUICK`
     among: names of the candidate effects; None: all that the model knows
     raises ExperimentError: the experiment lacks what the comparison needs
     raises ModelError: `among` holds an unknown name
     """
+    stated, report = model or Model.from_experiment(experiment), progress or (lambda _: None)
     if among is not None:
-        model = restrict_candidates(among, model or Model.from_experiment(experiment))
-    search = search_for(experiment, model, progress=progress, seed=seed, plan=plan)
-    diagnosis = _diagnose(search)
+        stated = restrict_candidates(among, stated)
+
+    def search(bandwidth: float | None = None) -> Diagnosis:
+        prepared, parts, first = begin_parts(
+            experiment, stated, report, bandwidth=bandwidth, seed=seed, plan=plan
+        )
+        rungs = climb_parts(parts, first, prepared, report)
+        return diagnosis_of_parts(*conclude_parts(prepared, parts, rungs), stated)
+
+    diagnosis = search()
     if (band := narrower_to_search(diagnosis)) is not None:
-        search.progress(f"once more, up to {band.bandwidth:.3g} Hz")
-        narrower = _diagnose(search.at(band.bandwidth))
-        diagnosis = choose_band(diagnosis, narrower)
-    return with_candidates_named(among, diagnosis)
+        report(f"once more, up to {band.bandwidth:.3g} Hz")
+        diagnosis = choose_band(diagnosis, search(band.bandwidth))
+    return diagnosis if among is None else _with_candidates_named(among, diagnosis)
 
 
-def _diagnose(search: LadderSearch) -> Diagnosis:
-    """The diagnosis of one search, from the user's model to the end of its ladder."""
-    state, rungs = climb(search, begin(search), with_last_corrected)
-    return conclude(search, state, rungs)
-
-
-def with_candidates_named(among: Collection[str] | None, diagnosis: Diagnosis) -> Diagnosis:
-    """The diagnosis, with the names of the candidates that its search was restricted to.
-
-    among: names of the effects; None: no restriction
-    """
-    if among is None:
-        return diagnosis
+def _with_candidates_named(among: Collection[str], diagnosis: Diagnosis) -> Diagnosis:
+    """The diagnosis, with the names of the candidates that its search was restricted to."""
     words = f"only these effects were candidates: {', '.join(sorted(among))}"
-    return replace(diagnosis, left_out=(*diagnosis.left_out, words))
-
-
-def climb(
-    search: LadderSearch,
-    state: LadderState,
-    ended: Callable[[LadderSearch, LadderState], tuple[Rung, ...]],
-) -> tuple[LadderState, tuple[Rung, ...]]:
-    """The state where the ladder ends, and its rungs as the answer states them.
-
-    ended: returns the rungs of a state that has no further move, with their final errors. By these
-        errors an effect may be set aside; the ladder then continues without it
-    """
-    while True:
-        while (
-            len(state.set_aside) <= search.plan.searched_on
-            and (moved := make_next_move(search, state)) is not None
-        ):
-            if (back := return_from_astray(search, state, moved)) is not None:
-                search.progress("once more, from values that a candidate led back to")
-                state = look(search, back.rungs, back)
-                continue
-            barred = bar_what_explains_nothing(search, state, moved)
-            if barred is None:
-                state = look(search, moved.rungs, moved)
-                continue
-            stays = len(barred.supported) == len(state.supported)
-            state = barred
-            if stays:  # no candidate was removed: the same move would follow again
-                break
-        rungs = ended(search, state)
-        less = remove_doubtful_rung(search, state, rungs)
-        if less is None:
-            return state, rungs
-        state = look(search, less.rungs, less)
-
-
-def bar_what_explains_nothing(
-    search: LadderSearch, state: LadderState, moved: LadderState
-) -> LadderState | None:
-    """The state before a move, with the move's new effects barred; None: they explain something.
-
-    An effect is barred if it only does what other values of the model do as well, only weakens
-    the errors of the readings, or explains a few moments of one log. A move that replaces rungs is
-    exempt: it may explain as much as they did, more simply.
-    """
-    before, after = ({r.added.key for r in s.rungs if r.added} for s in (state, moved))
-    new = [r for r in moved.rungs if r.added is not None and r.added.key not in state.effects]
-    if not new or not before <= after or moved.fit.check_error >= state.fit.check_error:
-        return None
-    if search.prepared.is_of_an_arm:
-        return None
-    last = replace(new[-1], fit=moved.fit)
-    prepared, criteria = search.prepared, search.criteria
-    drawn = noise_floor(moved.fit.model, prepared, search.generator())
-    barred = stands_in_for_readings(state.fit, state.floors.drawn, last, drawn, criteria=criteria)
-    if barred is None:
-        barred = stands_in_for_values(
-            state.fit, last, prepared, state.floor, criteria=criteria
-        ) or stands_in_for_moments(state.fit, last, prepared, criteria=criteria)
-    if barred is None:
-        return None
-    gone = {r.added.key for r in new if r.added is not None}
-    search.progress(f"set aside: {barred}")
-    state = replace(
-        state,
-        supported=tuple(r for r in state.supported if r.candidate.key not in gone),
-        barred=(*state.barred, barred),
-    )
-    return state.with_floor_limited(criteria) if barred.of_readings else state
-
-
-def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | None:
-    """The state after the next move; None: the ladder ends here.
-
-    First, a supported effect is added. Where there is none, a straight line replaces bends, effects
-    that explained equally well are compared again, and a commoner effect replaces a similar one.
-    Then, where more than a tone is left, these moves follow: a pair, a transmission with friction
-    behind it, an exchange, a pair in place of all rungs, many effects at once.
-    """
-    if state.step > search.plan.most_effects:
-        return straighten(search, state)
-    added = add(search, state)
-    if added is not None:
-        fewer = remove(search, added)
-        # else two effects, each of which makes the other superfluous, would alternate for ever
-        return added if fewer is None or fewer.effects in state.visited else fewer
-    for settle in (straighten, compare_alternatives, compare_look_alikes):
-        if (moved := settle(search, state)) is not None:
-            return moved
-    if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):
-        return None
-    # pairs and exchanges were searched before, with the effects that were set aside
-    if state.set_aside:
-        return None
-    moves = (add_pair, add_transmission, exchange, replace_by_pair, add_together)
-    attempts = (move(search, state) for move in moves)
-    return next((moved for moved in attempts if moved is not None), None)
+    joints = {j: _with_candidates_named(among, one) for j, one in diagnosis.joints.items()}
+    return replace(diagnosis, left_out=(*diagnosis.left_out, words), joints=joints)

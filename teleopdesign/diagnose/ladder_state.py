@@ -17,7 +17,6 @@ from .candidates import Candidate
 from .clock import with_late_hand, with_late_starts, with_paying_shift
 from .criteria import CRITERIA, Criteria
 from .decision import is_supported, worth_pursuing
-from .diagnosis import SetAside
 from .fit import Fit
 from .noise_floor import NoiseFloor, noise_floor
 from .outside_tone import Tone, best_tone
@@ -26,6 +25,7 @@ from .ranking import Ranked, Ranking
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan, cut_to_windows
 from .stated_fit import estimate_stated
+from .statements import SetAside
 
 
 @dataclass(frozen=True)
@@ -50,11 +50,6 @@ class LadderSearch:
     def generator(self) -> np.random.Generator:
         """A new random generator that starts at the seed."""
         return np.random.default_rng(self.seed)
-
-    def at(self, bandwidth: float) -> LadderSearch:
-        """The same search at another bandwidth of the comparison (Hz)."""
-        whole = prepare(self.experiment, bandwidth=bandwidth)
-        return replace(self, whole=whole, prepared=cut_to_windows(whole, self.plan))
 
     def rank(
         self,
@@ -167,7 +162,7 @@ class LadderState:
 
 
 def search_for(
-    experiment: Experiment,
+    experiment: Experiment | Prepared,
     model: Model | None = None,
     *,
     progress: Callable[[str], None] | None = None,
@@ -176,9 +171,11 @@ def search_for(
 ) -> LadderSearch:
     """A search for the effects that a model lacks; without candidates where records tell nothing.
 
+    experiment: or its records, prepared at the bandwidth of the comparison
     model: None: the model that the experiment describes
     """
-    whole = prepare(experiment)
+    whole = experiment if isinstance(experiment, Prepared) else prepare(experiment)
+    experiment = whole.experiment
     stated = model or Model.from_experiment(experiment)
     if why_silent(whole, stated):
         stated = restrict_candidates((), stated)

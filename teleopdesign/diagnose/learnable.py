@@ -12,15 +12,16 @@ commanded force is no input: otherwise it would be predicted from itself.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from ..base.codec import At, InUnit, Size
 from ..base.units import unit_of
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
@@ -56,10 +57,10 @@ class Learnable:
     where: where most of the learned force lies, in words; "": everywhere, or nothing is learned
     """
 
-    left: float
-    error: float
-    alone: float
-    where: str = ""
+    error: Annotated[Size, At("learnable")]
+    left: Annotated[Size, At("black_box.left")]
+    alone: Annotated[Size, At("black_box.alone")]
+    where: Annotated[str, At("black_box.where")] = ""
 
     @property
     def part(self) -> float:
@@ -81,15 +82,16 @@ class Learnable:
 class NearReversals:
     """Check error on the rows within `NEAR` of a reversal, relative to the force there.
 
-    share: part of these rows among all rows that count
+    share: part of these rows among all rows that count;  within: s
     """
 
-    error: float
-    share: float
+    error: Annotated[Size, At("check_error")]
+    share: Size
+    within: Annotated[float, InUnit("s")] = NEAR
 
     def __str__(self) -> str:
         return (
-            f"within {NEAR:g} s of a reversal: {100 * self.error:.3g} % of the force there "
+            f"within {self.within:g} s of a reversal: {100 * self.error:.3g} % of the force there "
             f"({100 * self.share:.2g} % of the rows)"
         )
 
@@ -162,37 +164,6 @@ def _measure_learnable(
         alone=error_of(held_out, alone),
         where=_where(model, held_out, gain),
     )
-
-
-def learnable_data(learned: Learnable | None, near: NearReversals | None) -> dict[str, Any]:
-    """The entries `learnable`, `black_box` and `near_reversals` of an answer."""
-    return {
-        "learnable": None if learned is None else learned.error,
-        "black_box": None
-        if learned is None
-        else {"left": learned.left, "alone": learned.alone, "where": learned.where},
-        "near_reversals": None
-        if near is None
-        else {
-            "check_error": near.error,
-            "share": near.share,
-            "within": {"value": NEAR, "unit": "s"},
-        },
-    }
-
-
-def learnable_from(content: Mapping[str, Any]) -> Learnable | None:
-    """The black box of an answer that `learnable_data` wrote; None: there is none."""
-    error, box = content.get("learnable"), content.get("black_box")
-    if error is None or box is None:
-        return None
-    return Learnable(float(box["left"]), float(error), float(box["alone"]), str(box["where"]))
-
-
-def read_near_reversals(content: Mapping[str, Any]) -> NearReversals | None:
-    """The error near reversals of an answer that `learnable_data` wrote; None: there is none."""
-    near = content.get("near_reversals")
-    return None if near is None else NearReversals(float(near["check_error"]), float(near["share"]))
 
 
 def _turns(

@@ -12,9 +12,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg.lapack import dgeqrf
 from scipy.optimize import lsq_linear
 
 from ..measurement.filtering import Array
+
+#: smallest damping of a step, of the size of the columns: proportional columns share their step
+LEAST_DAMPING = 1e-12
+#: a column of this size has no square
+_ROOT_OF_LARGEST = math.sqrt(np.finfo(float).max)
 
 
 @dataclass(frozen=True)
@@ -94,16 +100,35 @@ def column_sizes(columns: Array) -> Array:
         return np.asarray(np.linalg.norm(columns, axis=0))
 
 
-def scaled_normal_equations(columns: Array, residual: Array) -> tuple[Array, Array, Array]:
-    """Sizes (p,) of columns (n, p), and normal equations by columns of size 1: (p, p) and (p,).
+def reduce_to_triangle(columns: Array, residual: Array) -> tuple[Array, Array, Array]:
+    """Sizes (p,) of columns (n, p), and the least-squares problem reduced to p rows.
 
-    sizes: Euclidean norms, 1 for a column of zeros; inf or NaN where squares are no numbers
+    With columns of size 1, |columns x + residual| = |triangle x + target| but for a constant. The
+    triangle comes from an orthogonal factorisation: it has the condition of the columns, their
+    products would have its square.
+
+    sizes: Euclidean norms, 1 for a column of zeros; inf where squares are no numbers
+    returns: sizes, triangle (p, p), target (p,)
     """
-    with np.errstate(over="ignore", invalid="ignore"):
-        normal, gradient = columns.T @ columns, columns.T @ residual
-        size = np.sqrt(np.diagonal(normal))
-        size = np.where(size == 0.0, 1.0, size)
-        return size, normal / np.outer(size, size), gradient / size
+    p = columns.shape[1]
+    beside = np.zeros((max(len(residual), p + 1), p + 1), order="F")
+    peak = np.max(np.abs(columns), axis=0, initial=0.0)
+    peak[peak == 0.0] = 1.0
+    if not (peak < _ROOT_OF_LARGEST).all() or not np.isfinite(residual).all():
+        return np.full(p, np.inf), np.zeros((p, p)), np.zeros(p)
+    beside[: len(residual), :p] = columns / peak
+    beside[: len(residual), p] = residual
+    factor = dgeqrf(beside, overwrite_a=True)[0][:p]
+    triangle = np.triu(factor[:, :p])
+    size = column_sizes(triangle)
+    size[size == 0.0] = 1.0
+    return size * peak, triangle / size, factor[:, p]
+
+
+def add_damping(triangle: Array, target: Array, damping: float) -> tuple[Array, Array]:
+    """Rows (2 p, p) and right-hand side (2 p,) of |triangle x + target|^2 + damping |x|^2."""
+    p = len(target)
+    return np.vstack([triangle, np.sqrt(damping) * np.eye(p)]), np.append(-target, np.zeros(p))
 
 
 def gauss_newton_step(
@@ -113,17 +138,15 @@ def gauss_newton_step(
 
     below, above: bounds of the step (p,);  returns: (p,), NaN where the Jacobian is not finite
     """
-    size, normal, gradient = scaled_normal_equations(jacobian, residual)
+    size, triangle, target = reduce_to_triangle(jacobian, residual)
     if not np.isfinite(size).all():
         return np.full(len(size), np.nan)
-    normal += damping * np.eye(len(size))
-    root = np.linalg.cholesky(normal + 1e-12 * np.eye(len(size)))
-    target = -np.linalg.solve(root, gradient)
-    step = np.linalg.solve(root.T, target)
+    rows, right = add_damping(triangle, target, damping + LEAST_DAMPING)
+    step = np.linalg.lstsq(rows, right, rcond=None)[0]
     if np.any(step < below * size) or np.any(step > above * size):
         low, high = below * size, above * size
         high = np.where(high - low > 0, high, low + 1e-300)  # a range may have shrunk to nothing
-        step = lsq_linear(root.T, target, (low, high), method="bvls").x
+        step = lsq_linear(rows, right, (low, high), method="bvls").x
     return np.asarray(step / size)
 
 

@@ -16,9 +16,10 @@ from ..base.errors import ExperimentError
 from ..measurement.bandwidth import LOWEST
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
+from .adequacy import Errors
 from .criteria import CRITERIA, Criteria
 from .diagnosis import Diagnosis
-from .fit import Fit, estimate
+from .fit import estimate
 
 
 @dataclass(frozen=True)
@@ -74,9 +75,10 @@ def narrower_to_search(
 ) -> NarrowerBand | None:
     """The band for a second search, where the first search leaves more than noise.
 
-    returns: None where only noise is left, or the user's model leaves no less in a narrower band
+    returns: None where only noise is left, or the user's model leaves no less in a narrower band;
+        and for an arm, where a band is one for all joints
     """
-    if not diagnosis.more_is_missing:
+    if diagnosis.joints or not diagnosis.more_is_missing:
         return None
     return narrower_band(diagnosis.before.model, diagnosis.prepared, criteria=criteria)
 
@@ -90,14 +92,14 @@ def choose_band(wide: Diagnosis, narrow: Diagnosis, *, criteria: Criteria = CRIT
     if not criteria.falls * _error(narrow.after) < _error(wide.after):
         return wide
     words = (
-        f"all that is faster than {narrow.prepared.bandwidth:.3g} Hz: the final model of the "
-        f"search up to {wide.prepared.bandwidth:.3g} Hz leaves {100 * _error(wide.after):.2g} % of "
+        f"all that is faster than {narrow.bandwidth:.3g} Hz: the final model of the "
+        f"search up to {wide.bandwidth:.3g} Hz leaves {100 * _error(wide.after):.2g} % of "
         "the force. Either the position sensor is filtered or coarser than stated, or an effect at "
         "high frequencies is missing"
     )
     return replace(narrow, left_out=(*narrow.left_out, words))
 
 
-def _error(fit: Fit) -> float:
+def _error(errors: Errors) -> float:
     """Error on the check records; on the fit records where there is no check error."""
-    return fit.fit_error if math.isnan(fit.check_error) else fit.check_error
+    return errors.fit_error if math.isnan(errors.check_error) else errors.check_error

@@ -13,9 +13,11 @@ Readings are simulated: the smoothed motion is read by an encoder of the stated 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
+from ..base.codec import At, Size
 from ..base.frozen import ByValue
 from ..check.sample_clock import jitter_of
 from ..measurement.filtering import Array
@@ -45,12 +47,12 @@ class NoiseFloor(ByValue):
     jitters: whether the readings show that their moments jitter
     """
 
-    value: float
-    source: str
-    drawn: float
-    held: bool = False
-    at_command: float = 1.0
-    jitters: bool = False
+    value: Annotated[Size, At("noise_floor")]
+    source: Annotated[str, At("noise_floor_source")]
+    drawn: Annotated[Size, At("floor.drawn")]
+    held: Annotated[bool, At("floor.held")] = False
+    at_command: Annotated[Size, At("floor.at_command")] = 1.0
+    jitters: Annotated[bool, At("floor.jitters")] = False
 
     @property
     def value_at_command(self) -> float:

@@ -8,9 +8,11 @@ from it, and the records do not show that the model lacks one.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
+from ..base.codec import At, InUnit, Size
 from ..measurement.prepare import Prepared
 from .fit import Fit, block_numbers
 from .noise_floor import NoiseFloor
@@ -28,11 +30,11 @@ class Moment:
     without: check error at the command without this moment, over the noise floor
     """
 
-    file: str
-    body: str
-    begin: float
-    end: float
-    without: float
+    file: Annotated[str, At("record")]
+    body: Annotated[str, At("at")]
+    begin: Annotated[float, InUnit("s")]
+    end: Annotated[float, InUnit("s")]
+    without: Annotated[Size, At("left_over_noise_floors_without")]
 
     def __str__(self) -> str:
         return f"{self.body} in {self.file}, {self.begin:.2f} to {self.end:.2f} s"

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from .adequacy import is_adequate
 from .candidates import Candidate
-from .decision import explained_share, is_better, is_supported
+from .decision import is_better, is_supported
 from .evidence import check_score, check_squares
 from .fit import Fit, fit_squares
 from .ladder_state import LadderSearch, LadderState
@@ -21,6 +21,7 @@ from .outside_tone import best_tone
 from .ranking import Ranking
 from .rung import Rung, make_replaced
 from .rungs import estimate_without, order_by_falling_error
+from .verdict import explained_share
 
 
 def add_pair(search: LadderSearch, state: LadderState) -> LadderState | None:

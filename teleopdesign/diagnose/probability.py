@@ -21,17 +21,12 @@ import numpy as np
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
-from .decision import (
-    explained_share,
-    helps_but_is_barred,
-    list_displaced_parameters,
-    open_to_others,
-    removed_share,
-)
-from .diagnosis import Diagnosis
+from .decision import helps_but_is_barred, list_displaced_parameters
 from .evidence import chance
+from .ladder_end import LadderEnd
 from .ranking import Ranked, Ranking
 from .rung import Rung
+from .verdict import explained_share, open_to_others, removed_share
 
 
 @dataclass(frozen=True)
@@ -78,11 +73,11 @@ class CandidateEvidence:
         return float(np.clip(criteria.true_of_accepted * real * trusted, 0.0, self.at_most))
 
 
-def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
+def evidence_of(end: LadderEnd) -> list[CandidateEvidence]:
     """The evidence for every candidate at every step."""
-    evidence = _evidence_alone(diagnosis)
+    evidence = _evidence_alone(end)
     accepted = {one.ranked.candidate.key: one.probability() for one in evidence if one.accepted}
-    most = _limit_by_requirements(diagnosis, accepted)
+    most = _limit_by_requirements(end, accepted)
     return [
         replace(one, at_most=most.get(one.ranked.candidate.key, 1.0)) if one.accepted else one
         for one in evidence
@@ -90,32 +85,32 @@ def evidence_of(diagnosis: Diagnosis) -> list[CandidateEvidence]:
 
 
 def _limit_by_requirements(
-    diagnosis: Diagnosis, accepted: Mapping[tuple[str, str], float]
+    end: LadderEnd, accepted: Mapping[tuple[str, str], float]
 ) -> dict[tuple[str, str], float]:
     """Largest probability of each accepted effect (name, place), by the effects it requires."""
     most: dict[tuple[str, str], float] = {}
     for level in sorted(set(accepted.values()), reverse=True):
         likely = {key for key, probability in accepted.items() if probability >= level}
-        for candidate in select_independent(diagnosis, likely):
+        for candidate in select_independent(end, likely):
             most.setdefault(candidate.key, level)
     return most
 
 
-def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
+def _evidence_alone(end: LadderEnd) -> list[CandidateEvidence]:
     """The evidence for every candidate at every step, regardless of the effects it requires."""
     steps: list[tuple[Rung | None, Ranking]] = [
-        (r, r.ranking) for r in diagnosis.rungs if r.ranking is not None
+        (r, r.ranking) for r in end.rungs if r.ranking is not None
     ]
-    steps.append((None, diagnosis.last))
-    last, floor = diagnosis.after, diagnosis.floor_of_belief
-    open_part = open_to_others(diagnosis.learnable, last, diagnosis.repeats)
+    steps.append((None, end.last))
+    last, floor = end.after, end.sensor_floor
+    open_part = open_to_others(end.learnable, last, end.repeats)
     evidence = []
     for rung, ranking in steps:
         share = shares(ranking, rung)
         for ranked in ranking.ranked:
             key = ranked.candidate.key
             accepted = rung is not None and rung.added is not None and rung.added.key == key
-            barred = diagnosis.reason_set_aside(key)
+            barred = end.reason_set_aside(key)
             before, after = ranking.base.check_error, ranked.fit.check_error
             if not accepted and not barred:
                 barred = helps_but_is_barred(ranking.base, ranked, floor)
@@ -137,25 +132,23 @@ def _evidence_alone(diagnosis: Diagnosis) -> list[CandidateEvidence]:
     return evidence
 
 
-def probable(diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA) -> tuple[Candidate, ...]:
+def probable(end: LadderEnd, *, criteria: Criteria = CRITERIA) -> tuple[Candidate, ...]:
     """The accepted effects that are at least as likely as not, in the order added."""
     likely = {
         one.ranked.candidate.key
-        for one in evidence_of(diagnosis)
+        for one in evidence_of(end)
         if one.accepted and one.probability(criteria=criteria) >= criteria.named
     }
-    return select_independent(diagnosis, likely)
+    return select_independent(end, likely)
 
 
-def select_independent(
-    diagnosis: Diagnosis, named: Collection[tuple[str, str]]
-) -> tuple[Candidate, ...]:
+def select_independent(end: LadderEnd, named: Collection[tuple[str, str]]) -> tuple[Candidate, ...]:
     """Accepted effects with these keys, in order, without those that require an effect not named.
 
     named: (name, place)
     """
-    model, there = diagnosis.before.model, []
-    for rung in diagnosis.rungs:
+    model, there = end.before.model, []
+    for rung in end.rungs:
         new = rung.added
         if new is None or new.key not in named or model.body(new.at).lacks(new.effect):
             continue

@@ -16,7 +16,7 @@ from ..measurement.prepare import Prepared
 from ..model import Model
 from .bodies_apart import Apart, separate_bodies
 from .fit import Fit, free_parameters
-from .least_squares import scaled_normal_equations, sum_of_squares
+from .least_squares import add_damping, reduce_to_triangle, sum_of_squares
 
 
 class Promises:
@@ -60,9 +60,11 @@ class Promises:
 
 
 def _remaining_squares(columns: Array, residual: Array) -> float:
-    """Squares of the residual that no combination of these columns removes, by normal equations."""
-    size, normal, gradient = scaled_normal_equations(columns, residual)
+    """Squares of the residual that no combination of these columns removes."""
+    size, triangle, target = reduce_to_triangle(columns, residual)
     if not np.isfinite(size).all():
         return math.inf
-    normal += 1e-9 * np.eye(len(size))
-    return sum_of_squares(residual) - float(gradient @ np.linalg.solve(normal, gradient))
+    rows, right = add_damping(triangle, target, 1e-9)
+    step = np.linalg.lstsq(rows, right, rcond=None)[0]
+    # least squares: the step is at right angles to what it leaves
+    return sum_of_squares(residual) - float(right @ (rows @ step))

@@ -17,9 +17,14 @@ REFUSALS = {
 }
 
 
-def named_instead(candidate: Candidate, instead_of: Candidate | None) -> str:
-    """A candidate in words, with the effect that it replaces, if any."""
-    return str(candidate) + ("" if instead_of is None else f" instead of {instead_of.effect.name}")
+def name_of(candidate: Candidate | None) -> str | None:
+    """The name of a candidate's effect; None: there is no candidate."""
+    return None if candidate is None else candidate.effect.name
+
+
+def named_instead(candidate: Candidate, instead_of: str | None) -> str:
+    """A candidate in words, with the name of the effect that it replaces, if any."""
+    return str(candidate) + ("" if instead_of is None else f" instead of {instead_of}")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -52,7 +57,7 @@ class Ranked(ByValue):
     @property
     def title(self) -> str:
         """The candidate, with the effect that it replaces: "... at device instead of viscous"."""
-        return named_instead(self.candidate, self.instead_of)
+        return named_instead(self.candidate, name_of(self.instead_of))
 
     @property
     def note(self) -> str:

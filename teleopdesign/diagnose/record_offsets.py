@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.units import unit_of
 from ..blocks import Body
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
@@ -153,6 +154,41 @@ def offset_groups(
         if _steps(body, motions, names):
             offsets.append((group, find_offsets(body, motions, names, residual)))
     return offsets
+
+
+@dataclass(frozen=True)
+class Offset:
+    """An offset of one record, as an answer states it.
+
+    of: "position_zero", "bias" or "friction_level"
+    """
+
+    record: str
+    at: str
+    of: str
+    value: float
+    unit: str
+
+    def __str__(self) -> str:
+        what = self.of.replace("_", " ")
+        return f"offset of {self.record} alone: {what} {self.value:.4g} {self.unit}"
+
+
+def offsets_of(model: Model, stretches: Sequence[Stretch]) -> tuple[Offset, ...]:
+    """The offsets of single records, with this model."""
+    rows = []
+    for group, offsets in offset_groups(model, stretches):
+        motion = stretches[group[0]].motion
+        units = {
+            "position_zero": unit_of("position", offsets.body.axis),
+            "bias": unit_of("force", offsets.body.axis),
+            "friction_level": "of the model's",
+        }
+        rows += [
+            Offset(motion.file, motion.body, name, float(value), units[name])
+            for name, value in offsets.values.items()
+        ]
+    return tuple(rows)
 
 
 def as_logged(model: Model, motion: Motion) -> Motion:

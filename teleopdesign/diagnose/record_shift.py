@@ -28,14 +28,15 @@ sensor. This is estimated only where `clock.py` says that it explains the residu
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.files import make_plain
+from ..base.codec import At, Error, Number, Size
+from ..base.frozen import ByValue
 from ..base.sentences import with_standard_error
 from ..blocks import Value
 from ..measurement.filtering import Array
@@ -177,8 +178,8 @@ def name_of_hand(body: str) -> str:
     return f"{body}.interaction_force"
 
 
-@dataclass(frozen=True)
-class RecordShift:
+@dataclass(frozen=True, eq=False)
+class RecordShift(ByValue):
     """Delay of the log of a body's force, as estimated by a fitted model.
 
     at: the body, or `name_of_hand` of it
@@ -190,13 +191,30 @@ class RecordShift:
     """
 
     at: str
-    late: float
-    stderr: float
-    row: float
+    late: Annotated[Number, At("value")]
+    stderr: Error
+    row: Size
     may_delay: bool
-    latest: float
+    latest: Size
     measured: bool
     held: bool = False
+
+    ALSO_WRITTEN: ClassVar[Mapping[str, str]] = {
+        "unit": "unit",
+        "rows": "rows",
+        "at_bound": "at_bound",
+        "like_a_delay": "is_like_a_delay",
+    }
+
+    @property
+    def unit(self) -> str:
+        """Unit of the delay."""
+        return "s"
+
+    @property
+    def rows(self) -> float:
+        """The delay in rows of the record."""
+        return self.late / self.row
 
     @property
     def at_bound(self) -> bool:
@@ -213,7 +231,7 @@ class RecordShift:
         return self.may_delay or early
 
     def __str__(self) -> str:
-        rows, error = self.late / self.row, self.stderr / self.row
+        rows, error = self.rows, self.stderr / self.row
         word = "late" if rows >= 0 else "early"
         size = with_standard_error(abs(rows), error) if error > 0.0 else f"{abs(rows):.2f}"
         body, _, hand = self.at.partition(".")
@@ -256,18 +274,3 @@ def shifts_of(model: Model, stretches: Sequence[Stretch]) -> tuple[RecordShift, 
         )
         if log in late and not (late[log].fixed and late[log].value == 0.0)
     )
-
-
-def shift_data(model: Model, stretches: Sequence[Stretch]) -> dict[str, Any]:
-    """The shifts as an answer writes them, by log: in seconds, and in rows of the record."""
-    return {
-        shift.at: {
-            "value": make_plain(shift.late),
-            "stderr": make_plain(shift.stderr),
-            "unit": "s",
-            "rows": make_plain(shift.late / shift.row),
-            "at_bound": shift.at_bound,
-            "like_a_delay": shift.is_like_a_delay,
-        }
-        for shift in shifts_of(model, stretches)
-    }

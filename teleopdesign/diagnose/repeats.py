@@ -17,12 +17,12 @@ themselves: their squares, and how long they stay alike.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
-from typing import Any
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.codec import Size
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared, Stretch, measured_force
@@ -43,11 +43,11 @@ class Repeatability:
     chance: relative force error that seems to repeat by chance, if all of `left` is noise
     """
 
-    error: float
-    left: float
-    share: float
-    squares: float = 1.0
-    chance: float = 0.0
+    error: Size
+    left: Size
+    share: Size
+    squares: Size = 1.0
+    chance: Size = 0.0
 
     @property
     def repeating(self) -> float:
@@ -142,21 +142,6 @@ def _alike_by_chance(noise: Array) -> float:
     rows = len(noise)
     lags = correlate(noise, noise)[rows - 1 : rows + rows // 4]
     return float((2.0 * lags @ lags - lags[0] ** 2) / rows)
-
-
-def repeats_data(repeats: Repeatability | None) -> dict[str, Any] | None:
-    """The entry `repeats` of an answer."""
-    if repeats is None:
-        return None
-    return asdict(repeats)
-
-
-def read_repeats(content: Mapping[str, Any]) -> Repeatability | None:
-    """The repeatability of an answer that `repeats_data` wrote; None: there is none."""
-    entry = content.get("repeats")
-    if entry is None:
-        return None
-    return Repeatability(**{f.name: float(entry[f.name]) for f in fields(Repeatability)})
 
 
 def _list_courses(

@@ -9,7 +9,7 @@ from ..blocks import Value
 from ..model import Model
 from .candidates import Candidate
 from .fit import Fit
-from .ranking import Ranked, Ranking, named_instead
+from .ranking import Ranked, Ranking, name_of, named_instead
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,11 @@ class Rung(ByValue):
     could_be: tuple[Candidate, ...] | None = None
 
     @property
+    def errors(self) -> Fit:
+        """The errors of the model; see `adequacy.Errors`."""
+        return self.fit
+
+    @property
     def instead_of(self) -> Candidate | None:
         """The effect of the user's model that the added effect replaced."""
         return None if self.replaced is None else self.replaced.effect
@@ -70,21 +75,26 @@ class Rung(ByValue):
     @property
     def title(self) -> str:
         """The added effect in words, with the effect that it replaced."""
-        return "" if self.added is None else named_instead(self.added, self.instead_of)
+        return "" if self.added is None else named_instead(self.added, name_of(self.instead_of))
 
     def undo_addition(self, model: Model) -> Model:
-        """A model without the effect that this rung added, and with the effect that it replaced.
-
-        raises ModelError: another effect of the model needs the added effect
-        """
+        """A model without the effect that this rung added; see `undo_addition`."""
         assert self.added is not None
-        name, at = self.added.key
-        # the replaced effect returns first: an effect that needs one of the two always has one
-        whole = model if self.replaced is None else self.replaced.back_in(model)
-        if whole.body(at).has(name) or not model.body(at).has(name):
-            return whole.without_effect(name, at=at)
-        # a body has one effect of a kind: the effect that returned took the place of the added one
-        return whole
+        return undo_addition(model, self.added, self.replaced)
 
     def __repr__(self) -> str:
         return f"Rung {self.title or 'of the model'}: {self.fit!r}"
+
+
+def undo_addition(model: Model, added: Candidate, replaced: Replaced | None) -> Model:
+    """A model without an effect that was added, and with the effect that it replaced.
+
+    raises ModelError: another effect of the model needs the added effect
+    """
+    name, at = added.key
+    # the replaced effect returns first: an effect that needs one of the two always has one
+    whole = model if replaced is None else replaced.back_in(model)
+    if whole.body(at).has(name) or not model.body(at).has(name):
+        return whole.without_effect(name, at=at)
+    # a body has one effect of a kind: the effect that returned took the place of the added one
+    return whole

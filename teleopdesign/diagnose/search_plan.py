@@ -33,6 +33,12 @@ class SearchPlan:
     #: an effect that explains nothing alone. Not at a joint of an arm: there the errors of others
     #: are in what is left, and on a real arm it took 183 in place of 154 s and changed no answer
     partial_pairs: bool = True
+    #: whether the errors of the readings are taken out of the last fit. Not at a joint of an arm:
+    #: its readings are drawn with those of all joints
+    corrected: bool = True
+    #: whether an effect is barred that stands in for other values of the model, for the noise of
+    #: readings or for a few moments. Not at a joint of an arm: its effects are tested on all joints
+    stand_ins: bool = True
     #: most effects that are added at once where no other move leads on; 0: none, as at a joint of
     #: an arm. Eight: friction of the speed, of the direction, and forces of the place, one of each
     together: int = 8
@@ -151,6 +157,8 @@ class SearchPlan:
             plan,
             trials=min(self.trials, most),
             partial_pairs=False,
+            corrected=False,
+            stand_ins=False,
             tip_starts=0,
             draws=0,
             together=0,

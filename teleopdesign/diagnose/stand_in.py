@@ -23,11 +23,11 @@ import numpy as np
 from ..measurement.prepare import Prepared
 from .criteria import CRITERIA, Criteria
 from .decision import is_better
-from .diagnosis import SetAside
 from .fit import Fit, estimate
 from .noise_floor import NoiseFloor, say_floors
 from .one_moment import MOMENTS
 from .rung import Rung
+from .statements import SetAside
 
 
 def estimable_on_all(prepared: Prepared) -> Prepared | None:
@@ -36,7 +36,7 @@ def estimable_on_all(prepared: Prepared) -> Prepared | None:
     None for an arm's joints too: their shared link parameters belong to the fit records.
     """
     fit, check = prepared.of("fit"), prepared.of("check")
-    if not check or prepared.is_of_an_arm:
+    if not check or prepared.is_linked:
         return None
     both = tuple(replace(s, use="fit") for s in (*fit, *check))
     return Prepared(prepared.experiment, prepared.bandwidth, (*both, *check))

@@ -18,7 +18,7 @@ from ..base.errors import ModelError
 from ..effects import period
 from .adequacy import is_adequate
 from .candidates import Candidate
-from .decision import explained_share, is_better
+from .decision import is_better
 from .effort import EFFORTS
 from .evidence import check_squares
 from .fit import Fit, estimate
@@ -30,6 +30,7 @@ from .ranking import Ranked, Ranking
 from .rung import Rung
 from .rungs import estimate_without, reorder_and_refit
 from .search_plan import PLAN
+from .verdict import explained_share
 
 
 def add_together(search: LadderSearch, state: LadderState) -> LadderState | None:

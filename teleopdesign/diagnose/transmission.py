@@ -18,7 +18,7 @@ from ..base.errors import ModelError
 from .adequacy import is_adequate
 from .candidates import Candidate, comes_too_early
 from .cores import map_on_cores
-from .decision import explained_share, is_better, is_supported, objection
+from .decision import is_better, is_supported, objection
 from .evidence import check_squares
 from .fit import Fit, estimate
 from .ladder_state import LadderSearch, LadderState
@@ -29,6 +29,7 @@ from .rung import Rung
 from .rungs import estimate_without, order_by_falling_error, reorder_and_refit
 from .search import base_of, estimate_best_start
 from .tip_start import tip_starts
+from .verdict import explained_share
 from .width import OpenWidths
 
 

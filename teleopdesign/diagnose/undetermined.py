@@ -13,13 +13,13 @@ from ..base.errors import ModelError
 from ..measurement.prepare import Prepared
 from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA, Criteria
-from .diagnosis import Undetermined
 from .evidence import whole_score
 from .fit import Fit, estimate
 from .open_parameters import OPEN
 from .plausibility import undetermined_of
 from .products import product_of
 from .rung import Rung
+from .statements import Undetermined
 
 #: a product of open parameters is known far better than each of them, if its relative error is
 #: below this part of the least relative error of the parameters
@@ -51,7 +51,7 @@ def alike_on_records(
     For example gravity, and a spring with its rest position (`spring` and `bias`): over much of a
     turn the two differ, but where more than noise is left the records may not show the difference.
     """
-    if prepared.is_of_an_arm:  # the links of an arm include gravity
+    if prepared.is_linked:  # the links of an arm include gravity
         return ""
     body = fit.model.body(candidate.at)
     for other in (c.effect for c in list_look_alikes(candidate, fit.model)):

@@ -48,7 +48,7 @@ def admittance_device(
     ]
     on_device = {"F_u": 1}
     if hand is not None:
-        blocks.append(Attached("Z_H", hand, "X", "F_H"))
+        blocks.append(Attached("Z_H", hand, "X", "F_H", role="hand"))
         on_device["F_H"] = 1
     texts = {n: t for n, t in _TEXTS.items() if n != "F_H" or hand is not None}
     return Diagram(

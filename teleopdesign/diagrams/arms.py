@@ -21,7 +21,7 @@ from ..base.errors import ModelError
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller, controller
 from .junctions import Junction, Kinematics, Weight, as_expression, position_symbol
-from .parts import Block, Control, Linked, Moving
+from .parts import Block, Control, Linked, Moving, PortRole
 from .wiring import Diagram
 
 
@@ -120,8 +120,8 @@ def teleoperator_of_arms(
         junctions.append(Junction(f"F_P{k + 1}", terms))
     arm_sides = [
         # the coupling pulls the slave's tip to the master's, and the master's back to it
-        _side("m", master, "F_u", -1, hand, "H"),
-        _side("s", slave, "F_d", 1, environment, "E"),
+        _side("m", master, "F_u", -1, hand, "hand"),
+        _side("s", slave, "F_d", 1, environment, "environment"),
     ]
     return Diagram(
         "teleoperator of arms",
@@ -144,7 +144,7 @@ class _Side:
 
 
 def _side(
-    side: str, arm: Arm, outside: str, sign: int, held: MatrixImpedance | None, name: str
+    side: str, arm: Arm, outside: str, sign: int, held: MatrixImpedance | None, role: PortRole
 ) -> _Side:
     """All parts of one side; outside: forces at its tip;  held: impedance that the tip touches."""
     numbers = range(1, len(arm.joints) + 1)
@@ -155,13 +155,15 @@ def _side(
     where = [sp.sympify(x, strict=True).xreplace(named) for x in arm.coordinates]
     blocks: list[Block] = []
     at_tip: dict[int, dict[str, Weight]] = {k: {f"{outside}{k}": 1} for k in places}
-    for block, z, force in (
-        (f"Z_{name}", held, f"F_{name}"),
-        (f"Z_L{side}", arm.load, f"F_L{side}"),
-    ):
+    name = "H" if role == "hand" else "E"
+    touching: tuple[tuple[str, MatrixImpedance | None, PortRole], ...] = (
+        (name, held, role),
+        (f"L{side}", arm.load, "part"),
+    )
+    for letters, z, of in touching:
         if z is not None:
-            forces = tuple(f"{force}{k}" for k in places)
-            blocks.append(Linked(block, z, tips, forces))
+            forces = tuple(f"F_{letters}{k}" for k in places)
+            blocks.append(Linked(f"Z_{letters}", z, tips, forces, role=of))
             for k in places:
                 at_tip[k][forces[k - 1]] = 1
     junctions = [Junction(f"F_{side}{k}", at_tip[k]) for k in places]

@@ -17,6 +17,7 @@ from ..effects import EFFECTS
 from .common_modes import with_common_modes
 from .junctions import Junction
 from .parts import Control, Entry, Moving
+from .plant_states import states_of_plant
 
 if TYPE_CHECKING:
     import control
@@ -133,12 +134,12 @@ def plant_parts(
     """A plant of python-control, from force (N) to position (m), as a body and the rest beside it.
 
     1/P(s) = m s^2 + b s + k + R(s): the body has inertia m and damping b; k + R, proper, is an
-    analog block "name_rest" beside the command, and their sum is "name_command". The numbers are
-    exact, and the states are those of P. For a measured response (`control.frd`), m is the mass at
-    its highest frequencies, and the rest is the measured response less m s^2: responses and margins
-    within its frequencies, but no proof. A nonlinear system (`control.nlsys`) is code, and no body:
-    its motion is a signal that simulations compute and sensors read. No hand can hold it, and no
-    law can use its velocity.
+    analog block "name_rest" beside the command, and their sum is "name_command". The states are
+    those of P, also where no force reaches one or no position shows it. For a measured response
+    (`control.frd`), m is the mass at its highest frequencies, and the rest is the measured response
+    less m s^2: responses and margins within its frequencies, but no proof. A nonlinear system
+    (`control.nlsys`) is code, and no body: its motion is a signal that simulations compute and
+    sensors read. No hand can hold it, and no law can use its velocity.
 
     driver: outside force on the body, as in `Moving`;  loads: other forces on it, signal -> sign
     raises ModelError: discrete time, several axes, not two more poles than zeros, m <= 0 or b < 0
@@ -170,12 +171,17 @@ def plant_parts(
             f"{name}: 1/P = m s^2 + b s + .. has m = {inertia:g} kg, b = {damping:g} N s/m: a body "
             "has inertia > 0 and damping >= 0"
         )
+    signals = motion, command, driver
+    if (whole := states_of_plant(system, name)) is not None:
+        states = from_control(control.ss(*whole.rest, whole.stiffness), name="rest")
+        damping = float(whole.damping[0, 0])
+        return _with_rest(name, inertia, damping or None, states, signals, forces)
     proper = rest + above.mul_ground(quotient.coeff_monomial(1))
     law: Controller | None = None
     if not proper.is_zero:
         sides = ([float(c) for c in part.all_coeffs()] for part in (proper, above))
         law = from_control(control.tf(*sides), name="rest")
-    return _with_rest(name, inertia, damping or None, law, (motion, command, driver), forces)
+    return _with_rest(name, inertia, damping or None, law, signals, forces)
 
 
 def _with_rest(

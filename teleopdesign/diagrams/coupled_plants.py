@@ -18,9 +18,10 @@ from sympy.polys.matrices import DomainMatrix
 from ..base.errors import ModelError
 from ..blocks import Body, MatrixImpedance, Value
 from ..controllers import from_control
-from .control_parts import code_parts, entry_of
+from .control_parts import code_parts, controller_parts, entry_of
 from .junctions import Junction
 from .parts import Control, Linked, Moving
+from .plant_states import states_of_plant
 
 if TYPE_CHECKING:
     import control
@@ -80,14 +81,28 @@ def _bodies(
     drivers: Sequence[str],
 ) -> tuple[tuple[Moving | Linked | Control, ...], tuple[Junction, ...]]:
     """Bodies, their coupling, and the rest beside their commands; continuous time."""
+    import control
+
     size = len(motions)
     m, b, k, rest = _split(system, name)
+    if (whole := states_of_plant(system, name)) is not None:
+        b, k = whole.damping, whole.stiffness
     apart = np.diag(np.diag(m))
     link = MatrixImpedance(_rows(m - apart), _rows(b), _rows(k))
     blocks: list[Moving | Linked | Control] = []
     junctions: list[Junction] = []
     forces = tuple(f"{name}_link_force_{i + 1}" for i in range(size))
     joined = bool(link.parameters)
+    shared: list[str] = []
+    if whole is not None:
+        shared = [f"{name}_rest_force_{i + 1}" for i in range(size)]
+        states = control.ss(*whole.rest, np.zeros((size, size)))
+        laws, sums = controller_parts(
+            states, name=f"{name}_rest", inputs=motions, outputs=shared, motion="", analog=True
+        )
+        blocks += laws
+        junctions += sums
+        rest = [[None] * size for _ in range(size)]
     for i in range(size):
         beside = {f"{name}_rest_{i + 1}_{j + 1}": j for j in range(size) if rest[i][j] is not None}
         command = commands[i]
@@ -96,11 +111,10 @@ def _bodies(
             assert law is not None
             made = from_control(law, name="rest")
             blocks.append(Control(block, made, motions[j], f"{block}_force", motions[j], True))
-        if beside:
+        against = [*(f"{x}_force" for x in beside), *shared[i : i + 1]]
+        if against:
             command = f"{name}_command_{i + 1}"
-            junctions.append(
-                Junction(command, {commands[i]: 1.0, **{f"{x}_force": -1.0 for x in beside}})
-            )
+            junctions.append(Junction(command, {commands[i]: 1.0, **dict.fromkeys(against, -1.0)}))
         body = Body("prismatic", {"inertia": Value(float(m[i, i]))})
         loads = {drivers[i]: 1.0, **({forces[i]: 1.0} if joined else {})}
         blocks.append(Moving(f"{name}_{i + 1}", body, motions[i], command, loads, drivers[i]))

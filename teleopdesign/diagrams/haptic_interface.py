@@ -67,7 +67,7 @@ def haptic_interface(
     junctions = [Junction("E", {"R_D": 1, "R_M": -1})]
     outside = {"R_V": "force"}
     if hand is not None:
-        blocks.append(Attached("Z_H", hand, "L", "R_H"))
+        blocks.append(Attached("Z_H", hand, "L", "R_H", role="hand"))
         on_hand = {"R_H": -1, "R_V": -1}
     if force_feedback is not None:
         blocks.append(Control("H", force_feedback, "E", "R_FF", "L", "H" in analog))

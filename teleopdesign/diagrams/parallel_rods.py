@@ -73,7 +73,8 @@ def parallel_rods(
             commands[i][force] = 1
     hands = {k: {f"F_V{k}": 1} for k in numbers}
     if hand is not None:
-        blocks.append(Linked("Z_H", hand, _rod_names("X", numbers), _rod_names("F_H", numbers)))
+        motions, held = (_rod_names(signal, numbers) for signal in ("X", "F_H"))
+        blocks.append(Linked("Z_H", hand, motions, held, role="hand"))
         hands = {k: {f"F_H{k}": 1, f"F_V{k}": 1} for k in numbers}
     for n in numbers:
         junctions.append(Junction(f"R_A{n}", commands[n]))

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import sympy as sp
 
@@ -27,6 +28,8 @@ class AnyBlock:
 
 
 ANY = AnyBlock()
+#: what a body that resists a motion is: a part of the device, or what acts at a port of the device
+PortRole = Literal["part", "hand", "environment"]
 
 
 @check_types
@@ -71,6 +74,7 @@ class Attached:
 
     motion: name of the motion;  force: name of the force, N or N m
     sign: -1: the force is positive along the motion, so that it opposes it;  1: positive against it
+    role: "hand" or "environment": it acts at a port, and claims about this port leave it out
     """
 
     name: str
@@ -78,6 +82,7 @@ class Attached:
     motion: str
     force: str
     sign: int = -1
+    role: PortRole = "part"
 
     def __post_init__(self) -> None:
         check_name(self.name, where="block")
@@ -97,7 +102,8 @@ class Attached:
 class Linked:
     """Bodies coupled by a linear impedance: forces = sign Z motions, Z a matrix.
 
-    motions, forces: names of signals, one of each for a row of Z;  sign: as in `Attached`
+    motions, forces: names of signals, one of each for a row of Z
+    sign, role: as in `Attached`
     raises ModelError: the number of rows differs from that of motions or forces
     """
 
@@ -106,6 +112,7 @@ class Linked:
     motions: tuple[str, ...]
     forces: tuple[str, ...]
     sign: int = -1
+    role: PortRole = "part"
 
     def __post_init__(self) -> None:
         check_name(self.name, where="block")

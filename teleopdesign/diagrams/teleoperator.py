@@ -15,7 +15,7 @@ from __future__ import annotations
 from ..blocks import Body
 from ..controllers import Controller
 from .junctions import Junction
-from .parts import ANY, AnyBlock, Attached, Block, Control, Moving
+from .parts import ANY, AnyBlock, Attached, Block, Control, Moving, PortRole
 from .wiring import Diagram
 
 TEXTS = {
@@ -62,6 +62,7 @@ def teleoperator(
         Control("P", coupling, "X_e", "F_P", "X_e"),
     ]
     junctions = [Junction("X_e", {"X_m": 1, "X_s": -1})]
+    roles: dict[str, PortRole] = {"Z_H": "hand", "Z_E": "environment"}
     sides = (
         ("m", "F_u", -1, ("Z_H", hand, "F_H"), master_cancellation),
         ("s", "F_d", 1, ("Z_E", environment, "F_E"), slave_cancellation),
@@ -70,7 +71,7 @@ def teleoperator(
         motion, force = f"X_{side}", f"F_C{side}"
         on_body, command = {outside_force: 1}, {"F_P": sign}
         if held is not None:
-            blocks.append(Attached(name, held, motion, passive))
+            blocks.append(Attached(name, held, motion, passive, role=roles[name]))
             on_body[passive] = 1
         if cancellation is not None:
             blocks.append(Control(f"C_{side}", cancellation, motion, force, motion))

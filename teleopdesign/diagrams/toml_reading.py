@@ -8,10 +8,11 @@ Unknown keys are refused, in one line.
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast, get_args
 
 from ..base.errors import ExperimentError, ModelError
 from ..base.toml import Table, describe_toml_value, read_toml
@@ -23,17 +24,19 @@ from ..effects import EFFECTS, Effect
 from ..measurement.description import BODY, body_from
 from .expressions import read_expression
 from .junctions import Junction, Kinematics, Weight
-from .parts import ANY, AnyBlock, Attached, Block, Control, Linked, Moving
+from .parts import ANY, AnyBlock, Attached, Block, Control, Linked, Moving, PortRole
 from .short_form import KINDS, Content
 from .toml_matrices import MATRICES, read_matrices
 from .wiring import Diagram
 
 LAW = ("law", "parameters", "series")
+#: what older files call the hand and the environment, without a role
+ROLES_BY_NAME: Mapping[str, PortRole] = {"Z_H": "hand", "Z_E": "environment"}
 #: kind of a block -> its keys, besides those of its body or law
 WIRING = {
     "moving": ("motion", "command", "loads", "driver"),
-    "attached": ("motion", "force", "sign"),
-    "linked": ("motions", "forces", "sign"),
+    "attached": ("motion", "force", "sign", "role"),
+    "linked": ("motions", "forces", "sign", "role"),
     "control": ("input", "output", "motion", "analog"),
 }
 
@@ -141,10 +144,12 @@ def _block(name: str, table: Table, known: _Known) -> Block:
         return Control(name, law, source, made, along, table.flag("analog", False))
     if kind == "linked":
         motions, forces = (tuple(_strings(table, key)) for key in ("motions", "forces"))
-        return Linked(name, read_matrices(table, len(motions)), motions, forces, _sign(table))
+        z, role = read_matrices(table, len(motions)), _role(name, table)
+        return Linked(name, z, motions, forces, _sign(table), role)
     motion, body = _string(table, "motion"), _body(table, known)
     if kind == "attached":
-        return Attached(name, body, motion, _string(table, "force"), _sign(table))
+        force = _string(table, "force")
+        return Attached(name, body, motion, force, _sign(table), _role(name, table))
     command, driver, loads = (
         _string(table, "command"),
         _string(table, "driver"),
@@ -159,6 +164,20 @@ def _sign(table: Table) -> int:
     if sign not in (1, -1):
         raise ExperimentError(f"{table.where('sign')}: found {sign:g}, expected 1 or -1")
     return int(sign)
+
+
+def _role(name: str, table: Table) -> PortRole:
+    """The role that a block states; files from before roles had names for hand and environment."""
+    if "role" not in table.content and name in ROLES_BY_NAME:
+        role = ROLES_BY_NAME[name]
+        warnings.warn(
+            f'{table.where("role")}: taken for "{role}" by the name of the block: state role = '
+            f'"{role}", or "part" for a part of the device',
+            stacklevel=2,
+        )
+        return role
+    stated = table.choice("role", get_args(PortRole)) if "role" in table.content else "part"
+    return cast(PortRole, stated)
 
 
 def _terms(table: Table, key: str) -> dict[str, Weight]:

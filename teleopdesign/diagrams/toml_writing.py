@@ -24,6 +24,7 @@ from .junctions import Junction, Kinematics
 from .parts import AnyBlock, Attached, Block, Control, Linked, Moving
 from .short_form import kind_of
 from .toml_matrices import MATRICES
+from .toml_reading import ROLES_BY_NAME
 from .wiring import Diagram
 
 
@@ -117,7 +118,13 @@ def _wiring_lines(block: Block) -> list[str]:
         assert isinstance(block, Control)
         keys = {"kind": "control", "input": block.input, "output": block.output}
         keys |= {"motion": block.motion} if block.motion else {}
+    keys |= {"role": block.role} if isinstance(block, Attached | Linked) and _states(block) else {}
     return [f"{k} = {_value(v)}" for k, v in keys.items()]
+
+
+def _states(block: Attached | Linked) -> bool:
+    """Whether a file must state the role: names that older files had for roles need it always."""
+    return block.role != "part" or block.name in ROLES_BY_NAME
 
 
 def _body(name: str, body: Body | AnyBlock, known: Mapping[str, Effect]) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from itertools import combinations, zip_longest
 
 import numpy as np
@@ -18,7 +18,7 @@ from ..diagnose.criteria import CRITERIA
 from ..diagnose.effort import EFFORTS
 from ..diagnose.fit import Fit, estimate
 from ..diagnose.noise_floor import noise_floor
-from ..diagnose.repeats import Repeatability, repeatability, repeats_data
+from ..diagnose.repeats import Repeatability, repeatability
 from ..effects import CONTACT_ROLES, SIGNALS, Effect
 from ..measurement.motion import RARE
 from ..measurement.prepare import Prepared
@@ -81,7 +81,7 @@ def _describe_passes(repeats: Repeatability) -> Finding:
         f"a motion is made again in {100 * repeats.share:.0f} % of the rows. There "
         f"{100 * repeats.error:.2g} % of the force differs from pass to pass, which no model of "
         f"the motion explains; your model leaves {100 * repeats.left:.2g} %.",
-        repeats_data(repeats) or {},
+        asdict(repeats),
     )
 
 

@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.errors import ModelError
-from .late_loop import LateRatio, Terms
+from .late_loop import LateRatio
+from .late_zeros import Terms
 
 #: longest step of a phase (rad) or of the logarithm of a size; a longer step is halved. A shorter
 #: step that may reach the searched value on its way is also halved, down to FINEST: a value that is
@@ -124,7 +125,9 @@ def factor_far_out(ratio: LateRatio, w: np.ndarray, *, share: float) -> tuple[fl
     """
     degree = max(map(len, ratio.below.values()))
     times = sorted({*ratio.above, *ratio.below})
-    sides = [[_pad(terms.get(t), degree) for t in times] for terms in (ratio.below, ratio.above)]
+    lead = max(abs(float(p[0])) for p in ratio.below.values() if len(p) == degree)
+    both = ratio.below, ratio.above
+    sides = [[_pad(terms.get(t), degree) / lead for t in times] for terms in both]
     d, n = (np.array([p[0] for p in side]) for side in sides)
 
     def left(g: float) -> float:
@@ -155,11 +158,11 @@ def _pad(p: np.ndarray | None, degree: int) -> np.ndarray:
 def _first_zero(left: Callable[[float], float], points: Sequence[float]) -> float:
     """First zero of the polygon through the points, whose last line continues; inf if none.
 
-    A single term only touches 0 at its corner, within 1e-12 of rounding.
+    A single term only touches 0 at its corner, within rounding: the terms are near 1.
     """
     for k, (a, b) in enumerate(pairwise(points)):
         high, low = left(a), left(b)
-        if low <= 1e-12 * high or (k == len(points) - 2 and low < high and b > a):
+        if low <= 1e-14 + 1e-12 * high or (k == len(points) - 2 and low < high and b > a):
             return a + (b - a) * high / (high - low) if high > low else a
     return float("inf")
 

@@ -10,7 +10,7 @@ loop opened at the controller's output, the rest is assumed stable, as it was wh
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,7 +27,8 @@ from ..realise.lti import S, as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
 from . import sampled_margins
 from .late_envelope import unity_grid
-from .late_loop import LateRatio, count_growing, crossings, late_ratio
+from .late_loop import CountedLoop, LateRatio, count_loop, crossings, loop_as_written
+from .late_zeros import count_growing
 from .sampled_loop import SampledLoop, sampled_loop
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ class LoopGain(Shown):
     growing: poles of the controller itself in the right half plane
     sampled: the loop in discrete time, where this controller alone samples: its margins are exact.
         None where others sample too: those of `held` then count as their response over frequency
+    counted: the loop with all states, where nothing samples or is measured
     """
 
     expression: sp.Expr
@@ -60,6 +62,7 @@ class LoopGain(Shown):
     fastest: float
     growing: int = 0
     sampled: SampledLoop | None = None
+    counted: CountedLoop | None = field(default=None, compare=False, repr=False)
 
     def __call__(self, s: Any) -> Any:
         """Value at complex s (1/s), a number or an array of any shape."""
@@ -107,7 +110,11 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
     fastest = np.pi / max(periods) if periods else float("inf")
     growing = _count_growing_poles(linear.blocks[controller])
     sampled = sampled_loop(diagram, part, linear) if linear.held else None
-    return LoopGain(gain, controller, linear.left_out, linear.held, fastest, growing, sampled)
+    counted = None
+    if not linear.held and not gain.atoms(AppliedUndef):
+        counted = count_loop(diagram, controller, speed=speed)
+    made = gain, controller, linear.left_out, linear.held, fastest, growing, sampled, counted
+    return LoopGain(*made)
 
 
 def _count_growing_poles(form: sp.Expr) -> int:
@@ -153,6 +160,8 @@ def unity_crossings(
         if loop.expression.atoms(AppliedUndef):
             return *measured_crossings(loop.expression, growing=loop.growing), True
         if loop.sampled is not None:
+            if loop.sampled.fault:
+                raise UnstableLoop(f"the loop of {loop.controller}: {loop.sampled.fault}")
             if loop.sampled.grows():
                 raise _unstable()
             phase, angles = sampled_margins.unity_crossings(loop.sampled)
@@ -161,7 +170,10 @@ def unity_crossings(
             if _grows_by_pade(loop):
                 raise _unstable()
             return *_crossings(loop, None), True
-        ratio = late_ratio(loop.expression)
+        counted = loop.counted or loop_as_written(loop.expression)
+        if counted.fault:
+            raise UnstableLoop(f"the loop of {loop.controller}: {counted.fault}")
+        ratio = counted.ratio
     else:
         ratio = _ratio_of(loop)
     if count_growing(ratio.closed):

@@ -9,7 +9,7 @@ from ..base.errors import ModelError
 from ..realise.lti import numerical
 from . import sampled_margins
 from .late_envelope import envelope, factor_far_out, halve_steps, is_followed, least_between
-from .late_loop import late_ratio
+from .late_loop import loop_as_written
 from .loop import LoopGain, unity_crossings
 
 #: rad/s: range that is searched for a loop without corners and without samples, and points in it
@@ -54,7 +54,7 @@ def gain_margin(loop: LoopGain) -> float:
     def height(w: float) -> float:
         return float(np.imag(call(np.array([1j * w]))[0]))
 
-    ratio = None if loop.held else late_ratio(loop.expression)
+    ratio = None if loop.held else (loop.counted or loop_as_written(loop.expression)).ratio
     w = _grid(loop, np.zeros(0) if ratio is None else ratio.corners())
 
     def at(w: np.ndarray) -> np.ndarray:

@@ -15,22 +15,24 @@ unit circle are computed in floats as functions of z - 1, since slow poles lie c
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, reduce
 
 import mpmath
 import numpy as np
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..controllers import Controller, exact_decimal
-from ..derive import symbol_values
-from ..derive.elimination import transfer
+from ..controllers import Controller, exact_decimal, sides_of
+from ..derive.all_states import all_states
+from ..derive.polynomials import is_free_of_growth
 from ..diagrams import Control, Diagram
-from ..realise.lti import LinearBlocks, S
+from ..realise.lti import LinearBlocks
 from .held_plant import HeldPlant, add, as_mpf, multiply
 from .late_loop import LateRatio
+from .late_zeros import describe_growth
 
 #: rational numbers, highest power first
 Coefficients = tuple[Fraction, ...]
@@ -47,25 +49,25 @@ class SampledLoop:
 
     period: h, s;  law: numerator and denominator in z
     below: denominator of the path from u to y, in s;  above: dead time (s) -> its numerators
+    fault: a mode that grows and that the loop does not see, in words; "" for none
     """
 
     period: Fraction
     law: tuple[Coefficients, Coefficients]
     below: Coefficients
     above: tuple[tuple[Fraction, Coefficients], ...]
+    fault: str = ""
 
     def with_delay(self, time: float) -> SampledLoop:
         """The loop with an additional dead time (s)."""
         more = Fraction(time)
-        return SampledLoop(
-            self.period, self.law, self.below, tuple((t + more, p) for t, p in self.above)
-        )
+        return replace(self, above=tuple((t + more, p) for t, p in self.above))
 
     def with_gain(self, factor: float) -> SampledLoop:
         """The loop with its gain multiplied by a factor."""
         above, below = self.law
         law = tuple(c * Fraction(factor) for c in above), below
-        return SampledLoop(self.period, law, self.below, self.above)
+        return replace(self, law=law)
 
     @property
     def samples(self) -> int:
@@ -148,54 +150,67 @@ def sampled_loop(diagram: Diagram, part: Control, linear: LinearBlocks) -> Sampl
     if len(periods) != 1 or 0 in periods:
         return None
     z = sp.Symbol("z")
-    whole = sp.Mul(*(stage.law.shift(stage.values, z) for stage in law.stages if stage.law.shift))
-    sides = sp.fraction(sp.cancel(sp.together(whole)))
+    sides = [sides_of(stage.values, z) for stage in law.stages]
+    above, below = (reduce(sp.Poly.mul, side) for side in zip(*sides, strict=True))
+    unseen = sp.gcd(above, below)
     opened = diagram.open_at(part.name)
     if part.input not in opened.signals:
         return None
-    path = transfer(opened, part.input, (part.output,))[part.output]
-    plant = _plant(-sp.sympify(path).subs(symbol_values(linear)))
+    plant = _plant(opened, part, linear.speed)
     period = periods.pop()
     if plant is None:
         return None
-    law_in_z = _rationals(sides[0], z), _rationals(sides[1], z)
-    return SampledLoop(Fraction(int(period.p), int(period.q)), law_in_z, *plant)
+    law_in_z = _rationals(above.quo(unseen)), _rationals(below.quo(unseen))
+    fault = plant.fault
+    if not is_free_of_growth(_reverse(unseen)):
+        modes = ", ".join(f"z = {r:.4g}" for r in np.roots(_floats(_rationals(unseen))))
+        fault = f"a mode that it does not see grows, among {modes}"
+    whole = Fraction(int(period.p), int(period.q))
+    return SampledLoop(whole, law_in_z, plant.below, plant.above, fault)
 
 
-def _plant(
-    path: sp.Expr,
-) -> tuple[Coefficients, tuple[tuple[Fraction, Coefficients], ...]] | None:
-    """Denominator, and numerators by their dead time; None: not of this form, or improper."""
-    powers = sorted(path.atoms(sp.exp), key=str)
-    marks = [sp.Dummy(f"late_{k}") for k in range(len(powers))]
-    times = [-power.args[0].coeff(S) for power in powers]
-    plain = path.xreplace(dict(zip(powers, marks, strict=True)))
-    above, below = sp.fraction(sp.cancel(sp.together(plain)))
-    if not (
-        all(t.is_Rational and t >= 0 for t in times)
-        and below.is_polynomial(S)
-        and above.is_polynomial(S, *marks)
-        and not below.free_symbols & set(marks)
-        and path.free_symbols <= {S}
-    ):
+def _reverse(p: sp.Poly) -> sp.Poly:
+    """A polynomial in z as one in w, z = (1 + w)/(1 - w): its roots outside the circle grow."""
+    n, w = p.degree(), sp.Poly(p.gen, p.gen, domain="QQ")
+    terms = (((1 + w) ** k * (1 - w) ** (n - k)).mul_ground(c) for (k,), c in p.terms())
+    return reduce(sp.Poly.add, terms)
+
+
+@dataclass(frozen=True)
+class _Plant:
+    """Numerators by dead time over one denominator, and what grows unseen; "" for nothing."""
+
+    below: Coefficients
+    above: tuple[tuple[Fraction, Coefficients], ...]
+    fault: str
+
+
+def _plant(opened: Diagram, part: Control, speed: float) -> _Plant | None:
+    """The path round the loop of a controller; None: improper, or a dead time in another loop."""
+    states = all_states(opened, speed=speed)
+    below, ((above,),) = states.solve([part.input], [part.output])
+    unseen, above, below = (-above).cofactors(below)
+    if any(any(k[1:]) for k in below) or max((k[0] for k in above), default=0) > below.degree():
         return None
-    low = sp.Poly(below, S)
     made: dict[Fraction, dict[int, Fraction]] = {}
-    for (degree, *exponents), c in sp.Poly(above, S, *marks).terms():
-        if not c.is_Rational or degree > low.degree():
-            return None
-        late = sum((n * t for n, t in zip(exponents, times, strict=True)), sp.S(0))
+    delays = [states.times[x] for x in states.ring.symbols[1:]]
+    for (degree, *exponents), c in above.items():
+        late = sum((n * t for n, t in zip(exponents, delays, strict=True)), sp.S(0))
         of_this = made.setdefault(Fraction(int(late.p), int(late.q)), {})
-        of_this[degree] = of_this.get(degree, Fraction(0)) + Fraction(int(c.p), int(c.q))
-    numerators = tuple(
-        (t, tuple(p.get(k, Fraction(0)) for k in range(max(p), -1, -1)))
-        for t, p in sorted(made.items())
-    )
-    return _rationals(below, S), numerators
+        of_this[degree] = of_this.get(degree, Fraction(0)) + Fraction(c.numerator, c.denominator)
+    numerators = tuple((t, _falling(p)) for t, p in sorted(made.items()))
+    modes = describe_growth(unseen, states.times)
+    fault = f"a mode that it does not see grows: {modes}" if modes else ""
+    plain = {k[0]: Fraction(c.numerator, c.denominator) for k, c in below.items()}
+    return _Plant(_falling(plain), numerators, fault)
 
 
-def _rationals(polynomial: sp.Expr, variable: sp.Symbol) -> Coefficients:
-    return tuple(Fraction(int(c.p), int(c.q)) for c in sp.Poly(polynomial, variable).all_coeffs())
+def _falling(powers: Mapping[int, Fraction]) -> Coefficients:
+    return tuple(powers.get(k, Fraction(0)) for k in range(max(powers), -1, -1))
+
+
+def _rationals(polynomial: sp.Poly) -> Coefficients:
+    return tuple(Fraction(int(c.p), int(c.q)) for c in polynomial.all_coeffs())
 
 
 def _decays(polynomial: list[mpmath.mpf]) -> bool:

@@ -92,11 +92,11 @@ class Prepared(ByValue):
         return tuple(s for s in self.stretches if s.use == use)
 
     @property
-    def is_of_an_arm(self) -> bool:
+    def is_linked(self) -> bool:
         """Whether the records are of an arm's joint, whose link parameters are estimated too.
 
         Effects at such a joint are tested where all joints are estimated together, by the error of
-        the whole arm and by the noise that they weaken (`arms/refusal.py`).
+        the whole arm and by the noise that they weaken (`held_against_others.py`).
         """
         return any(s.motion.links is not None or s.shared is not None for s in self.stretches)
 
@@ -112,7 +112,7 @@ class Prepared(ByValue):
         The effects are then estimated and judged on all samples of the records.
         """
         stretches = self.of("fit")
-        if self.is_of_an_arm:
+        if self.is_linked:
             return self
         thin = tuple(_thin(s) for s in stretches)
         if all(one is other for one, other in zip(thin, stretches, strict=True)):
@@ -130,7 +130,7 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
     if experiment.arm is not None:
         raise ExperimentError(
             f"{experiment.folder.name}/experiment.toml: model.arm: found an arm, expected one body "
-            "or two: only `teleopdesign diagnose` (find_missing_in_arm) compares an arm"
+            "or two: only `teleopdesign diagnose` (find_missing) compares an arm"
         )
     chosen = bandwidth or bandwidth_of(experiment)
     stretches = []

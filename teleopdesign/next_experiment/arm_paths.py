@@ -21,7 +21,7 @@ from ..arms.base_parameters import BaseParameters, base_parameters, columns_with
 from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
 from ..base.shown import Shown
-from ..diagnose import ArmDiagnosis
+from ..diagnose import Diagnosis
 from ..measurement.filtering import Array
 from .limits import Limits, shown_limits
 from .proposal import Reference
@@ -68,7 +68,7 @@ class ArmPaths(Shown, ByValue):
 
 
 def propose_paths(
-    diagnosis: ArmDiagnosis,
+    diagnosis: Diagnosis,
     *,
     duration: float = 20.0,
     limits: Mapping[str, Limits] | None = None,
@@ -82,10 +82,10 @@ def propose_paths(
         links of the diagnosis, and from Coulomb and viscous friction
     raises ExperimentError: no path keeps the limits
     """
-    experiment, prepared = diagnosis.experiment, diagnosis.prepared
+    experiment, prepared = diagnosis.experiment, diagnosis.recording.parts
     assert experiment.arm is not None
-    shown = {j: shown_limits(p)[j] for j, p in prepared.joints.items()} | dict(limits or {})
-    judge = _Judge(diagnosis, [shown[j] for j in prepared.joints])
+    shown = {j: shown_limits(p)[j] for j, p in prepared.parts.items()} | dict(limits or {})
+    judge = _Judge(diagnosis, [shown[j] for j in prepared.parts])
     period = duration / math.ceil(duration / PERIOD)
     generator = np.random.default_rng(seed)
     best, least = None, math.inf
@@ -108,7 +108,7 @@ def propose_paths(
     position = judge.motion(best, period, time)[0]
     parts = (f"paths of all joints with a period of {period:g} s",)
     return ArmPaths(
-        Reference(time, dict(zip(prepared.joints, position, strict=True)), parts, 1),
+        Reference(time, dict(zip(prepared.parts, position, strict=True)), parts, 1),
         period,
         judge.condition(best, period),
         judge.recorded,
@@ -119,13 +119,13 @@ def propose_paths(
 class _Judge:
     """Evaluation of paths by regressors of base parameters and friction, scaled by force."""
 
-    def __init__(self, diagnosis: ArmDiagnosis, limits: list[Limits]) -> None:
+    def __init__(self, diagnosis: Diagnosis, limits: list[Limits]) -> None:
         assert diagnosis.experiment.arm is not None
         self.arm = diagnosis.experiment.arm.arm
         self.base: BaseParameters = base_parameters(self.arm)
         self.limits = limits
-        self.links = np.array(diagnosis.after.links or self.base.initial)
-        joints = diagnosis.prepared.joints
+        self.links = np.array(diagnosis.model.links or self.base.initial)
+        joints = diagnosis.recording.parts.parts
         self.joints = tuple(joints)
         motions = [[s.motion for s in p.of("fit")] for p in joints.values()]
         force = [

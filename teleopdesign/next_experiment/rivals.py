@@ -20,11 +20,12 @@ from numpy.typing import NDArray
 
 from ..base.errors import ModelError
 from ..diagnose.candidates import Candidate
-from ..diagnose.diagnosis import Diagnosis, OpenQuestion
+from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.fit import Fit, estimate
 from ..diagnose.least_squares import solve_normal
-from ..diagnose.open_questions import open_questions
 from ..diagnose.residual import relative_residuals
+from ..diagnose.rung import restore_replaced, undo_addition
+from ..diagnose.statements import OpenQuestion, OpenRival
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch
@@ -55,49 +56,55 @@ class Rival:
 def rivals_of(diagnosis: Diagnosis) -> tuple[Rival, ...]:
     """Models that the records of a diagnosis leave open; empty where the records decide.
 
-    For each accepted effect, the effects that could replace it (`open_questions`) do so in turn.
+    For each accepted effect, the effects that could replace it (`Diagnosis.open`) do so in turn.
     Where there are none, and the verdict is undecided or more is missing: the best few effects that
     would be added next.
     """
     rivals: list[Rival] = []
-    questions = open_questions(diagnosis)
+    questions = diagnosis.questions
     for number, question in enumerate(questions):
         if question.added is not None:
             rivals += _rivals_of_question(diagnosis, question, number)
     if not rivals:
         next_ones = [q for q in questions if q.added is None]
-        rivals = [Rival(c, fit) for q in next_ones for c, fit in q.others]
+        rivals = [Rival(r.candidate, diagnosis.fit(r.model)) for q in next_ones for r in q.others]
     return tuple(rivals) if len(rivals) > 1 else ()
 
 
 def _rivals_of_question(diagnosis: Diagnosis, question: OpenQuestion, number: int) -> list[Rival]:
     """The accepted effect of a question and its rivals, each in the final model."""
     assert question.added is not None
-    rivals = [Rival(question.added, diagnosis.estimated, number)]
-    for candidate, other_fit in question.others:
-        fit = rival_instead(diagnosis, question.added, candidate, other_fit)
+    rivals = [Rival(question.added, diagnosis.fit(_estimated_model(diagnosis)), number)]
+    for other in question.others:
+        fit = rival_instead(diagnosis, question.added, other)
         if fit is not None:
-            rivals.append(Rival(candidate, fit, number))
+            rivals.append(Rival(other.candidate, fit, number))
     return rivals if len(rivals) > 1 else []
 
 
-def rival_instead(diagnosis: Diagnosis, added: Candidate, other: Candidate, fit: Fit) -> Fit | None:
+def _estimated_model(diagnosis: Diagnosis) -> Model:
+    """The final model before its parameters were corrected for errors of the readings."""
+    return diagnosis.model if diagnosis.estimated is None else diagnosis.estimated
+
+
+def rival_instead(diagnosis: Diagnosis, added: Candidate, other: OpenRival) -> Fit | None:
     """The final model with another effect in place of an accepted one; None: not possible.
 
     The effect that the accepted one replaced is back, unless the other was compared without it too.
-    fit: the fit by which the other effect was compared
     """
-    effect, at = other.effect, other.at
-    names = effect.parameters
-    values = {n: fit.model.parameters[f"{at}.{effect.name}.{n}"].value for n in names}
-    model = diagnosis.estimated.model
+    effect, at = other.candidate.effect, other.candidate.at
+    compared, names = other.model, effect.parameters
+    values = {n: compared.parameters[f"{at}.{effect.name}.{n}"].value for n in names}
+    model = _estimated_model(diagnosis)
     if model.body(at).has(effect.name):
-        return None  # a later rung has added it beside
-    rung = next(r for r in diagnosis.rungs if r.added == added)
-    gone = rung.instead_of
+        return None  # a later row has added it beside
+    row = next(r for r in diagnosis.rungs if r.added == added)
+    first, gone = diagnosis.before.model, None
+    if row.instead_of is not None:
+        gone = Candidate(first.body(added.at).effect(row.instead_of), added.at)
     try:
-        model = rung.undo_addition(model)
-        if gone is not None and not fit.model.body(gone.at).has(gone.effect.name):
+        model = undo_addition(model, added, None if gone is None else restore_replaced(gone, first))
+        if gone is not None and not compared.body(gone.at).has(gone.effect.name):
             model = model.without_effect(gone.effect.name, at=gone.at)  # the other needs it no more
         return estimate(model.with_effect(effect, at=at, values=values), diagnosis.prepared)
     except ModelError:

@@ -25,13 +25,13 @@ from ..controllers import (
     make_exact,
     parameter_symbol,
 )
+from ..derive.polynomials import has_positive_root, is_non_negative
 from ..diagrams import Control, Diagram
 from ..effects import BLOCK_EFFECTS, EFFECTS, Effect, acts_linearly
 from ..effects import SIGNALS as BODY_SIGNALS
 from ..realise.damping_interval import least_damping
 from ..realise.extremes import least_value
 from ..realise.reach import Reach
-from .linear.polynomials import has_positive_root, is_non_negative
 
 _ANY = (-math.inf, math.inf)
 

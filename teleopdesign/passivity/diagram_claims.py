@@ -21,6 +21,7 @@ from ..diagrams import Diagram
 from .claims.claim import Claim, Proof, Refutation, Unknown
 from .device_claims import device_claims
 from .friction_pairs import FrictionPair, friction_pairs, pair_claims
+from .holders import without_holders
 from .linear_diagrams import WHOLE, linear_claims
 from .ports import (
     Port,
@@ -29,7 +30,6 @@ from .ports import (
     nonlinear_parts,
     ports,
     without_friction,
-    without_holding,
 )
 from .search.by_simulation import Computer, SimulatedMotion, search_counterexample
 from .theorems import TopicClaim
@@ -72,7 +72,7 @@ def diagram_claims(
 ) -> DiagramClaims:
     """Claims about the ports of a diagram, with all other outside signals zero.
 
-    Hand and environment (`Z_H`, `Z_E`) act at a port and are left out of the judged diagram. The
+    Hands and environments that act at a port (their `role`) are left out of the judged diagram. The
     search moves one port and keeps the hand or environment at the other ports. It runs where no
     claim decides about all ports, and where `search` states a sampling for controllers.
 
@@ -82,7 +82,7 @@ def diagram_claims(
     """
     search, rng = search or Search(), np.random.default_rng(rng)
     whole = drop_absent_effects(diagram)
-    alone = without_holding(whole)
+    alone = without_holders(whole)
     all_ports, bent = ports(alone), nonlinear_parts(alone)
     claims: list[TopicClaim] = []
     sampled = search.computer != "continuous" and any(not c.analog for c in alone.controls)
@@ -176,7 +176,7 @@ def _search_claim(
     if port.motion is None:
         why = "its motion is no single body's, so that a simulation cannot prescribe it"
         return TopicClaim(topic, Claim(statement, Unknown(why)))
-    free = without_holding(whole, port.motion.removesuffix("_tip"))
+    free = without_holders(whole, port.force)
     if code := [c.name for c in free.controls if c.is_code]:
         why = f"{', '.join(code)} is known as code only, which a search would call a million times"
         return TopicClaim(topic, Claim(statement, Unknown(why)))

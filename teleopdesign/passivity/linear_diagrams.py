@@ -1,126 +1,95 @@
 """Claims about the ports of linear diagrams: exact, or with dead times numerical.
 
-A refuted claim is also refuted at four nearby sets of values, so that the refutation does not rest
-on the rounding of a number. A proof includes that no internal mode grows by itself, not even a mode
-that no port shows from rest. Evidence includes this as far as it can be checked with dead times.
+They start from all states of the diagram: a mode that no port shows from rest has to decay. A
+refuted claim is also refuted at four nearby sets of values, so that it does not rest on rounding.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-import sympy as sp
-
 from ..base.errors import ModelError
+from ..derive.effort import bounded_effort
 from ..diagrams import Diagram
 from .claims.axis_units import use_units_of
 from .claims.claim import Claim, Unknown
-from .linear.hidden_modes import controllers_grow, growth_within
-from .linear.positive_real import NEARBY, positive_real
-from .ports import Port, impedance_matrix, nonlinear_parts
+from .linear.family import Family, family_at
+from .linear.judge import passive_claim, stable_claim
+from .linear.positive_real import NEARBY
+from .ports import Port, nonlinear_parts
 from .search.growing_wave import GrowingWave, wave_of
 from .theorems import TopicClaim
-from .two_port.claims import absolutely_stable, is_shown_unstable, passive
-from .two_port.late_one_port import late_one_port
-from .two_port.several_ports import passive_together
-from .two_port.two_port import two_port
+from .two_port.growing_mode import GrowingMode
 
 #: topics of claims that are about all ports at once
 WHOLE = ("all ports, any motion", "the port, any motion", "both ports, any motion")
+_HELD = "both ports, whatever passive holds them"
 
 
 def linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
     """Claims of passivity of a linear diagram, and of absolute stability where it has two ports.
 
-    A refuted claim is also refuted at four nearby sets of values, so it does not rest on rounding.
-    A proof includes that no internal mode grows by itself. A diagram that is not linear has one
-    claim, which is unknown.
+    A diagram that is not linear has one claim, which is unknown.
 
     diagram: with values;  all_ports: its ports, see `ports`
     """
     if bent := nonlinear_parts(diagram):
-        statement = f"{diagram.name}: its ports are passive"
-        return [TopicClaim(WHOLE[0], Claim(statement, Unknown(f"not linear: {', '.join(bent)}")))]
-    claims = _linear_claims(diagram, all_ports)
-    if any(one.claim.holds for one in claims):
-        claims = _restate_beside_growth(claims, growth_within(diagram))
-    if any(one.claim.status == "evidence" for one in claims) and controllers_grow(diagram):
-        claims = [_open_inside(one) for one in claims]
-    if not any(one.claim.status == "refuted" for one in claims):
-        return claims
-    for other in _nearby(diagram):
-        claims = _refuted_there_too(claims, other, all_ports)
-    return claims
+        return _open(diagram, f"not linear: {', '.join(bent)}")
+    with bounded_effort():
+        return _judge(diagram, all_ports)
+
+
+def _judge(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
+    try:
+        family = family_at(diagram, all_ports)
+    except ModelError as problem:
+        return _open(diagram, str(problem))
+    judges = {WHOLE[1 if family.size == 1 else 2 if family.size == 2 else 0]: passive_claim}
+    judges |= {_HELD: stable_claim} if family.size == 2 else {}
+    claims = [TopicClaim(topic, judge(family)) for topic, judge in judges.items()]
+    if any(one.claim.status == "refuted" for one in claims):
+        for other in _nearby(diagram):
+            claims = _refuted_there_too(claims, other, all_ports, judges)
+    axis = _axis(diagram, all_ports)
+    return [replace(one, claim=use_units_of(axis, one.claim)) for one in claims]
+
+
+def _open(diagram: Diagram, why: str) -> list[TopicClaim]:
+    return [TopicClaim(WHOLE[0], Claim(f"{diagram.name}: its ports are passive", Unknown(why)))]
 
 
 def _refuted_there_too(
-    claims: list[TopicClaim], other: Diagram, all_ports: Sequence[Port]
+    claims: list[TopicClaim],
+    other: Diagram,
+    all_ports: Sequence[Port],
+    judges: Mapping[str, Callable[[Family], Claim]],
 ) -> list[TopicClaim]:
     """The claims, with each refutation dropped that does not also hold at the values of `other`."""
     if not any(one.claim.status == "refuted" for one in claims):
         return claims
     try:
-        z = impedance_matrix(other, all_ports)
+        family = family_at(other, all_ports)
     except ModelError:
-        return [_restate_on_rounding(one) for one in claims]
-    return [one if _fails(one, z) else _restate_on_rounding(one) for one in claims]
+        family = None
+    made = []
+    for one in claims:
+        if one.claim.status == "refuted" and not (
+            family and (_moves(one.claim, family) or judges[one.topic](family).status == "refuted")
+        ):
+            why = f"it fails, but a relative change of its values by {NEARBY:.1g} decides: rounding"
+            one = replace(one, claim=Claim(one.claim.statement, Unknown(why)))
+        made.append(one)
+    return made
 
 
-def _fails(one: TopicClaim, z: sp.Matrix) -> bool:
-    if one.claim.status != "refuted":
-        return True
-    record = one.claim.record
-    if isinstance(record, GrowingWave) and record.impedance.shape == z.shape:
-        wave = wave_of(sp.ImmutableMatrix(z), record.rate, record.frequency)
-        if wave is not None and wave.energy > 0:
-            return True
-        if z.rows == 2:
-            return passive(two_port(z.tolist())).status == "refuted"
-    if z.rows > 2:
-        return passive_together(z).status == "refuted"
-    if z.rows == 1:
-        judge = late_one_port if z.has(sp.exp) else positive_real
-        return judge(z[0, 0]).status == "refuted"
-    return is_shown_unstable(two_port(z.tolist()))
-
-
-def _restate_beside_growth(claims: list[TopicClaim], rate: float | None) -> list[TopicClaim]:
-    """The claims with the growth of internal modes taken into account.
-
-    rate: of `growth_within`. A number: no claim holds. NaN: not known, so nothing is proved
-    """
-    if rate is None:
-        return claims
-    if math.isnan(rate):
-        why = (
-            "from rest its impedance is that of a passive port, but with a dead time, a loop that "
-            "determines nothing, or a state of an effect that its force does not show, a mode that "
-            "no port shows may grow"
-        )
-        return [
-            replace(one, claim=Claim(one.claim.statement, Unknown(why)))
-            if one.claim.status == "proved"
-            else one
-            for one in claims
-        ]
-    how = f"at {rate:.4g} 1/s" if rate else "as a power of time, a multiple pole on the axis"
-    why = (
-        "from rest its impedance is that of a passive port, but a mode that no port shows grows "
-        f"{how}"
-    )
-    return [
-        replace(one, claim=Claim(one.claim.statement, Unknown(why))) if one.claim.holds else one
-        for one in claims
-    ]
-
-
-def _open_inside(one: TopicClaim) -> TopicClaim:
-    if not one.claim.holds:
-        return one
-    why = "with its dead times a law has a growing mode that no port shows"
-    return replace(one, claim=Claim(one.claim.statement, Unknown(why)))
+def _moves(claim: Claim, family: Family) -> bool:
+    """Whether the motion that refutes a claim also refutes it for another impedance."""
+    record = claim.record
+    if isinstance(record, GrowingWave) and len(record.velocity) == family.size:
+        wave = wave_of(family.z, record.rate, record.frequency)
+        return wave is not None and wave.energy > 0
+    return isinstance(record, GrowingMode) and replace(record, impedance=family.z).is_confirmed()
 
 
 def _nearby(diagram: Diagram) -> list[Diagram]:
@@ -135,36 +104,6 @@ def _nearby(diagram: Diagram) -> list[Diagram]:
         )
         for bit in range(2)
         for side in (1, -1)
-    ]
-
-
-def _restate_on_rounding(one: TopicClaim) -> TopicClaim:
-    if one.claim.status != "refuted":
-        return one
-    why = f"it fails, but a relative change of its values by {NEARBY:.1g} decides: rounding"
-    return replace(one, claim=Claim(one.claim.statement, Unknown(why)))
-
-
-def _linear_claims(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
-    try:
-        z = impedance_matrix(diagram, all_ports)
-        if len(all_ports) == 1:
-            judge = late_one_port if z.has(sp.exp) else positive_real
-            claim = use_units_of(_axis(diagram, all_ports), judge(z[0, 0]))
-            return [TopicClaim(WHOLE[1], claim)]
-    except ModelError as problem:
-        claim = Claim(f"{diagram.name}: its ports are passive", Unknown(str(problem)))
-        return [TopicClaim(WHOLE[0], claim)]
-    axis = _axis(diagram, all_ports)
-    if len(all_ports) > 2:
-        return [TopicClaim(WHOLE[0], use_units_of(axis, passive_together(z)))]
-    system = two_port(z.tolist())
-    return [
-        TopicClaim(WHOLE[2], use_units_of(axis, passive(system))),
-        TopicClaim(
-            "both ports, whatever passive holds them",
-            use_units_of(axis, absolutely_stable(system)),
-        ),
     ]
 
 

@@ -1,7 +1,7 @@
 """Maps of the margins of a teleoperator over two of its values; numerical, no proof.
 
-The impedance matrix is derived once, and then computed at each pair of values and each frequency,
-with exact delays. If Llewellyn's margin is below zero, some pair of passive terminations makes the
+The equations of all states are solved at each pair of values and each frequency, with exact
+delays. If Llewellyn's margin is below zero, some pair of passive terminations makes the
 teleoperator unstable. If the margin of passivity is below zero, a motion takes energy out. A margin
 above zero proves nothing: frequencies between and beyond those of the grid, poles and residues are
 not checked. `diagram_claims` judges a single point.
@@ -9,23 +9,27 @@ not checked. `diagram_claims` judges a single point.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import sympy as sp
 
 from ..base.arguments import check_types
 from ..base.errors import ModelError
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
-from ..derive import symbol_values, two_port_functions
+from ..derive.all_states import AllStates, all_states
+from ..derive.responses import Responses
 from ..diagrams import Diagram
 from ..diagrams.units import unit_of_value
-from ..realise.lti import LinearBlocks, S, linear_blocks, numerical
-from ..realise.tips import linear_tips
-from .two_port.two_port import passive_margin, stable_margin
+from ..realise.lti import linear_blocks
+from .holders import without_holders
+from .intervals.box import ValueBox
+from .intervals.linear import states_over
+from .linear.family import port_rows
+from .linear.sweep import passive_margin, stable_margin
+from .ports import Port, ports
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -78,24 +82,20 @@ def margin_map(
             f"margin_map: expected values of two blocks, found {', '.join(values) or 'none'}"
         )
     f = np.geomspace(*_FREQUENCY) if frequency is None else np.asarray(frequency, dtype=float)
-    device = linear_tips(diagram.without("Z_H", "Z_E"))
-    matrix, s = _Matrix(device), 2j * np.pi * f
-    base = linear_blocks(device, speed=speed)
-    fixed = _responses(base, f)
-    varied = [
-        [_select_block(device.with_values({name: float(x)}), name, f, speed) for x in numbers]
-        for name, numbers in values.items()
-    ]
-    shape = (len(varied[0]), len(varied[1]))
+    device = without_holders(diagram)
+    if len(at := ports(device)) != 2:
+        raise ModelError(f"{diagram.name}: no teleoperator: expected two ports, found {len(at)}")
+    matrix = _impedance(device, at, values, speed)
+    shape = tuple(len(numbers) for numbers in values.values())
     margins = {name: np.empty(shape) for name in ("llewellyn", "passive", "frequency")}
-    for i, first in enumerate(varied[0]):
-        for k, second in enumerate(varied[1]):
-            z = matrix(s, {**fixed, **first, **second})
-            stable, passive = stable_margin(z), passive_margin(z)
-            lowest = int(np.argmin(stable))
-            margins["llewellyn"][i, k] = stable[lowest]
-            margins["passive"][i, k] = passive.min()
-            margins["frequency"][i, k] = f[lowest]
+    for place in np.ndindex(*shape):
+        point = [float(x[k]) for x, k in zip(values.values(), place, strict=True)]
+        z = matrix(2j * np.pi * f, point)
+        stable, passive = stable_margin(z), passive_margin(z)
+        lowest = int(np.argmin(stable))
+        margins["llewellyn"][place] = stable[lowest]
+        margins["passive"][place] = passive.min()
+        margins["frequency"][place] = f[lowest]
     units = {"llewellyn": "1", "passive": "N s/m", "frequency": "Hz"}
     names = list(values)
     varied_units = {n: unit_of_value(diagram, n) for n in names}
@@ -104,45 +104,35 @@ def margin_map(
         {n: (n, np.asarray(values[n], dtype=float), {"units": varied_units[n]}) for n in names},
         {"diagram": diagram.name},
     )
-    return MarginMap(data, base.left_out)
+    return MarginMap(data, linear_blocks(device, speed=speed).left_out)
 
 
-class _Matrix:
-    """The derived impedance matrix, force over velocity, as a function of the blocks' responses."""
+def _impedance(
+    device: Diagram,
+    at: Sequence[Port],
+    values: Mapping[str, Sequence[float] | np.ndarray],
+    speed: float,
+) -> Callable[[np.ndarray, Sequence[float]], np.ndarray]:
+    """The impedance matrix, (n, 2, 2), as a function of s (1/s) and numbers for these values."""
+    names = tuple(values)
+    ends = [(float(np.min(x)), float(np.max(x))) for x in values.values()]
+    box = ValueBox(names, *(tuple(side) for side in zip(*ends, strict=True)))
+    known = states_over(device.with_values(box.named(box.centre)), box, speed)
 
-    def __init__(self, device: Diagram) -> None:
-        functions = two_port_functions(device, convention="velocity")
-        forms = [functions[f"Z_{i}{j}"] for i in "ms" for j in "ms"]
-        used = set().union(*(e.free_symbols for e in forms)) - {S}
-        # a block has a symbol that does not commute, a delay one that does: both by their names
-        plain = {x: sp.Symbol(x.name) for x in used}
-        self.names = sorted({x.name for x in used})
-        arguments = [S, *(sp.Symbol(n) for n in self.names)]
-        self.call = sp.lambdify(arguments, [e.xreplace(plain) for e in forms], "numpy")
+    moved = [f"port {k}" for k in range(len(at))]
 
-    def __call__(self, s: np.ndarray, blocks: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Values at complex s (1/s), (n, 2, 2).
+    def responses(states: AllStates) -> Responses:
+        return Responses(states, [p.force for p in at], moved, port_rows(states, at, moved))
 
-        blocks: name -> values of the block at each s, (n,); of a delay its time, s
-        """
-        entries = self.call(s, *(blocks[n] for n in self.names))
-        flat = [np.broadcast_to(np.asarray(e, dtype=complex), s.shape) for e in entries]
-        return np.stack(flat, axis=-1).reshape(*s.shape, 2, 2)
+    shared = responses(known) if known else None
 
+    def impedance(s: np.ndarray, point: Sequence[float]) -> np.ndarray:
+        if shared:
+            numbers = dict(zip(shared.states.ring.symbols[1:], point, strict=False))
+            over_position = shared.at(s, numbers)
+        else:
+            there = device.with_values(dict(zip(names, point, strict=True)))
+            over_position = responses(all_states(there, speed=speed)).at(s)
+        return np.asarray(over_position / s[:, None, None])
 
-def _responses(linear: LinearBlocks, f: np.ndarray) -> dict[str, np.ndarray]:
-    """Values of each symbol of the derivation over frequency (Hz), by its name, (n,)."""
-    s = 2j * np.pi * f
-    forms = {x.name: e for x, e in symbol_values(linear).items() if x.name not in linear.dead_times}
-    responses = {n: numerical(sp.sympify(e))(s) for n, e in forms.items()}
-    return responses | {n: np.full(len(f), float(t)) for n, t in linear.dead_times.items()}
-
-
-def _select_block(device: Diagram, name: str, f: np.ndarray, speed: float) -> dict[str, np.ndarray]:
-    """Responses over frequency of the block that has this parameter, by names of symbols.
-
-    name: of the parameter, "block.parameter"
-    """
-    block = name.partition(".")[0]
-    here = _responses(linear_blocks(device, speed=speed, only=block), f)
-    return {n: x for n, x in here.items() if n in (block, f"A_{block}", f"V_{block}")}
+    return impedance

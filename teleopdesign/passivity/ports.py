@@ -13,26 +13,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import sympy as sp
-from sympy.polys.matrices import DomainMatrix
-from sympy.polys.matrices.exceptions import DMNonInvertibleMatrixError
 
 from ..base.errors import ModelError
 from ..blocks import Body
-from ..controllers import Controller, make_exact
-from ..derive import symbol_values, transfer
-from ..derive.elimination import rows
-from ..derive.printing import dead_time_symbol
-from ..diagrams import Control, Diagram, Kinematics, Moving, position_symbol
+from ..controllers import Controller
+from ..diagrams import Diagram, Kinematics, Moving, position_symbol
 from ..effects import is_linear
-from ..realise.lti import LinearBlocks, S, linear_blocks
+from ..realise.lti import S, linear_blocks
 from ..realise.simulated import without_absent
 from ..realise.tips import with_tips
 from .declarations import falsely_linear
-from .linear.impedance import exact
 from .shares import shares_of, total_share
-
-#: names of blocks that act at a port, a hand and an environment: left out of the judged diagram
-HOLDING = ("Z_H", "Z_E")
 
 
 @dataclass(frozen=True)
@@ -126,133 +117,6 @@ def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
     names += falsely_linear(diagram)
     names += [k.name for k in diagram.kinematics if not _is_fixed(k)]
     return (*names, *(j.name for j in diagram.junctions if j.arms))
-
-
-def impedance_matrix(
-    diagram: Diagram, at: Sequence[Port], *, linear: LinearBlocks | None = None
-) -> sp.Matrix:
-    """Impedance matrix at ports: forces over velocities, N s/m, in exact numbers.
-
-    All other outside signals are zero.
-
-    at: the ports, n;  linear: forms of the blocks, if they are not those of the diagram's values
-    returns: (n, n), in `realise.lti.S`, with exp(-S T) for dead times
-    raises ModelError: the wiring does not determine the matrix, or one of several ports gives way
-        to any force
-    """
-    diagram = with_tips(diagram)
-    linear = linear or linear_blocks(diagram)
-    # a dead time is a separate symbol until the matrix is inverted: it commutes, and stays short
-    late = {dead_time_symbol(n): sp.Dummy(n) for n in linear.dead_times}
-    times = {late[dead_time_symbol(n)]: sp.exp(-S * t) for n, t in linear.dead_times.items()}
-    values = symbol_values(linear)
-    for power in sorted({x for e in values.values() for x in sp.sympify(e).atoms(sp.exp)}, key=str):
-        times[sp.Dummy(f"late_{len(times)}")] = power  # a delay in series with a law
-    within = {power: mark for mark, power in times.items()}
-    values = {n: sp.sympify(e).xreplace(within) for n, e in values.items()}
-    forces = tuple(p.force for p in at)
-    if not times and all(e.free_symbols <= {S} for e in values.values()):
-        # in numbers at once: transfer functions in the blocks grow with each port and each loop
-        mobility = _mobility(diagram, at, values)
-        if mobility is not None or len(at) > 2:
-            return _impedance_of(diagram, mobility)
-    motions = {m: transfer(diagram, m, forces) for p in at for m in p.weights}
-    mobility = sp.Matrix(
-        [
-            [
-                sp.Add(
-                    *(
-                        exact(w) * S * _mark_delays(motions[m][f], late)
-                        for m, w in port.weights.items()
-                    )
-                )
-                for f in forces
-            ]
-            for port in at
-        ]
-    ).subs(values)
-    mobility = mobility.xreplace({x: exact(x) for x in mobility.atoms(sp.Float)})
-    if mobility.shape == (1, 1) and mobility.has(sp.zoo):
-        return sp.zeros(1)  # one port that nothing resists
-    if mobility.has(sp.zoo, sp.nan):
-        raise ModelError(f"{diagram.name}: a port gives way to any force: it has no mobility")
-    return _impedance_of(diagram, mobility).xreplace(times)
-
-
-def _impedance_of(diagram: Diagram, mobility: sp.Matrix | None) -> sp.Matrix:
-    if mobility is None:
-        raise ModelError(f"{diagram.name}: the wiring does not determine its motions")
-    impedance = _inverse(mobility)
-    if impedance is None:
-        raise ModelError(f"{diagram.name}: its ports do not move apart: they have no impedance")
-    return impedance
-
-
-def _mobility(
-    diagram: Diagram, at: Sequence[Port], values: Mapping[sp.Symbol, sp.Expr]
-) -> sp.Matrix | None:
-    """Mobility matrix of the ports: velocities over forces, from all equations at once.
-
-    returns: None where the equations do not determine the velocities
-    """
-    unknown = [s for s in diagram.signals if s not in diagram.outside]
-    equations = [{n: e.xreplace(values) for n, e in row.items()} for row in rows(diagram)]
-    if not all(e.free_symbols <= {S} for row in equations for e in row.values()):
-        raise ModelError(f"{diagram.name}: values are needed")
-    system, right = (arrange_coefficients(equations, n) for n in (unknown, [p.force for p in at]))
-    try:
-        answers = system.lu_solve(-right).to_Matrix()
-    except DMNonInvertibleMatrixError:
-        return None
-    weights = sp.Matrix([[exact(port.weights.get(n, 0)) for n in unknown] for port in at])
-    return weights * answers * S
-
-
-def arrange_coefficients(
-    equations: Sequence[Mapping[str, sp.Expr]], names: Sequence[str]
-) -> DomainMatrix:
-    """Coefficients of these signals in each equation: a matrix of exact rational functions of S."""
-    field = sp.QQ.frac_field(S)
-    entries = [
-        [field.from_sympy(make_exact(row.get(n, sp.S(0)))) for n in names] for row in equations
-    ]
-    return DomainMatrix(entries, (len(equations), len(names)), field)
-
-
-def _inverse(matrix: sp.Matrix) -> sp.Matrix | None:
-    """Inverse of a matrix of rational functions, entries coprime; None where it is singular."""
-    symbols = sorted(matrix.free_symbols | {S}, key=str)
-    field = sp.QQ.frac_field(*symbols)
-    rows = [[field.from_sympy(sp.sympify(e)) for e in row] for row in matrix.tolist()]
-    made = DomainMatrix(rows, matrix.shape, field)
-    if not made.det():
-        return None
-    return made.inv().to_Matrix()
-
-
-def _mark_delays(form: sp.Expr, late: Mapping[sp.Symbol, sp.Symbol]) -> sp.Expr:
-    """The form with each e^(-s T) replaced by its symbol; an e^(-s (T_1 + T_2)) by a product."""
-
-    def product(power: sp.Expr) -> sp.Expr:
-        return sp.Mul(*(mark ** -(power.coeff(S).coeff(t)) for t, mark in late.items()))
-
-    return sp.sympify(form).replace(sp.exp, lambda power: product(sp.expand(power)))
-
-
-def without_holding(diagram: Diagram, motion: str = "") -> Diagram:
-    """The diagram without hands and environments; with `motion`, without those at that motion.
-
-    A hand or environment on several axes is at all their motions. A controller with such a name
-    remains.
-    """
-    names = [
-        b.name
-        for b in diagram.blocks
-        if b.name in HOLDING
-        and not isinstance(b, Control)
-        and (not motion or getattr(b, "motion", motion) == motion)
-    ]
-    return diagram.without(*names)
 
 
 def is_spanned(motion: str, standing: Sequence[Port]) -> bool:

@@ -27,7 +27,7 @@ from .points import points_of
 from .processes import run_on_this_machine
 
 if TYPE_CHECKING:
-    from ..diagnose import ArmDiagnosis, Diagnosis
+    from ..diagnose import Diagnosis
 
 #: file of finished folders within the output folder
 JOURNAL = "journal.part"
@@ -145,12 +145,9 @@ def answer_files(folders: Sequence[Path], output: Path) -> dict[Path, Path]:
     return names
 
 
-def _write_answer(
-    experiment: str, files: Mapping[str, Path], search: FolderSearch
-) -> Diagnosis | ArmDiagnosis:
+def _write_answer(experiment: str, files: Mapping[str, Path], search: FolderSearch) -> Diagnosis:
     """Diagnose a folder and write the answer; returns the diagnosis."""
-    from ..diagnose import find_missing, find_missing_in_arm
-    from ..diagnose.answer import write_answer
+    from ..diagnose import find_missing, write_answer
     from ..diagnose.search_plan import PLAN, QUICK
     from ..measurement import load_experiment
     from ..model import Model
@@ -158,12 +155,6 @@ def _write_answer(
     recorded = load_experiment(experiment)
     model = Model.from_experiment(recorded, search.known)
     plan = QUICK if search.quick else PLAN
-    if recorded.arm is not None:
-        from ..diagnose.arms.answer import write_arm_answer
-
-        of_arm = find_missing_in_arm(recorded, model, plan=plan, among=search.among)
-        write_arm_answer(of_arm, files[experiment])
-        return of_arm
     diagnosis = find_missing(recorded, model, plan=plan, among=search.among)
     write_answer(diagnosis, files[experiment])
     return diagnosis

@@ -186,16 +186,15 @@ def _verdict(point: Point) -> Any:
 
     of an experiment, its folder, or a diagnosis that the model's function returns
     """
-    from ..diagnose import ArmDiagnosis, Diagnosis, find_missing, find_missing_in_arm
+    from ..diagnose import Diagnosis, find_missing
     from ..measurement import Experiment, load_experiment
 
     diagnosis = point.content
-    if not isinstance(diagnosis, Diagnosis | ArmDiagnosis):
+    if not isinstance(diagnosis, Diagnosis):
         experiment = diagnosis
         if not isinstance(experiment, Experiment):
             experiment = load_experiment(experiment)
-        find = find_missing if experiment.arm is None else find_missing_in_arm
-        diagnosis = find(experiment)
+        diagnosis = find_missing(experiment)
     return {
         "verdict": Amount(diagnosis.verdict, text="what the diagnosis ends with"),
         "missing": Amount(", ".join(map(str, diagnosis.missing)), text="effects that are named"),

@@ -20,11 +20,11 @@ from ..base.frozen import ByValue
 from ..base.shown import Shown
 from ..diagrams import Diagram
 from ..frequency import delay_margin, gain_margin, loop_gain, phase_margin
+from ..passivity.holders import without_holders
 from ..passivity.intervals.box import ValueBox
-from ..passivity.intervals.family import family_of
 from ..passivity.intervals.linear import CLAIMS, margin_over
 from ..passivity.intervals.over_box import claim_over_intervals
-from ..passivity.ports import drop_absent_effects, nonlinear_parts, without_holding
+from ..passivity.ports import drop_absent_effects, nonlinear_parts
 from ..studies.chosen_measures import Measure, measures_of
 from ..studies.measures import MEASURES
 
@@ -123,14 +123,13 @@ def margin_function(
     """
     if limited.name in LOOP_MARGINS:
         return lambda v: loop_margin(diagram.with_values(v), limited.name, limited.controller)
-    whole = diagram if limited.name == "stable" else without_holding(diagram)
+    whole = diagram if limited.name == "stable" else without_holders(diagram)
     kept = tuple(n for n in box.names if n in whole.values)
     if not nonlinear_parts(drop_absent_effects(whole)):
         within = box.select(kept)
         middle = whole.with_values(within.named(within.centre))
-        family = family_of(middle, within)
-        if family is not None and (family.is_rational or limited.name != "stable"):
-            margin = margin_over(family, within, limited.name)
+        margin = margin_over(middle, within, limited.name)
+        if margin is not None:
             return lambda v: margin(np.array([v[n] for n in kept]))
 
     def settle(values: dict[str, float]) -> float:

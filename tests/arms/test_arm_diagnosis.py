@@ -14,20 +14,20 @@ from shared_data import shared_folder
 
 import teleopdesign as td
 from teleopdesign.cli import main
-from teleopdesign.commands.diagnose import _suggest_for_joints
-from teleopdesign.diagnose.arms.fit import ArmFit, error_over_joints, estimate_arm
-from teleopdesign.diagnose.arms.prepared import PreparedArm
+from teleopdesign.commands.diagnose import _suggest_commands
 from teleopdesign.diagnose.error import force_error
+from teleopdesign.diagnose.parts import PreparedParts
+from teleopdesign.diagnose.parts_fit import PartsFit, error_over_joints, estimate_parts
 from teleopdesign.measurement.filtering import Array
 from teleopdesign.measurement.shared_links import Knowledge
 from teleopdesign.measurement.zero_phase import zero_phase
 
 
-def fitted(folder) -> tuple[PreparedArm, ArmFit]:
+def fitted(folder) -> tuple[PreparedParts, PartsFit]:
     """The model of an experiment on an arm, estimated."""
     experiment = td.load_experiment(folder)
     prepared, models = stated_models(experiment)
-    return prepared, estimate_arm(models, prepared)
+    return prepared, estimate_parts(models, prepared)
 
 
 def made(tmp_path, seed, count, hidden=None, seconds=20.0):
@@ -107,20 +107,20 @@ def test_what_helps_further_at_a_joint_stands_in_the_answer_and_is_not_searched_
         "joint2": joint("effects_missing", (), True),
         "joint3": joint("undecided", ("bias", "spring"), True),
     }
-    assert _suggest_for_joints(SimpleNamespace(joints=joints), "answer.json") == [
+    assert _suggest_commands(SimpleNamespace(joints=joints), "answer.json") == [
         "",
         "where the model fails: teleopdesign describe answer.json --body joint2",
-        "to distinguish them: teleopdesign next answer.json --body joint3",
+        "what to measure to distinguish them: teleopdesign next answer.json --body joint3",
         "where the model fails: teleopdesign describe answer.json --body joint3",
     ]
     adequate = SimpleNamespace(joints={"joint1": joints["joint1"]})
-    assert _suggest_for_joints(adequate, "answer.json") == []
+    assert _suggest_commands(adequate, "answer.json") == []
 
 
 @pytest.mark.slow
 def test_an_adequate_model_of_an_arm_lacks_nothing(tmp_path):
     _, folder = made(tmp_path, 9, 3)
-    diagnosis = td.find_missing_in_arm(td.load_experiment(folder))
+    diagnosis = td.find_missing(td.load_experiment(folder))
     assert diagnosis.missing == ()
     assert diagnosis.verdict == "model_adequate"
 

@@ -13,13 +13,10 @@ import teleopdesign as td
 from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
 from teleopdesign.diagnose import RecordedLoop
-from teleopdesign.diagnose.arms.by_simulation import (
-    _without_coupling,
-    compare_arm_by_simulation,
-)
-from teleopdesign.diagnose.arms.course import ArmLinks
-from teleopdesign.diagnose.arms.prepared import prepare_arm
 from teleopdesign.diagnose.by_simulation import compare_by_simulation, simulation_data
+from teleopdesign.diagnose.driven import _without_coupling
+from teleopdesign.diagnose.linked_course import ArmLinks
+from teleopdesign.diagnose.parts import PreparedParts, prepare_parts
 from teleopdesign.effects import EFFECTS
 
 SECONDS = 6.0
@@ -54,7 +51,7 @@ def test_the_links_need_what_an_independent_simulator_says(two):
     generator = np.random.default_rng(0)
     q, v, a = generator.normal(size=(3, 2, 5))
     bodies = np.diag([0.3, 0.1])
-    links = ArmLinks(prepare_arm(experiment), chain.inertial, everything, bodies)
+    links = ArmLinks(prepare_parts(experiment), chain.inertial, everything, bodies)
     inertia, force = links.needed(q, v)
     assert np.allclose(inertia, np.swapaxes(inertia, 1, 2))
     needed = np.einsum("nij,jn->in", inertia + bodies, a) + force
@@ -102,19 +99,22 @@ def test_an_arm_of_one_joint_about_the_vertical_is_one_body(tmp_path):
     arm = random_arm(np.random.default_rng(4), 1)
     arm = replace(arm, axes=[np.array([0.0, 0.0, 1.0])], angles=[np.zeros(3)])
     experiment, model = known(tmp_path / "arm", arm)
-    alone = compare_arm_by_simulation(model, experiment, loop=LOOP)
+    alone = compare_by_simulation(model, experiment, loop=LOOP)
     # about the vertical no gravity acts and the inertia is the same at every pose
     rest = np.zeros((1, 1))
     links = ArmLinks(alone.prepared, experiment.arm.arm.inertial, np.arange(10), np.zeros((1, 1)))
     inertia, force = links.needed(rest, rest)
     assert force == pytest.approx(0.0, abs=1e-12)
-    records = alone.prepared.joints["joint1"]
+    records = alone.prepared.parts["joint1"]
     bare = [replace(s, motion=replace(s.motion, links=None)) for s in records.stretches]
     one = td.Model({"joint1": model.bodies["joint1"]}).with_values(
         {"joint1.inertia": float(inertia[0, 0, 0])}
     )
-    body = compare_by_simulation(one, replace(records, stretches=tuple(bare)))
-    free = compare_arm_by_simulation(model, experiment)
+    records = replace(records, stretches=tuple(bare))
+    body = compare_by_simulation(
+        one, PreparedParts(records.experiment, records.bandwidth, None, {"": records})
+    )
+    free = compare_by_simulation(model, experiment)
     for horizon in (0.3, 3.0, np.inf):
         for quantity in ("position", "velocity"):
             of_arm, of_body = (

@@ -19,15 +19,15 @@ from arms.stated_models import stated_models
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
-from teleopdesign.diagnose.answers import load_answer
-from teleopdesign.diagnose.arms.answer import arm_answer, write_arm_answer
-from teleopdesign.diagnose.arms.fit import estimate_arm
-from teleopdesign.diagnose.arms.prepared import inertias_at, prepare_arm
-from teleopdesign.diagnose.arms.restored import restore_arm_diagnosis
+from teleopdesign.diagnose.answer import load_answer, write_answer
 from teleopdesign.diagnose.learnable import learnable
+from teleopdesign.diagnose.parts import inertias_at, prepare_parts
+from teleopdesign.diagnose.parts_fit import estimate_parts
+from teleopdesign.diagnose.predictions import write_predictions
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.search_plan import QUICK
 from teleopdesign.effects import EFFECTS
+from teleopdesign.show.report import write_report
 
 pytestmark = pytest.mark.slow  # diagnoses of arms
 
@@ -43,20 +43,24 @@ def folder(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def answer(folder) -> Path:
-    """The answer where only what is hidden, and one more, are tried."""
-    diagnosis = td.find_missing_in_arm(
+def diagnosis(folder) -> td.Diagnosis:
+    """The diagnosis where only what is hidden, and one more, are tried."""
+    return td.find_missing(
         td.load_experiment(folder), plan=QUICK, among=("spring", "quadratic_drag")
     )
+
+
+@pytest.fixture(scope="module")
+def answer(folder, diagnosis) -> Path:
     path = folder.parent / "answer.json"
-    write_arm_answer(diagnosis, path)
+    write_answer(diagnosis, path)
     return path
 
 
 def test_two_rounds_settle_links_that_a_missing_effect_had_led_astray(folder):
     experiment = td.load_experiment(folder)
     prepared, models = stated_models(experiment)
-    astray = estimate_arm(models, prepared)
+    astray = estimate_parts(models, prepared)
     assert max(astray.fit_errors.values()) > 0.03
     models = {j: f.model for j, f in astray.fits.items()}
     models["joint2"] = (
@@ -64,31 +68,27 @@ def test_two_rounds_settle_links_that_a_missing_effect_had_led_astray(folder):
         .with_effect(EFFECTS["spring"], at="joint2")
         .with_values({"joint2.spring.stiffness": 1.0})
     )
-    twice = estimate_arm(models, prepared, rounds=2)
-    again = estimate_arm({j: f.model for j, f in twice.fits.items()}, prepared, rounds=2)
+    twice = estimate_parts(models, prepared, rounds=2)
+    again = estimate_parts({j: f.model for j, f in twice.fits.items()}, prepared, rounds=2)
     for joint in twice.fits:
         # rows at rest would hold the links where they were: that left a third more
         assert twice.fit_errors[joint] < 1.03 * again.fit_errors[joint]
         assert again.fit_errors[joint] < 0.006  # 1 % of noise through 8 Hz of 50, and reversals
 
 
-def test_the_diagnosis_reads_back_as_it_was(folder, answer):
+def test_the_diagnosis_reads_back_as_it_was(diagnosis, answer, tmp_path):
     document = json.loads(answer.read_text())
     assert document["missing"] == [{"effect": "spring", "at": "joint2"}]
-    experiment = td.load_experiment(folder)
-    restored = restore_arm_diagnosis(load_answer(answer), experiment)
-    again = json.loads(json.dumps(arm_answer(restored)))
-    numbers = {"experiment", "joints", "left_over_noise_floors"}
-    assert {n for n in document if again[n] != document[n]} <= numbers
-    for joint in ("joint1", "joint2"):
-        assert again["joints"][joint]["models"] == document["joints"][joint]["models"]
-        assert again["joints"][joint]["verdict"] == document["joints"][joint]["verdict"]
-        # residuals are computed anew: rounding of what is written
-        assert again["joints"][joint]["left_over_noise_floors"] == pytest.approx(
-            document["joints"][joint]["left_over_noise_floors"], rel=1e-6
-        )
+    again = load_answer(answer)
+    assert again == diagnosis and repr(again) == repr(diagnosis)
+    for name, one in (("memory", diagnosis), ("answer", again)):
+        write_report(one, tmp_path / f"{name}.html")
+        write_predictions(one, tmp_path / f"{name}.csv")
+    for ending in ("html", "csv"):
+        files = [(tmp_path / f"{name}.{ending}").read_bytes() for name in ("memory", "answer")]
+        assert files[0] == files[1]
     # a notebook shows the ladder and what is said of each joint
-    shown = restored._repr_html_()
+    shown = again._repr_html_()
     ElementTree.fromstring(shown)
     assert "+ spring at joint2" in shown and "joint1: " in shown
 
@@ -109,21 +109,21 @@ def test_what_trees_learn_is_reported_for_each_joint_and_for_the_arm(answer, fol
         np.sqrt(np.mean([box["left"] ** 2 for box in boxes]))
     )
     assert document["learnable"] <= document["black_box"]["left"]
-    text = str(restore_arm_diagnosis(load_answer(answer), td.load_experiment(folder)))
+    text = str(load_answer(answer))
     assert text.count("black box: ") == 2
 
 
 def test_a_force_by_another_joint_s_motion_is_learned_from_that_motion_only(folder):
     """What is added to the command of joint 2 follows the place of joint 1."""
     experiment = td.load_experiment(folder)
-    prepared = prepare_arm(experiment)
+    prepared = prepare_parts(experiment)
     beside = prepared.beside("joint2")
     stretches = []
-    for stretch, (other,) in zip(prepared.joints["joint2"].stretches, beside, strict=True):
+    for stretch, (other,) in zip(prepared.parts["joint2"].stretches, beside, strict=True):
         motion = stretch.motion
         pushed = motion.command + 3.0 * np.sign(other.position)
         stretches.append(replace(stretch, motion=replace(motion, command=pushed)))
-    records = replace(prepared.joints["joint2"], stretches=tuple(stretches))
+    records = replace(prepared.parts["joint2"], stretches=tuple(stretches))
     model = td.Model({"joint2": td.Model.from_experiment(experiment).bodies["joint2"]})
     fit = estimate_from_starts(model.with_links(prepared.initial), records)
     with_other = learnable(fit.model, records, beside=beside)
@@ -134,7 +134,7 @@ def test_a_force_by_another_joint_s_motion_is_learned_from_that_motion_only(fold
 
 
 def test_the_figure_has_a_row_for_each_joint_and_the_ladder(folder, answer):
-    figure = restore_arm_diagnosis(load_answer(answer), td.load_experiment(folder)).plot()
+    figure = load_answer(answer).plot()
     labels = [axes.get_ylabel().partition("\n")[0] for axes in figure.axes]
     assert {"joint1", "joint2"} <= set(labels)
     assert "check error (% of" in figure.axes[-1].get_xlabel()
@@ -171,14 +171,14 @@ def test_a_pose_gives_the_inertia_that_the_links_have_there(folder, answer, tmp_
     path = tmp_path / "joint.urdf"
     arguments = ["--body", "joint2", "--pose", "joint2=0.3", "--output", str(path)]
     assert main(["export", str(answer), "--to", "urdf", *arguments]) == 0
-    model = load_answer(answer).model()
+    model = load_answer(answer).model
     expected = inertias_at(td.load_experiment(folder), model.links, np.array([[0.0], [0.3]]))[1, 0]
     assert f"{expected:.5g}" in capsys.readouterr().out
 
 
 def test_the_body_of_a_joint_has_the_inertia_of_the_final_links(folder, answer):
     """The first links, without the spring, were wrong by more than that."""
-    model, experiment = load_answer(answer).model(), td.load_experiment(folder)
+    model, experiment = load_answer(answer).model, td.load_experiment(folder)
     poses = np.array([experiment.records[0].signals[f"joint{k}.position"][::20] for k in (1, 2)])
     expected = inertias_at(experiment, model.links, poses).mean(axis=1)
     for k, joint in enumerate(("joint1", "joint2")):
@@ -196,13 +196,13 @@ def test_a_bad_pose_is_one_line(answer, capsys, pose):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda a: a.pop("models"), 'no key "models"'),
+        (lambda a: a.pop("models"), "joints: no joint"),
         (lambda a: a["models"]["ladder"].pop(), "models.ladder: found 1 models, expected 2"),
         (lambda a: a["models"]["ladder"][0]["links"].pop(), "base parameters, expected"),
         (lambda a: a["models"]["ladder"][0].update(links=["1"]), "links"),
         (lambda a: a["joints"].pop("joint2"), 'no joint "joint2", has joint1'),
         (lambda a: a["joints"]["joint1"].pop("candidates"), 'joints.joint1: no key "candidates"'),
-        (lambda a: a["joints"].update(joint1={"verdict": "undecided"}), "earlier version"),
+        (lambda a: a["joints"].update(joint1={"verdict": "undecided"}), 'joint1: no key "missing"'),
         (lambda a: a["models"]["ladder"][1].update(arm={}), 'found "arm", expected a name'),
     ],
 )
@@ -214,7 +214,7 @@ def test_an_answer_that_was_changed_is_refused_in_one_line(
     path = tmp_path / "changed.json"
     path.write_text(json.dumps(content))
     with pytest.raises(ExperimentError, match=message) as caught:
-        restore_arm_diagnosis(load_answer(path), td.load_experiment(folder))
+        load_answer(path, experiment=td.load_experiment(folder)).joints["joint1"].prepared  # noqa: B018
     assert "\n" not in str(caught.value)
 
 
@@ -228,8 +228,8 @@ def test_folders_of_arms_are_diagnosed_into_one_table(folder, tmp_path, capsys):
     # the same records: the same answer
     assert {k for k in first if first[k] != other[k]} == {"folder", "answer"}
     for name in (folder.name, "second"):
-        there = load_answer(out / f"{name}.json")
-        assert restore_arm_diagnosis(there, td.load_experiment(folder)).verdict == first["verdict"]
+        there = load_answer(out / f"{name}.json", experiment=td.load_experiment(folder))
+        assert there.verdict == first["verdict"]
     assert "2 of 2 folders diagnosed" in capsys.readouterr().out
 
 
@@ -242,7 +242,7 @@ def test_two_effects_at_two_joints_are_both_named(tmp_path):
     other.bit_generator.state = state
     second = write_experiment(tmp_path / "b", arm, other, ("quadratic_drag", 1, 1.0), seconds=20.0)
     join(folder, second, "u2")
-    diagnosis = td.find_missing_in_arm(td.load_experiment(folder))
+    diagnosis = td.find_missing(td.load_experiment(folder))
     assert {c.key for c in diagnosis.missing} == {
         ("stribeck", "joint1"),
         ("quadratic_drag", "joint2"),

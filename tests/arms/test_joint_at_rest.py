@@ -30,7 +30,7 @@ def test_a_joint_at_rest_has_no_adequate_model(tmp_path):
     folder = write_experiment(tmp_path / "two", arm, generator, None, seconds=10.0)
     for use in ("fit", "check"):
         hold(folder / f"{use}.csv.gz", 2)
-    diagnosis = td.find_missing_in_arm(
+    diagnosis = td.find_missing(
         td.load_experiment(folder), plan=QUICK, among=("spring", "quadratic_drag")
     )
     assert diagnosis.joints["joint2"].verdict == "undecided"

@@ -9,14 +9,15 @@ import pytest
 from arms.arm_simulator import random_arm, write_experiment
 
 import teleopdesign as td
+from teleopdesign.diagnose import held_against_others as refusal
+from teleopdesign.diagnose import parts_ladder as ladder
 from teleopdesign.diagnose.adequacy import Floors
-from teleopdesign.diagnose.arms import ladder, refusal
-from teleopdesign.diagnose.arms.diagnosis import ArmRung
-from teleopdesign.diagnose.arms.joint import Joint
-from teleopdesign.diagnose.arms.refusal import NO_HELP, NO_MORE_THAN_NOISE
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
+from teleopdesign.diagnose.held_against_others import NO_HELP, NO_MORE_THAN_NOISE
 from teleopdesign.diagnose.ladder_state import LadderState
+from teleopdesign.diagnose.part_search import PartSearch
+from teleopdesign.diagnose.parts_fit import PartsRung
 from teleopdesign.diagnose.rung import Rung
 from teleopdesign.diagnose.search_plan import PLAN
 from teleopdesign.effects import EFFECTS
@@ -86,27 +87,28 @@ def climbed(monkeypatch, ladders, refused, why="no"):
             name=name, fits={"joint1": fit_of(name)}, check_errors={"joint1": 0.1}
         )
 
-    def climb(search, state, _):
+    def climb(search, state):
         effects = [Candidate(EFFECTS[name], "joint1") for name in next(climbs)]
         rungs = [Rung(one, fit_of(one.effect.name)) for one in effects]
         return state.with_rungs((state.rungs[0], *rungs)), ()
 
-    def estimate_arm(models, _):
+    def estimate_parts(models, _):
         estimated.append(models["joint1"])
         return arm_fit_of(models["joint1"])
 
     monkeypatch.setattr(ladder, "climb", climb)
-    monkeypatch.setattr(refusal, "estimate_arm", estimate_arm)
+    monkeypatch.setattr(refusal, "estimate_parts", estimate_parts)
     monkeypatch.setattr(refusal, "look", lambda search, rungs, state: state)
     monkeypatch.setattr(refusal, "is_better", lambda *_, **__: True)
     monkeypatch.setattr(
         refusal, "refusal", lambda joint, before, after: why if after.name in refused else ""
     )
-    first = ArmRung(None, arm_fit_of("user's"))
+    first = PartsRung(None, arm_fit_of("user's"))
     nothing = dict(floors=Floors(None, None), first=None, ranking=None, tone=None, supported=())
     state = LadderState(rungs=(Rung(None, fit_of("user's")),), **nothing)
-    joint = Joint("joint1", SimpleNamespace(criteria=CRITERIA), state)
-    joint, rungs = ladder._climb_joint(joint, (first,), None, lambda _: None)
+    joint = PartSearch("joint1", SimpleNamespace(criteria=CRITERIA), state)
+    prepared = SimpleNamespace(joints={"joint1": None})
+    joint, rungs = ladder._climb_part(joint, (first,), prepared, lambda _: None)
     aside = [one.candidate.effect.name for one in joint.state.set_aside]
     return [r.added.effect.name for r in rungs[1:]], aside, estimated, joint
 
@@ -160,7 +162,7 @@ def test_a_log_that_is_early_by_a_row_makes_no_delay_beside_what_is_hidden(tmp_p
     arm = random_arm(generator, 2)
     folder = write_experiment(tmp_path, arm, generator, ("spring", 1, 1.35), late=-1.0)
     among = ("spring", "actuation_delay", "actuator_lag")
-    diagnosis = td.find_missing_in_arm(td.load_experiment(folder), among=among)
+    diagnosis = td.find_missing(td.load_experiment(folder), among=among)
     assert {c.key for c in diagnosis.missing} == {("spring", "joint2")}
     (late,) = (v.value for v in diagnosis.joints["joint2"].model.record_shift.values())
     assert late == pytest.approx(-0.01, abs=0.002)  # a row; joint 1 hardly tells it

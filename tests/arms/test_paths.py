@@ -9,7 +9,7 @@ import pytest
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
-from teleopdesign.diagnose.arms.answer import write_arm_answer
+from teleopdesign.diagnose.answer import write_answer
 from teleopdesign.diagnose.search_plan import QUICK
 from teleopdesign.next_experiment import propose_paths, shown_limits
 
@@ -24,9 +24,7 @@ def poor(tmp_path_factory):
         patch.setattr(simulator, "path", lambda g, k, t: whole(g, k, t, harmonics=1, base=0.2))
         folder = tmp_path_factory.mktemp("poor") / "arm"
         simulator.write_experiment(folder, arm, generator, seconds=10.0)
-    diagnosis = td.find_missing_in_arm(
-        td.load_experiment(folder), plan=QUICK, among=("quadratic_drag",)
-    )
+    diagnosis = td.find_missing(td.load_experiment(folder), plan=QUICK, among=("quadratic_drag",))
     return diagnosis, folder
 
 
@@ -38,7 +36,7 @@ def test_paths_tell_more_than_one_sine_a_joint_within_its_limits(poor):
     assert paths.condition < paths.recorded
     time = paths.reference.time
     for joint, position in paths.reference.position.items():
-        limit = shown_limits(diagnosis.prepared.joints[joint])[joint]
+        limit = shown_limits(diagnosis.joints[joint].prepared)[joint]
         velocity = np.gradient(position, time)
         acceleration = np.gradient(velocity, time)
         assert limit.low <= position.min() and position.max() <= limit.high
@@ -60,7 +58,7 @@ def test_the_same_records_give_the_same_paths(poor):
 @pytest.mark.slow
 def test_a_force_limit_below_gravity_is_one_line(poor):
     diagnosis, _ = poor
-    limits = shown_limits(diagnosis.prepared.joints["joint2"])["joint2"]
+    limits = shown_limits(diagnosis.joints["joint2"].prepared)["joint2"]
     with pytest.raises(ExperimentError, match="more force than the limits allow") as caught:
         propose_paths(diagnosis, limits={"joint2": limits.with_values(force=1e-3)})
     assert "\n" not in str(caught.value)
@@ -70,7 +68,7 @@ def test_a_force_limit_below_gravity_is_one_line(poor):
 def test_the_command_writes_a_reference_with_the_columns_of_the_records(poor, tmp_path, capsys):
     diagnosis, _ = poor
     answer, reference = tmp_path / "answer.json", tmp_path / "next.csv"
-    write_arm_answer(diagnosis, answer)
+    write_answer(diagnosis, answer)
     limit = ["--limit", "joint1.speed=0.2rad/s"]
     assert main(["next", str(answer), "--output", str(reference), *limit]) == 0
     assert "paths of 2 joints" in capsys.readouterr().out.replace("\n", " ")

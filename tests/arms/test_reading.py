@@ -179,5 +179,5 @@ def test_the_signals_of_an_arm_are_checked_and_what_is_not_asked_is_reported(fol
 
 def test_what_compares_bodies_refuses_an_arm_in_one_line(folder):
     experiment = td.load_experiment(folder)
-    with pytest.raises(ExperimentError, match="find_missing_in_arm"):
-        td.find_missing(experiment)
+    with pytest.raises(ExperimentError, match="find_missing"):
+        td.rank(td.Model.from_experiment(experiment), experiment)

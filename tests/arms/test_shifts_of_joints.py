@@ -10,10 +10,10 @@ from arms.arm_simulator import random_arm, write_experiment
 
 import teleopdesign as td
 from teleopdesign.blocks import Value
-from teleopdesign.diagnose.arms import joint as at_joint
-from teleopdesign.diagnose.arms.fit import estimate_arm
-from teleopdesign.diagnose.arms.prepared import prepare_arm
+from teleopdesign.diagnose import part_search as at_joint
 from teleopdesign.diagnose.error import force_error
+from teleopdesign.diagnose.parts import prepare_parts
+from teleopdesign.diagnose.parts_fit import estimate_parts
 from teleopdesign.effects import EFFECTS
 from teleopdesign.model import Model
 
@@ -40,7 +40,7 @@ def chosen(monkeypatch, *, searched, fitted, left):
     """
     estimated = []
 
-    def estimate_arm(models, _):
+    def estimate_parts(models, _):
         estimated.append(models["joint1"].record_shift)
         return arm_fit(models, left)
 
@@ -48,7 +48,7 @@ def chosen(monkeypatch, *, searched, fitted, left):
         fits = {j: SimpleNamespace(model=m) for j, m in models.items()}
         return SimpleNamespace(fits=fits, check_error=error)
 
-    monkeypatch.setattr(at_joint, "estimate_arm", estimate_arm)
+    monkeypatch.setattr(at_joint, "estimate_parts", estimate_parts)
     joints = {
         j: SimpleNamespace(state=SimpleNamespace(fit=SimpleNamespace(model=Shifted({j: late}))))
         for j, late in (("joint1", searched), ("joint2", ESTIMATED))
@@ -116,9 +116,9 @@ def test_the_links_are_those_of_the_shift_that_is_held(tmp_path):
     known = {n: EFFECTS[n] for n in ("coulomb", "viscous")}
     stated = Model.from_experiment(experiment, known)
     held = stated.with_record_shift({"joint1": Value(-0.8 * ROW, fixed=True)})
-    prepared = prepare_arm(experiment)
-    arm = estimate_arm({"joint1": held.with_links(prepared.initial)}, prepared)
-    model, records = arm.fits["joint1"].model, prepared.joints["joint1"].of("fit")
+    prepared = prepare_parts(experiment)
+    arm = estimate_parts({"joint1": held.with_links(prepared.initial)}, prepared)
+    model, records = arm.fits["joint1"].model, prepared.parts["joint1"].of("fit")
     assert model.log_late("joint1") == pytest.approx(-0.8 * ROW)
     least = force_error(model, records)
     for k in range(len(arm.links)):
@@ -132,10 +132,10 @@ def test_a_right_model_is_adequate_where_few_reversals_mislead_the_shift(tmp_pat
     """The fit record has 12 reversals: with a shift of -4.6 ms 2.2 noise floors were left."""
     generator = np.random.default_rng([112701, 25, 1])
     folder = write_experiment(tmp_path, random_arm(generator, 2), generator)
-    diagnosis = td.find_missing_in_arm(td.load_experiment(folder), among=("bias",))
+    diagnosis = td.find_missing(td.load_experiment(folder), among=("bias",))
     assert diagnosis.verdict == "model_adequate"
     assert diagnosis.joints["joint1"].left < 1.2
-    assert diagnosis.rungs[-1].fit.check_errors["joint1"] < 0.0045
+    assert diagnosis.rungs[-1].joints["joint1"].check_error < 0.0045
 
 
 def rows_late(diagnosis):
@@ -148,7 +148,7 @@ def test_a_joint_that_its_reversals_mislead_has_the_shift_of_the_other(tmp_path)
     """Alone it says 0.67 +- 0.04 rows early, and leaves 1.24 noise floors."""
     generator = np.random.default_rng([260113, 30, 1])
     folder = write_experiment(tmp_path, random_arm(generator, 2), generator, late=-1.0)
-    diagnosis = td.find_missing_in_arm(td.load_experiment(folder), among=("actuator_lag",))
+    diagnosis = td.find_missing(td.load_experiment(folder), among=("actuator_lag",))
     assert diagnosis.verdict == "model_adequate"
     for rows in rows_late(diagnosis).values():
         assert rows == pytest.approx(-1.0, abs=0.15)
@@ -161,7 +161,7 @@ def test_a_joint_of_an_arm_whose_drive_is_late_is_adequate_with_its_shift(tmp_pa
     generator = np.random.default_rng([900, 1])
     late = np.array([0.5, 0.5, -0.5])
     folder = write_experiment(tmp_path, random_arm(generator, 3), generator, late=late)
-    diagnosis = td.find_missing_in_arm(td.load_experiment(folder), among=("actuator_lag",))
+    diagnosis = td.find_missing(td.load_experiment(folder), among=("actuator_lag",))
     assert diagnosis.verdict == "model_adequate"
     assert rows_late(diagnosis)["joint3"] == pytest.approx(-0.5, abs=0.15)
     assert rows_late(diagnosis)["joint1"] == pytest.approx(0.5, abs=0.15)

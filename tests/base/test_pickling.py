@@ -230,15 +230,15 @@ def test_names_are_escaped_in_notebooks():
 #: made by a diagnosis, a design, a proposal or a search that takes seconds, or a part of its result
 DEAR = set(
     """
-    ArmDiagnosis HorizonError RecordedLoop SimulationComparison ArmPaths DeterminedParameter
-    Proposal Workbench Reference Remedy Rival Separation SimulatedDiagnosis ArmPage Page
+    HorizonError RecordedLoop SimulationComparison ArmPaths DeterminedParameter
+    Proposal Workbench Reference Remedy Rival Separation SimulatedDiagnosis Page
     ForceDisplacement Loop
     CoulombLevel LargestStiffness LevelAtSpeed Line SteadyRun MarginMap FrequencyMargins
     PassivityControlled Region SecondOpinion SimulatedMotion Given SimulationFit Tuned CheckedLimit
     ParetoFront Point PointOutcome Progress TunedControllers Setup BodyEquation ControllerEquation
     RecordFacts EnvironmentDescription ExperimentError ModelError TeleopDesignError
     Arm DahlBehindSpring Linked Reading Unknown Amount
-    BodyResidual CasePrediction Comparison DescribedDependence Design DiagnosedModel Diagnosis
+    BodyResidual CasePrediction Comparison DescribedDependence Design Diagnosis LadderRow
     FeedbackLoop Fit Prediction ProposedController Ranked Ranking Reason ResidualDescription
     ResidualFriction Rung
 """.split()

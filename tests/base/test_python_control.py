@@ -25,9 +25,9 @@ def imported(path):
 
 
 def test_one_file_imports_python_control():
-    found = {
+    importers = {
         path.relative_to(PACKAGE).as_posix()
         for path in PACKAGE.rglob("*.py")
         if any(name.split(".")[0] == "control" for name in imported(path))
     }
-    assert found == {"base/python_control.py"}
+    assert importers == {"base/python_control.py"}

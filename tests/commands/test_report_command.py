@@ -108,7 +108,10 @@ def test_a_record_that_never_moved_has_a_page_without_a_next_experiment(short_ro
         for s in prepared.stretches
     ]
     undecided = SimpleNamespace(
-        verdict="undecided", groups=(), prepared=replace(prepared, stretches=tuple(still))
+        verdict="undecided",
+        joints={},
+        groups=(),
+        prepared=replace(prepared, stretches=tuple(still)),
     )
     assert _next_steps(undecided) == ()
     with pytest.raises(ModelError, match="the stroke ends at"):

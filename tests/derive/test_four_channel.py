@@ -143,6 +143,41 @@ def test_power_into_the_ports_is_the_same_in_both():
     assert h + h.T == sp.Matrix([[5, 0], [0, 1]])  # no part that is not passive: h_12 = -h_21
 
 
+@pytest.mark.parametrize("convention", ["position", "velocity"])
+def test_entries_of_several_axes_keep_their_order(convention):
+    """Every symbol replaced by a matrix of numbers; the equations of the port are solved anew."""
+    rng = np.random.default_rng(5)
+    names = "Z_mm Z_ms Z_sm Z_ss"
+    symbols = sp.symbols(names, commutative=False)
+    blocks = dict(zip(symbols, rng.integers(1, 9, (4, 2, 2)) + 9.0 * np.eye(2), strict=True))
+    h = hybrid_from_impedance(sp.Matrix(2, 2, symbols), convention=convention)
+    made = [[_in_numbers(e, blocks) for e in row] for row in h.tolist()]
+    motion = rng.normal(size=(2, 2))
+    z_mm, z_ms, z_sm, z_ss = (blocks[x] for x in symbols)
+    f_m, f_s = z_mm @ motion[0] + z_ms @ motion[1], z_sm @ motion[0] + z_ss @ motion[1]
+    sign = -1 if convention == "velocity" else 1  # F_e = -F_s and -v_s
+    np.testing.assert_allclose(made[0][0] @ motion[0] + made[0][1] @ (sign * f_s), f_m)
+    np.testing.assert_allclose(made[1][0] @ motion[0] + made[1][1] @ (sign * f_s), sign * motion[1])
+    back = impedance_from_hybrid(h, convention=convention)
+    for entry, symbol in zip(back, symbols, strict=True):
+        np.testing.assert_allclose(_in_numbers(entry, blocks), blocks[symbol], rtol=1e-12)
+
+
+def _in_numbers(expression, blocks):
+    """A sum of products of symbols and inverses, in their order, as a matrix."""
+    if expression.is_Add:
+        return sum(_in_numbers(e, blocks) for e in expression.args)
+    if expression.is_Mul:
+        product = np.eye(2)
+        for factor in expression.args:
+            product = product @ _in_numbers(factor, blocks)
+        return product
+    if expression.is_Pow:
+        assert expression.exp == -1
+        return np.linalg.inv(_in_numbers(expression.base, blocks))
+    return float(expression) * np.eye(2) if expression.is_Number else blocks[expression]
+
+
 def test_no_convention_or_function_is_reported_in_one_line():
     four = four_channel()
     singular = sp.Matrix([[1, 1], [1, 0]])

@@ -1,12 +1,13 @@
 """Experiment and model that several tests here share."""
 
-from dataclasses import replace
-
 import pytest
 
 import teleopdesign as td
 from teleopdesign.blocks import Value
-from teleopdesign.design import DiagnosedModel, felt_impedance, verdict
+from teleopdesign.design import felt_impedance, verdict
+from teleopdesign.diagnose import Diagnosis, LadderRow
+from teleopdesign.diagnose.noise_floor import NoiseFloor
+from teleopdesign.diagnose.recording import DiagnosedRecording
 
 #: what a diagnosis of the rod ends with, rounded: value and standard error
 ROD = {
@@ -38,7 +39,10 @@ def rod(experiment):
     """The rod as a diagnosis leaves it, with Stribeck friction."""
     model = td.Model.from_experiment(experiment).with_effect("stribeck")
     model = model.with_values({n: Value(v, stderr=e) for n, (v, e) in ROD.items()})
-    return DiagnosedModel(experiment, model, "effects_missing", 1.05)
+    row = LadderRow(None, 0.0105, 0.0105, model, check_error_at_command=0.0105)
+    floor = NoiseFloor(0.01, "stated", drawn=0.01)
+    recording = DiagnosedRecording(stated=experiment)
+    return Diagnosis("effects_missing", (row,), floor, (), (), recording=recording)
 
 
 @pytest.fixture(scope="session")
@@ -55,4 +59,4 @@ def unsure(rod):
     from teleopdesign.design import design
 
     level = {"device.coulomb.level": Value(0.548, stderr=0.3)}
-    return design(replace(rod, model=rod.model.with_values(level)))
+    return design(rod.with_final_model(rod.model.with_values(level)))

@@ -10,7 +10,7 @@ import pytest
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError, ModelError
 from teleopdesign.blocks import Body, Value
-from teleopdesign.design import Assumptions, design, read_answer
+from teleopdesign.design import Assumptions, design
 from teleopdesign.design.propose import cancellations
 from teleopdesign.design.quasi_static import quasi_static_error
 from teleopdesign.design.stated_motion import StatedMotion
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.slow  # a diagnosis of a whole case
 
 def with_effect(diagnosis, name, values):
     """The diagnosed rod with one effect more, its values taken as exact."""
-    return replace(diagnosis, model=diagnosis.model.with_effect(name, values=values))
+    return diagnosis.with_final_model(diagnosis.model.with_effect(name, values=values))
 
 
 def test_the_cancelled_level_is_below_every_level_in_the_interval(designed):
@@ -180,7 +180,7 @@ def test_an_answer_gives_the_model_that_the_diagnosis_ended_with(experiment, tmp
     known = {n: EFFECTS[n] for n in ("coulomb", "viscous", "stribeck", "bias")}
     diagnosis = td.find_missing(experiment, td.Model.from_experiment(experiment, known))
     write_answer(diagnosis, tmp_path / "answer.json")
-    read = read_answer(tmp_path / "answer.json", experiment)
+    read = td.load_answer(tmp_path / "answer.json", experiment=experiment)
     assert read.model.effects == diagnosis.model.effects
     for name, value in diagnosis.model.parameters.items():
         other = read.model.parameters[name]
@@ -207,7 +207,7 @@ def test_a_file_that_is_no_answer_is_named_in_one_line(experiment, tmp_path, tex
     path = tmp_path / "answer.json"
     path.write_text(text)
     with pytest.raises(ExperimentError, match=message) as error:
-        read_answer(path, experiment)
+        td.load_answer(path, experiment=experiment)
     assert str(error.value).startswith(str(path))
 
 

@@ -19,10 +19,22 @@ def experiment(stribeck_case):
 
 
 @pytest.fixture(scope="session")
-def diagnosis(experiment):
-    """What is found on `stribeck_case` among the few effects of `simulated_cases.FEW`."""
+def end(experiment):
+    """What the search on `stribeck_case` ends with, among the effects of `simulated_cases.FEW`."""
     from diagnose.simulated_cases import FEW
 
-    from teleopdesign import Model, find_missing
+    from teleopdesign import Model
+    from teleopdesign.diagnose.climb import climb
+    from teleopdesign.diagnose.conclusion import conclude
+    from teleopdesign.diagnose.ladder_state import begin, search_for
 
-    return find_missing(experiment, Model.from_experiment(experiment, FEW))
+    search = search_for(experiment, Model.from_experiment(experiment, FEW))
+    return conclude(search, *climb(search, begin(search)))
+
+
+@pytest.fixture(scope="session")
+def diagnosis(end):
+    """What that search states."""
+    from teleopdesign.diagnose.result import diagnosis_of
+
+    return diagnosis_of(end)

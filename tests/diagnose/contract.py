@@ -53,7 +53,7 @@ def violations(answer, places=("device",)):
     need(len(set(keys)) == len(keys), "missing: the same effect twice")
     need(len(ladder) >= 1 and ladder[0]["added"] is None, "ladder: begins with the user's model")
     for row in ladder:
-        need(set(row) == LADDER, "ladder: keys of a row")
+        need(set(row) >= LADDER, "ladder: keys of a row")
         need(row["added"] is None or is_place(row["added"]), "ladder: added")
         instead = row["instead_of"]
         need(instead is None or isinstance(instead, str), "ladder: instead_of")
@@ -91,7 +91,7 @@ def violations(answer, places=("device",)):
     need(all(is_number(p, 0, 1) for p in probabilities), "candidates: probability")
     need(probabilities == sorted(probabilities, reverse=True), "candidates: best first")
     for c in answer["candidates"]:
-        need(set(c) == CANDIDATE, "candidate")
+        need(set(c) >= CANDIDATE, "candidate")
         need(c["refused"] is None or isinstance(c["refused"], str), "candidate: refused")
         need(is_place({"effect": c["effect"], "at": c["at"]}), "candidate: place")
         need(c["parameters"] and are_parameters(c["parameters"]), "candidate: parameters")

@@ -19,6 +19,18 @@ def floor(value=0.1, **more):
     return NoiseFloor(value, "made", value, **more)
 
 
+class Leaves(SimpleNamespace):
+    """What a fit leaves, as stated."""
+
+    @property
+    def check_error_at_command(self):
+        return self.at_command.error
+
+    @property
+    def blind(self):
+        return self.at_command.blind
+
+
 def fit(error, *, blind=0.0, weak=False, at_command=None, residual=None, known=("device",)):
     """A fit that leaves this error, of the force and at the command."""
     left = error * SHAPE if residual is None else residual
@@ -30,7 +42,7 @@ def fit(error, *, blind=0.0, weak=False, at_command=None, residual=None, known=(
         residual=error_there * SHAPE if residual is None else residual,
         sighted=np.ones(400, dtype=bool),
     )
-    return SimpleNamespace(
+    return Leaves(
         fit_error=error,
         check_error=error,
         check_residual=left,
@@ -55,4 +67,5 @@ def ranked(error, effect="stribeck", **more):
 
 
 def rung(error, added=None, alternatives=()):
-    return SimpleNamespace(added=added, fit=fit(error), alternatives=alternatives)
+    left = fit(error)
+    return SimpleNamespace(added=added, fit=left, errors=left, alternatives=alternatives)

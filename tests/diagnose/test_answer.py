@@ -11,15 +11,14 @@ from diagnose.contract import violations
 from diagnose.simulated_cases import FEW
 
 from teleopdesign import Model, compare, find_missing
-from teleopdesign.diagnose.answer import (
-    answer,
-    write_answer,
-    write_predictions,
-)
-from teleopdesign.diagnose.ladder_text import command_error_text, ladder_text
+from teleopdesign.diagnose.answer import answer, write_answer
+from teleopdesign.diagnose.predictions import write_predictions
 from teleopdesign.diagnose.probability import shares
 from teleopdesign.diagnose.ranking import REFUSALS
+from teleopdesign.diagnose.result import _bandwidth_source
 from teleopdesign.diagnose.rungs import first_rise, without_rise
+from teleopdesign.diagnose.statements import NotAccepted
+from teleopdesign.show.diagnose.text import command_error_text, ladder_text
 
 EVERY_KEY = {
     "verdict", "missing", "ladder", "noise_floor", "candidates", "indistinguishable",
@@ -40,7 +39,8 @@ def test_the_answer_file_keeps_the_format(written):
 
 
 def test_what_is_less_likely_than_not_is_not_named(diagnosis):
-    unlikely = replace(diagnosis, verdict="undecided", named=())
+    unnamed = tuple(replace(r, named=False) for r in diagnosis.rungs)
+    unlikely = replace(diagnosis, verdict="undecided", rungs=unnamed)
     assert unlikely.unlikely and not diagnosis.unlikely
     assert answer(unlikely)["missing"] == []
     # the leading candidate is still shown
@@ -48,8 +48,8 @@ def test_what_is_less_likely_than_not_is_not_named(diagnosis):
     assert "less likely than not" in ladder_text(unlikely)
 
 
-def test_a_ladder_ends_before_a_rung_that_leaves_more(diagnosis):
-    rungs = diagnosis.rungs
+def test_a_ladder_ends_before_a_rung_that_leaves_more(end):
+    rungs = end.rungs
     worse = replace(rungs[-1], fit=replace(rungs[-1].fit, check_error=2 * rungs[0].fit.check_error))
     assert first_rise(rungs) is None and without_rise(rungs) == rungs
     assert first_rise((*rungs, worse)) == len(rungs)
@@ -59,23 +59,20 @@ def test_a_ladder_ends_before_a_rung_that_leaves_more(diagnosis):
 def test_the_error_at_the_command_is_reported_where_it_differs(diagnosis):
     after = diagnosis.after
     assert command_error_text(after) is None  # nothing stands between command and force
-    less = replace(after.at_command, error=2 * after.check_error, blind=0.1)
+    less = replace(after, check_error_at_command=2 * after.check_error, blind=0.1)
     note = f"{200 * after.check_error:.2f} %, undefined in 10 % of the motion"
-    assert command_error_text(replace(after, at_command=less)).endswith(note)
-    last = diagnosis.last
-    first = replace(
-        last.ranked[0], refused="blind", fit=replace(after, check_error=0.5 * after.check_error)
-    )
-    refused = replace(diagnosis, last=replace(last, ranked=(first, *last.ranked[1:])))
-    text = ladder_text(refused)
-    assert f"refused: {first.candidate}" in text and REFUSALS["blind"] in text
+    assert command_error_text(less).endswith(note)
+    other, half = diagnosis.candidates[1].candidate, 0.5 * after.check_error
+    one = NotAccepted("refused", other, half, half, REFUSALS["blind"])
+    text = ladder_text(replace(diagnosis, not_accepted=(one,)))
+    assert f"refused: {other}" in text and REFUSALS["blind"] in text
 
 
 def test_the_answer_states_the_result_of_the_diagnosis(written, diagnosis):
     assert written["verdict"] == "effects_missing"
     assert written["missing"][0] == {"effect": "stribeck", "at": "device"}
     assert written["check"] == "records"
-    assert written["bandwidth"] == {"value": diagnosis.prepared.bandwidth, "unit": "Hz"}
+    assert written["bandwidth"] == {"value": diagnosis.bandwidth, "unit": "Hz", "source": "stated"}
     best = written["candidates"][0]
     assert best["effect"] == "stribeck" and best["probability"] > 0.8
     assert set(best["parameters"]) == {"extra_static_level", "stribeck_velocity"}
@@ -83,13 +80,13 @@ def test_the_answer_states_the_result_of_the_diagnosis(written, diagnosis):
     assert set(written["model_parameters"]) == set(diagnosis.before.model.parameters)
 
 
-def test_every_effect_of_the_search_is_a_candidate(written, diagnosis):
-    keys = {r.candidate.key for g in (diagnosis.rungs[1].ranking, diagnosis.last) for r in g.ranked}
+def test_every_effect_of_the_search_is_a_candidate(written, end):
+    keys = {r.candidate.key for g in (end.rungs[1].ranking, end.last) for r in g.ranked}
     assert {(c["effect"], c["at"]) for c in written["candidates"]} == keys
 
 
-def test_shares_of_a_ranking_sum_to_one(diagnosis):
-    portions = shares(diagnosis.rungs[1].ranking, diagnosis.rungs[1])
+def test_shares_of_a_ranking_sum_to_one(end):
+    portions = shares(end.rungs[1].ranking, end.rungs[1])
     assert sum(portions.values()) == pytest.approx(1.0)
     assert max(portions, key=portions.get) == ("stribeck", "device")
 
@@ -125,9 +122,10 @@ def test_the_ladder_is_a_table_with_parameters_floor_and_verdict(diagnosis):
     for part in ("your model, re-estimated", "+ stribeck at device", "noise floor", "N*m",
                  "verdict: effects_missing"):  # fmt: skip
         assert part in text
-    assert f"compared up to {diagnosis.prepared.bandwidth:.3g} Hz (stated)\n" in text
-    unstated = replace(diagnosis, experiment=replace(diagnosis.experiment, bandwidth=None))
-    assert "Hz (chosen: up to there the positions show motion)\n" in ladder_text(unstated)
+    assert f"compared up to {diagnosis.bandwidth:.3g} Hz (stated)\n" in text
+    unstated = replace(diagnosis.experiment, bandwidth=None)
+    words = _bandwidth_source(unstated, diagnosis.bandwidth)
+    assert words == "chosen: up to there the positions show motion"
     assert max(map(len, text.splitlines())) < 120
 
 

@@ -1,10 +1,11 @@
 """A log that samples a faster controller: its scatter is no missing physics."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from diagnose.stand_ins import Leaves
+from diagnose.stand_ins import fit as made_fit
 
 import teleopdesign as td
 from teleopdesign.diagnose import between_rows as module
@@ -188,8 +189,7 @@ def test_what_does_not_repeat_may_be_learned_to_a_tenth(runs, tmp_path, monkeypa
         module, "shifts_of", lambda *_: [RecordShift("device", 4e-3, 0, 8e-3, False, 1, False)]
     )
     prepared = prepare(logged(tmp_path / "slow", runs))
-    command = SimpleNamespace(error=0.9 * size, blind=0.0)
-    fit = SimpleNamespace(check_error=0.9 * size, at_command=command, model=None)
+    fit = made_fit(0.9 * size)
     first = NoiseFloor(0.01 * size, "first", 0.01 * size)
     for part, is_scatter in [(0.09, True), (0.11, False)]:
         box = Learnable(left=size, error=(1 - part) * size, alone=size)
@@ -198,7 +198,7 @@ def test_what_does_not_repeat_may_be_learned_to_a_tenth(runs, tmp_path, monkeypa
         assert not is_scatter or last.value == 0.9 * size, "no floor lies above what a model leaves"
     box = Learnable(left=size, error=size, alone=size)
     for error, is_scatter in [(1.79 * size, True), (1.81 * size, False)]:
-        left = SimpleNamespace(**{**vars(fit), "check_error": error})
+        left = Leaves(**{**vars(fit), "check_error": error})
         last = floor_between_rows(left, first, box, prepared, None)
         assert (last is not first) == is_scatter
     # what is noise by the sensors alone needs no scatter

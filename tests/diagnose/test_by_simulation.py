@@ -82,7 +82,7 @@ def test_a_loop_holds_a_wrong_model_near_the_recorded_motion(experiment):
     free = td.compare(model, experiment, by="simulation").error(np.inf)
     held = td.compare(model, experiment, by="simulation", loop=RecordedLoop(400.0, 40.0))
     # quasi-statically the deviation is the missing force over the stiffness
-    missing = 0.2 * DAMPING * np.std(held.prepared.of("check")[0].motion.velocity)
+    missing = 0.2 * DAMPING * np.std(held.prepared.parts[""].of("check")[0].motion.velocity)
     assert held.error(np.inf).position == pytest.approx(missing / 400.0, rel=0.3)
     assert held.error(np.inf).position < 0.1 * free.position
 

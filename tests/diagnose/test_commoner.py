@@ -10,12 +10,13 @@ from diagnose.stub_models import Table, candidate
 from teleopdesign.diagnose import commoner as module
 from teleopdesign.diagnose import rungs as rungs_module
 from teleopdesign.diagnose.adequacy import Floors
-from teleopdesign.diagnose.answers.restored import _is_named_nonetheless
 from teleopdesign.diagnose.commoner import compare_look_alikes
-from teleopdesign.diagnose.diagnosis import Diagnosis, SetAside, Undetermined
+from teleopdesign.diagnose.older_answers import Place, _is_named
 from teleopdesign.diagnose.order import is_simpler
 from teleopdesign.diagnose.probability import list_rarer, shares
 from teleopdesign.diagnose.ranking import Ranking
+from teleopdesign.diagnose.result import _indistinguishable
+from teleopdesign.diagnose.statements import SetAside, Undetermined
 from teleopdesign.effects import EFFECTS
 
 SPRING, GRAVITY, BIAS = map(candidate, ("spring", "gravity", "bias"))
@@ -153,10 +154,11 @@ def look_alikes(undetermined, *there, arm=False):
     """The pairs of a diagnosis that accepted these effects, of which some are `undetermined`."""
     body = SimpleNamespace(has=there.__contains__, axis="revolute")
     model = SimpleNamespace(known=EFFECTS, body=lambda at: body)
-    prepared = SimpleNamespace(is_of_an_arm=arm)
+    prepared = SimpleNamespace(is_linked=arm)
     entries = tuple(Undetermined(candidate(n), "over a travel of 1 rad") for n in undetermined)
-    return Diagnosis.look_alikes.fget(
-        SimpleNamespace(model=model, undetermined=entries, prepared=prepared)
+    after, search = SimpleNamespace(model=model), SimpleNamespace(whole=prepared)
+    return _indistinguishable(
+        SimpleNamespace(rungs=(), after=after, undetermined=entries, search=search)
     )
 
 
@@ -168,10 +170,10 @@ def test_a_spring_and_gravity_stand_beside_each_other_in_the_answer_whichever_is
     assert look_alikes(["spring"], "spring", arm=True) == (), "the links of an arm have gravity"
 
 
-def test_a_pair_that_stands_beside_a_name_leaves_no_verdict_open_when_it_is_read_back():
-    pair = [{"effect": "spring", "at": "device"}, {"effect": "gravity", "at": "device"}]
-    assert _is_named_nonetheless(pair, EFFECTS) and _is_named_nonetheless(pair[::-1], EFFECTS)
-    others = [pair[0], {"effect": "bias", "at": "device"}]
-    assert not _is_named_nonetheless(others, EFFECTS)
-    assert not _is_named_nonetheless([*pair, others[1]], EFFECTS)
-    assert not _is_named_nonetheless([pair[0], {"effect": "a users own", "at": "device"}], EFFECTS)
+def test_a_pair_that_stands_beside_a_name_leaves_no_verdict_open_when_an_older_answer_is_read():
+    pair = (Place("spring", "device"), Place("gravity", "device"))
+    assert _is_named(pair, EFFECTS) and _is_named(pair[::-1], EFFECTS)
+    others = (pair[0], Place("bias", "device"))
+    assert not _is_named(others, EFFECTS)
+    assert not _is_named((*pair, others[1]), EFFECTS)
+    assert not _is_named((pair[0], Place("a users own", "device")), EFFECTS)

@@ -5,7 +5,7 @@ from itertools import pairwise
 from types import SimpleNamespace
 
 import pytest
-from diagnose.stand_ins import fit, floor, ranked
+from diagnose.stand_ins import Leaves, fit, floor, ranked
 from diagnose.stub_models import Table, candidate
 
 from teleopdesign.diagnose import conclusion as module
@@ -16,10 +16,11 @@ from teleopdesign.diagnose.conclusion import (
     remove_doubtful_rung,
     with_last_corrected,
 )
-from teleopdesign.diagnose.diagnosis import Diagnosis, SetAside
 from teleopdesign.diagnose.fit import CommandError, Fit
 from teleopdesign.diagnose.ranking import REFUSALS, Ranking
 from teleopdesign.diagnose.rung import Rung
+from teleopdesign.diagnose.statements import SetAside
+from teleopdesign.diagnose.verdict import verdict
 
 SPRING, BIAS, DRAG = EVERY = tuple(map(candidate, ("spring", "bias", "quadratic_drag")))
 LOW = floor(0.01)
@@ -45,9 +46,7 @@ def ladder(table, *effects):
 def worse(fit, by=2.0, **at_command):
     """The fit with other figures, as the whole records show it."""
     command = SimpleNamespace(**{**vars(fit.at_command), **at_command})
-    return SimpleNamespace(
-        **{**vars(fit), "check_error": by * fit.check_error, "at_command": command}
-    )
+    return Leaves(**{**vars(fit), "check_error": by * fit.check_error, "at_command": command})
 
 
 @pytest.fixture
@@ -72,7 +71,7 @@ def concluded(monkeypatch):
         }
         for name, value in stubs.items():
             monkeypatch.setattr(module, name, value)
-        monkeypatch.setattr(Diagnosis, "why_silent", "")
+        monkeypatch.setattr(module, "why_silent", lambda *_: "")
         monkeypatch.setattr(module, "_evaluate_on_all", lambda fit, whole: on_whole(fit))
         search, windows = table.search(), object()
         search.prepared = windows if on_whole else None
@@ -97,7 +96,7 @@ def test_what_holds_on_the_whole_records_is_kept_with_the_fit_that_was_sought(co
     assert diagnosis.after.check_error == pytest.approx(1.1 * rungs[-1].fit.check_error)
     assert diagnosis.estimated is state.fit is rungs[-1].fit
     assert diagnosis.verdict == "effects_missing" and diagnosis.named == (SPRING, BIAS)
-    assert diagnosis.near_reversals is diagnosis.model is rungs[-1].fit.model
+    assert diagnosis.near_reversals is diagnosis.after.model is rungs[-1].fit.model
 
 
 def test_a_rung_that_leaves_more_of_the_whole_records_is_left_out(concluded):
@@ -110,7 +109,7 @@ def test_a_rung_that_leaves_more_of_the_whole_records_is_left_out(concluded):
     diagnosis, _ = concluded(rungs, on_whole=on_whole)
     assert added(diagnosis) == [SPRING, BIAS] and diagnosis.set_aside == ()
     assert diagnosis.estimated is diagnosis.after
-    assert diagnosis.model is diagnosis.near_reversals is rungs[2].fit.model
+    assert diagnosis.after.model is diagnosis.near_reversals is rungs[2].fit.model
 
 
 @pytest.mark.parametrize("why", ["blind", "weak"])
@@ -146,7 +145,7 @@ def test_where_a_commands_scatter_is_noise_there_is_no_moment_and_effects_go_by_
 ):
     rungs, moment = ladder(Table(error), "spring", "bias", "quadratic_drag"), object()
     plain, state = concluded(rungs, moment=moment)
-    assert plain.moment is moment and plain.sensor_floor is None and plain.floor is state.floor
+    assert plain.moment is moment and plain.sensor_floor is plain.floor is state.floor
     louder = floor(0.02)
     diagnosis, state = concluded(rungs, moment=moment, last_floor=louder)
     assert diagnosis.moment is None and diagnosis.floor is louder
@@ -159,7 +158,8 @@ def test_effects_none_of_which_is_probable_are_not_missing_surely(concluded):
 
     rungs = ladder(Table(lambda names: 0.033 * (1.0 - 0.35 * ("spring" in names))), "spring")
     diagnosis, _ = concluded(rungs, on_whole=far)
-    assert diagnosis.verdict == "undecided" and diagnosis.named == () and diagnosis.unlikely
+    assert diagnosis.verdict == "undecided" and diagnosis.named == ()
+    assert verdict(diagnosis.rungs, diagnosis.floor) == "effects_missing"
 
 
 def test_a_model_that_leaves_noise_stays_adequate_without_a_name(concluded):

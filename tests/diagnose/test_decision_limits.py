@@ -21,12 +21,10 @@ from teleopdesign.diagnose.adequacy import (
 )
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.decision import (
-    explained_share,
     helps_but_is_barred,
     is_better,
     objection,
     refusal,
-    verdict,
     worth_pursuing,
 )
 from teleopdesign.diagnose.learnable import Learnable
@@ -39,6 +37,7 @@ from teleopdesign.diagnose.order import (
     simplicity,
 )
 from teleopdesign.diagnose.together import _leave_the_same
+from teleopdesign.diagnose.verdict import explained_share, verdict
 from teleopdesign.effects import EFFECTS
 
 MORE, LESS = 1.0 + 1e-9, 1.0 - 1e-9

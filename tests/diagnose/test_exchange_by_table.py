@@ -7,7 +7,6 @@ from diagnose.stand_ins import floor
 from diagnose.stub_models import Table, candidate
 
 from teleopdesign.diagnose import rungs as module
-from teleopdesign.diagnose.diagnosis import SetAside
 from teleopdesign.diagnose.exchange import (
     best_exchange,
     compare_alternatives,
@@ -15,6 +14,7 @@ from teleopdesign.diagnose.exchange import (
     rivals_of,
 )
 from teleopdesign.diagnose.rung import Replaced
+from teleopdesign.diagnose.statements import SetAside
 
 SPRING, HARD, BIAS, DRAG = map(candidate, ("spring", "hardening_spring", "bias", "quadratic_drag"))
 EVERY = (SPRING, HARD, BIAS, DRAG)

@@ -10,11 +10,11 @@ from measurement.rod_example import write_rod
 from shared_data import shared_folder
 
 from teleopdesign import ExperimentError, Model, example, load_experiment
-from teleopdesign.diagnose.answer import write_predictions
 from teleopdesign.diagnose.error import error_of, force_error
 from teleopdesign.diagnose.fit import block_numbers, estimate
 from teleopdesign.diagnose.folds import folds
 from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.predictions import write_predictions
 from teleopdesign.diagnose.residual import relative_residuals, residuals
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.measurement.bandwidth import default_bandwidth

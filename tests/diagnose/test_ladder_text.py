@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import pytest
 from diagnose.stand_ins import fit, floor, ranked
 
-from teleopdesign.diagnose import ladder_text
-from teleopdesign.diagnose.ladder_text import records_line, say_floors
-from teleopdesign.diagnose.left_out import left_out_lines, possible_next
+from teleopdesign.diagnose.open_questions import nearest, not_accepted, possible_next
+from teleopdesign.show.diagnose import text as ladder_text
+from teleopdesign.show.diagnose.text import records_line, say_floors
 from teleopdesign.show.report.words import _floors
 
 
@@ -29,15 +29,12 @@ def test_a_floor_next_to_zero_is_no_measure(left):
         (["refused: x"], "No effect that may be named"),
     ],
 )
-def test_where_effects_are_refused_no_effect_that_may_be_named_explains_the_rest(
-    monkeypatch, refused, words
-):
+def test_where_effects_are_refused_no_effect_that_may_be_named_explains_the_rest(refused, words):
     """The sentence stood below a list of refused effects that would explain all of it."""
-    monkeypatch.setattr(ladder_text, "left_out_lines", lambda diagnosis: refused)
-    monkeypatch.setattr(ladder_text, "_nearest", lambda diagnosis: "")
     diagnosis = SimpleNamespace(
         verdict="undecided", left=8.0, more_is_missing=True, may_be_noise=False, moment=None,
-        unlikely=False, rungs=[None], groups=(), why_silent="",
+        unlikely=False, rungs=[SimpleNamespace(added=None)], groups=(), silence="", nearest=None,
+        not_accepted=refused,
     )  # fmt: skip
     assert f"{words} explains the 8.0 noise floors" in ladder_text.sentence(diagnosis)
 
@@ -67,7 +64,8 @@ def test_a_candidate_whose_values_stay_open_is_reported_where_none_that_counts_l
         floor=floor(),
         more_is_missing=more.get("more_is_missing", True),
     )
-    lines = [line for line in left_out_lines(diagnosis) if line.startswith("not determined")]
+    rows = [one for one in not_accepted(diagnosis) if one.why == "not determined"]
+    lines = ladder_text._lines_not_accepted(SimpleNamespace(not_accepted=rows))
     assert lines == (
         [
             "not determined: spring at device leaves least (20.00 %), but these records do not "
@@ -84,7 +82,7 @@ def test_without_check_records_the_machine_was_not_another_one_in_them(check):
     diagnosis = SimpleNamespace(
         after=SimpleNamespace(fit_error=0.2, check_error=0.7),
         on_all_records=None,
-        prepared=SimpleNamespace(of=lambda use: check if use == "check" else ("a stretch",)),
+        held_out=not check,
     )
     line = records_line(diagnosis)
     assert "3.5 times that on the fit" in line
@@ -105,3 +103,30 @@ def test_a_candidate_that_a_rule_refuses_does_not_come_nearest():
     assert [r.candidate.effect.name for r in possible] == ["stribeck"]
     rows[0].fit.at_bound = ()
     assert len(possible_next(SimpleNamespace(last=last, floor=floor(0.05)))) == 2
+
+
+@pytest.mark.parametrize(
+    ("left", "listed", "reason", "sentence"),
+    [
+        (0.05, False, "", "would leave 5 %: on these records this may be chance."),
+        (0.05, False, "at a bound", "would leave 5 %: at a bound."),
+        (0.0999, False, "", ""),
+        (0.05, True, "", ""),
+    ],
+)
+def test_the_candidate_that_comes_nearest_is_named_where_it_helps_and_is_not_listed_before(
+    left, listed, reason, sentence
+):
+    spring, bias = ranked(left, "spring"), ranked(0.3, "bias")
+    for row in (spring, bias):
+        row.fit.model.absent = ()
+    alike = (spring.candidate,) if listed else ()
+    end = SimpleNamespace(
+        rungs=[SimpleNamespace(added=bias.candidate, alternatives=alike)],
+        last=SimpleNamespace(ranked=[spring], base=fit(0.1)),
+        after=fit(0.1),
+        floor=floor(0.01),
+        reason_set_aside=lambda key: reason,
+    )
+    text = ladder_text._nearest(SimpleNamespace(nearest=nearest(end)))
+    assert text.endswith(sentence) and bool(text) == bool(sentence)

@@ -10,15 +10,15 @@ from scipy.signal import lfilter
 
 import teleopdesign as td
 from teleopdesign.diagnose.answer import answer
-from teleopdesign.diagnose.answers.bodies import model_data, model_from
 from teleopdesign.diagnose.clock import with_late_hand, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.ladder_text import ladder_text
+from teleopdesign.diagnose.model_data import model_data, model_from
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.record_shift import name_of_hand, shifts_of
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
+from teleopdesign.show.diagnose.text import ladder_text
 
 pytestmark = pytest.mark.slow  # diagnoses of whole cases
 
@@ -121,7 +121,7 @@ def test_the_slope_by_the_shift_is_that_of_the_residual(late, effect):
 
 def test_a_model_with_a_late_hand_is_written_and_read(diagnosis):
     data = json.loads(json.dumps(model_data(diagnosis.model)))
-    back = model_from(data, EFFECTS, file="answer.json", key="models")
+    back = model_from(data, EFFECTS, "models")
     assert back.record_shift[HAND] == diagnosis.model.record_shift[HAND]
     assert back.log_late(HAND) == diagnosis.model.record_shift[HAND].value
 

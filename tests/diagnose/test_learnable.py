@@ -8,21 +8,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from teleopdesign.base.codec import from_data, to_data
 from teleopdesign.diagnose import learnable as module
-from teleopdesign.diagnose.answer import answer, write_answer
-from teleopdesign.diagnose.answers import load_answer, restore_diagnosis
+from teleopdesign.diagnose.answer import answer, load_answer, write_answer
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.learnable import (
     Learnable,
     error_near_reversals,
     learnable,
-    learnable_data,
-    learnable_from,
 )
 from teleopdesign.diagnose.tree_inputs import inputs_along
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.measurement.reversals import mark_reversals
+from teleopdesign.show.diagnose.text import ladder_text
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -107,7 +105,7 @@ def test_an_answer_holds_what_could_be_learned_and_gives_it_back(diagnosis, expe
     data = json.loads((tmp_path / "answer.json").read_text())
     assert data["learnable"] == pytest.approx(diagnosis.learnable.error)
     assert data["near_reversals"]["check_error"] == pytest.approx(diagnosis.near_reversals.error)
-    back = restore_diagnosis(load_answer(tmp_path / "answer.json"), experiment)
+    back = load_answer(tmp_path / "answer.json", experiment=experiment)
     assert back.learnable == diagnosis.learnable
     assert back.near_reversals == diagnosis.near_reversals
     assert str(diagnosis.learnable) in ladder_text(back)
@@ -119,7 +117,7 @@ def test_the_shares_of_the_sentence_add_up():
     assert str(learned) == sentence
     nothing = Learnable(left=0.05, error=0.06, alone=0.2)
     assert nothing.part == 0.0 and "nothing was learned" in str(nothing)
-    assert learnable_from(learnable_data(learned, None)) == learned
+    assert from_data(Learnable, to_data(learned, {}), "", {}) == learned
 
 
 def test_the_error_near_reversals_is_that_of_the_rows_there(diagnosis, prepared):

@@ -83,7 +83,7 @@ def ended(error, bandwidth, *, more=True):
     return Ended(
         after=SimpleNamespace(fit_error=error, check_error=error),
         before=None,
-        prepared=SimpleNamespace(bandwidth=bandwidth),
+        bandwidth=bandwidth,
         more_is_missing=more,
     )
 
@@ -92,18 +92,19 @@ def ended(error, bandwidth, *, more=True):
 class Ended:
     after: object
     before: object
-    prepared: object
+    bandwidth: float
     more_is_missing: bool
     left_out: tuple = ("pairs",)
+    joints: tuple = ()
 
 
 def test_the_narrower_band_is_kept_where_its_final_model_leaves_far_less():
     wide, narrow = ended(0.6, 80.0), ended(0.6 / CRITERIA.falls - 1e-6, 20.0)
     kept = choose_band(wide, narrow)
-    assert kept.prepared.bandwidth == 20.0 and kept.left_out[0] == "pairs"
+    assert kept.bandwidth == 20.0 and kept.left_out[0] == "pairs"
     assert "faster than 20 Hz" in kept.left_out[1] and "up to 80 Hz" in kept.left_out[1]
     # a resonance that an effect explains leaves little in the wide band
-    assert choose_band(ended(0.6 / CRITERIA.falls, 80.0), ended(0.2, 20.0)).prepared.bandwidth == 80
+    assert choose_band(ended(0.6 / CRITERIA.falls, 80.0), ended(0.2, 20.0)).bandwidth == 80
 
 
 def test_no_narrower_band_is_searched_where_nothing_is_missing():
@@ -114,6 +115,6 @@ def test_no_narrower_band_is_searched_where_nothing_is_missing():
 def test_such_a_position_is_diagnosed_in_a_narrower_band(filtered):
     """The lag of the sensor's filter remains there, and looks like one of the actuator."""
     diagnosis = td.diagnose(filtered[1].experiment, among=("actuator_lag",))
-    assert diagnosis.prepared.bandwidth < filtered[1].bandwidth
+    assert diagnosis.bandwidth < filtered[1].bandwidth
     assert diagnosis.after.check_error < 0.1
     assert any("faster than" in words for words in diagnosis.left_out)

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from diagnose.stand_ins import Leaves
 
 from teleopdesign.diagnose.adequacy import moment_above_noise
 from teleopdesign.diagnose.noise_floor import NoiseFloor
@@ -29,7 +30,7 @@ def left(blocks, loud, *, size=10.0, floor=0.5, at_command=1.0):
         residual[k * PER_BLOCK : (k + 1) * PER_BLOCK] = size
     error = float(np.sqrt(np.mean(residual**2)))
     command = SimpleNamespace(residual=residual, error=error, blind=0.0)
-    fit = SimpleNamespace(at_command=command, check_error=error)
+    fit = Leaves(at_command=command, check_error=error)
     prepared = SimpleNamespace(of=lambda use: stretches if use == "check" else [])
     return fit, prepared, NoiseFloor(floor, "made", floor, at_command=at_command)
 

@@ -20,14 +20,12 @@ def diagnosis(
     last=(),
     noise=0.1,
     verdict="effects_missing",
-    stated=None,
     short=False,
     noisy=False,
 ):
     return SimpleNamespace(
         more_is_missing=short,
         may_be_noise=noisy,
-        open=stated,
         rungs=(Rung(None, fit(1.0)), *rungs),
         last=Ranking(fit(1.0), tuple(last)),
         floor=floor(noise),
@@ -41,7 +39,7 @@ def rung(added, *others, base, alternatives=()):
 
 
 def names(question):
-    return [candidate.effect.name for candidate, _ in question.others]
+    return [rival.candidate.effect.name for rival in question.others]
 
 
 @pytest.mark.parametrize("size", [0.1, 1.0, 10.0])
@@ -55,7 +53,11 @@ def test_what_leaves_less_than_one_floor_more_is_open(size):
     (question,) = open_questions(diagnosis(rungs=[one], noise=0.1 * size))
     assert question.added == added.candidate
     assert names(question) == ["bias", "viscous"], "what leaves least comes first"
-    assert [f for _, f in question.others] == [better.fit, near.fit]
+    assert [rival.model for rival in question.others] == [better.fit.model, near.fit.model]
+    assert [rival.check_error for rival in question.others] == [
+        better.fit.check_error,
+        near.fit.check_error,
+    ]
 
 
 def test_what_is_not_supported_is_open_only_where_it_is_an_alternative():
@@ -99,8 +101,3 @@ def test_an_undecided_verdict_asks_for_what_gains_and_counts():
     assert next_one == question, "more is missing beside what is named"
     assert open_questions(diagnosis(last=last, short=True, noisy=True)) == (), "or only noise"
     assert open_questions(diagnosis(last=(loses,), verdict="undecided")) == ()
-
-
-def test_questions_of_an_answer_that_was_read_are_those_that_it_states():
-    group = rung(ranked(0.3), ranked(0.3, "viscous"), base=1.0)
-    assert open_questions(diagnosis(rungs=[group], stated=())) == ()

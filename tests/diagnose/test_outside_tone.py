@@ -8,7 +8,7 @@ from diagnose.made_records import write_made
 from diagnose.simulated_cases import write_simulated
 
 import teleopdesign as td
-from teleopdesign.diagnose import ladder, ladder_state
+from teleopdesign.diagnose import climb, ladder, ladder_state
 from teleopdesign.diagnose.adequacy import is_a_tone
 from teleopdesign.diagnose.evidence import check_squares
 from teleopdesign.diagnose.fit import estimate, weigh_residuals
@@ -179,7 +179,7 @@ def test_no_pair_is_sought_where_a_tone_leaves_only_noise(rod, monkeypatch):
         raise AssertionError("a pair was sought")
 
     monkeypatch.setattr(ladder_state, "rank_candidates", lambda base, *_, **__: Ranking(base, ()))
-    monkeypatch.setattr(ladder, "add_pair", searched)
+    monkeypatch.setattr(climb, "add_pair", searched)
     with pytest.raises(AssertionError, match="sought"):
         ladder.find_missing(prepared.experiment)
     monkeypatch.setattr(ladder_state, "best_tone", lambda *_: noise)

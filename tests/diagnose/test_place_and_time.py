@@ -163,10 +163,8 @@ def test_gravity_that_the_catalogue_lacks_is_called_no_cogging(tmp_path):
     experiment = load_experiment(write_pendulum(tmp_path / "case"))
     diagnosis = find_missing(experiment, Model.from_experiment(experiment, known()))
     assert "cogging" not in {c.effect.name for c in diagnosis.missing}
-    (cogging,) = [
-        r for r in diagnosis.rungs[1].ranking.ranked if r.candidate.effect.name == "cogging"
-    ]
-    assert "does not repeat within the travel" in cogging.implausible
+    (cogging,) = [c for c in diagnosis.candidates if c.candidate.effect.name == "cogging"]
+    assert "does not repeat within the travel" in cogging.refused
 
 
 @pytest.mark.slow

@@ -13,12 +13,12 @@ from teleopdesign.base.errors import ModelError
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.decision import is_supported
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.noise_floor import NoiseFloor
 from teleopdesign.diagnose.plausibility import implausible_effects, record_facts
 from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.effects import EFFECTS, RecordFacts, load_effect
 from teleopdesign.measurement.prepare import prepare
+from teleopdesign.show.diagnose.text import ladder_text
 
 TIME = np.linspace(0.0, 3.0, 3000)
 FACTS = RecordFacts(

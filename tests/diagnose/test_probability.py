@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
-from teleopdesign.diagnose.decision import open_to_others
 from teleopdesign.diagnose.evidence import whole_score
 from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.learnable import Learnable
@@ -21,6 +20,7 @@ from teleopdesign.diagnose.probability import (
     shares,
 )
 from teleopdesign.diagnose.rung import restore_replaced
+from teleopdesign.diagnose.verdict import open_to_others
 from teleopdesign.effects import EFFECTS
 
 
@@ -93,8 +93,8 @@ def test_those_as_good_share_what_the_accepted_one_has():
     assert one.probability() == other.probability() == pytest.approx(EVIDENCE.probability() / 2)
 
 
-def test_a_candidate_that_displaces_a_parameter_has_no_share(diagnosis):
-    rung = diagnosis.rungs[1]
+def test_a_candidate_that_displaces_a_parameter_has_no_share(end):
+    rung = end.rungs[1]
     first = rung.ranking.ranked[0]
     bound = replace(first.fit, at_bound=(*first.fit.at_bound, "device.coulomb.level"))
     spoilt = replace(rung.ranking, ranked=(replace(first, fit=bound), *rung.ranking.ranked[1:]))
@@ -102,8 +102,8 @@ def test_a_candidate_that_displaces_a_parameter_has_no_share(diagnosis):
     assert shares(spoilt, rung)[first.candidate.key] == 0.0
 
 
-def test_an_accepted_effect_keeps_its_share_with_a_parameter_at_a_bound(diagnosis):
-    rung = diagnosis.rungs[1]
+def test_an_accepted_effect_keeps_its_share_with_a_parameter_at_a_bound(end):
+    rung = end.rungs[1]
     first = rung.ranking.ranked[0]
     bound = replace(first.fit, at_bound=("device.stribeck.extra_static_level",))
     ranking = replace(rung.ranking, ranked=(replace(first, fit=bound), *rung.ranking.ranked[1:]))
@@ -111,25 +111,24 @@ def test_an_accepted_effect_keeps_its_share_with_a_parameter_at_a_bound(diagnosi
     assert shares(ranking, None)[first.candidate.key] == 0.0, "it was not accepted"
 
 
-def test_every_candidate_of_every_step_has_its_evidence(diagnosis):
-    evidence = evidence_of(diagnosis)
-    rankings = [*(r.ranking for r in diagnosis.rungs if r.ranking), diagnosis.last]
+def test_every_candidate_of_every_step_has_its_evidence(end):
+    evidence = evidence_of(end)
+    rankings = [*(r.ranking for r in end.rungs if r.ranking), end.last]
     assert len(evidence) == sum(len(k.ranked) for k in rankings)
     assert [e.ranked.candidate.key for e in evidence if e.accepted] == [("stribeck", "device")]
 
 
-def test_a_floor_that_holds_a_commands_scatter_makes_no_effect_more_likely(diagnosis):
+def test_a_floor_that_holds_a_commands_scatter_makes_no_effect_more_likely(end):
     def summary(one):
         return [(e.left, e.explained, e.outweighs, e.probability()) for e in evidence_of(one)]
 
-    louder = replace(diagnosis.floor, value=3.0 * diagnosis.floor.value)
-    by_scatter = replace(diagnosis, floor=louder, sensor_floor=diagnosis.floor)
-    assert summary(by_scatter) == summary(diagnosis) != summary(replace(diagnosis, floor=louder))
-    assert by_scatter.left == pytest.approx(diagnosis.left / 3.0)
+    louder = replace(end.floor, value=3.0 * end.floor.value)
+    by_scatter = replace(end, floor=louder)
+    assert summary(by_scatter) == summary(end) != summary(replace(end, sensor_floor=louder))
 
 
-def test_each_candidate_is_behind_the_first_by_its_score_on_all_records(diagnosis):
-    for ranking in (*(r.ranking for r in diagnosis.rungs if r.ranking), diagnosis.last):
+def test_each_candidate_is_behind_the_first_by_its_score_on_all_records(end):
+    for ranking in (*(r.ranking for r in end.rungs if r.ranking), end.last):
         first, *others = ranking.ranked
         assert first.behind == 0.0
         for one in others:
@@ -138,11 +137,11 @@ def test_each_candidate_is_behind_the_first_by_its_score_on_all_records(diagnosi
         assert counted == sorted(counted)
 
 
-def test_what_a_step_explains_is_the_part_of_the_squares_above_the_floor(diagnosis):
-    floor = 0.9 * diagnosis.after.check_error
-    evidence = evidence_of(replace(diagnosis, floor=replace(diagnosis.floor, value=floor)))
-    bases = [r.ranking.base for r in diagnosis.rungs if r.ranking for _ in r.ranking.ranked]
-    bases += [diagnosis.last.base for _ in diagnosis.last.ranked]
+def test_what_a_step_explains_is_the_part_of_the_squares_above_the_floor(end):
+    floor = 0.9 * end.after.check_error
+    evidence = evidence_of(replace(end, sensor_floor=replace(end.floor, value=floor)))
+    bases = [r.ranking.base for r in end.rungs if r.ranking for _ in r.ranking.ranked]
+    bases += [end.last.base for _ in end.last.ranked]
     for one, base in zip(evidence, bases, strict=True):
         before, after = base.check_error, one.ranked.fit.check_error
         above = before**2 - min(floor, after) ** 2
@@ -154,9 +153,9 @@ def test_what_a_step_explains_is_the_part_of_the_squares_above_the_floor(diagnos
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
 @pytest.mark.parametrize(("share", "is_determined"), [(0.0, False), (0.019, False), (0.021, True)])
 def test_a_new_parameter_is_determined_by_the_part_that_no_other_imitates_whatever_its_unit(
-    diagnosis, size, share, is_determined
+    end, size, share, is_determined
 ):
-    fit, base = diagnosis.after, diagnosis.before
+    fit, base = end.after, end.before
     new = [i for i, n in enumerate(fit.free) if n not in base.free]
     old = [i for i in range(len(fit.free)) if i not in new]
     assert is_identifiable(fit, base)
@@ -171,45 +170,45 @@ def test_a_new_parameter_is_determined_by_the_part_that_no_other_imitates_whatev
 
 
 @pytest.mark.parametrize("structure", ["transmission_compliance", "backlash"])
-def test_an_effect_is_not_named_without_the_accepted_one_that_it_needs(diagnosis, structure):
+def test_an_effect_is_not_named_without_the_accepted_one_that_it_needs(end, structure):
     on, friction = (Candidate(EFFECTS[n], "device") for n in (structure, "tip_friction"))
-    first = diagnosis.rungs[0]
-    model = replace(diagnosis.before.model, known=EFFECTS)
+    first = end.rungs[0]
+    model = replace(end.before.model, known=EFFECTS)
     first = replace(first, fit=replace(first.fit, model=model))
-    rungs = (first, *(replace(diagnosis.rungs[-1], added=c) for c in (on, friction)))
-    whole = replace(diagnosis, rungs=rungs)
+    rungs = (first, *(replace(end.rungs[-1], added=c) for c in (on, friction)))
+    whole = replace(end, rungs=rungs)
     assert select_independent(whole, {on.key, friction.key}) == (on, friction)
     assert select_independent(whole, {friction.key}) == ()
     assert select_independent(whole, {on.key}) == (on,)
 
 
-def test_an_effect_is_named_beside_one_that_took_the_place_of_the_users(diagnosis):
+def test_an_effect_is_named_beside_one_that_took_the_place_of_the_users(end):
     """A damper alone was stated, and a level that bristles need took its place."""
     level, bristles = (Candidate(EFFECTS[n], "device") for n in ("coulomb", "presliding"))
-    bare = replace(diagnosis.before.model, known=EFFECTS)
+    bare = replace(end.before.model, known=EFFECTS)
     for name, at in reversed(bare.effects):
         bare = bare.without_effect(name, at=at)
     stated = bare.with_effect("viscous", at="device")
-    first = replace(diagnosis.rungs[0], fit=replace(diagnosis.before, model=stated))
+    first = replace(end.rungs[0], fit=replace(end.before, model=stated))
     place = restore_replaced(Candidate(EFFECTS["viscous"], "device"), stated)
     rungs = (
         first,
-        replace(diagnosis.rungs[-1], added=level, replaced=place),
-        replace(diagnosis.rungs[-1], added=bristles),
+        replace(end.rungs[-1], added=level, replaced=place),
+        replace(end.rungs[-1], added=bristles),
     )
-    whole = replace(diagnosis, rungs=rungs)
+    whole = replace(end, rungs=rungs)
     assert select_independent(whole, {level.key, bristles.key}) == (level, bristles)
     assert select_independent(whole, {bristles.key}) == ()
 
 
-def with_box(diagnosis, *, alone, learned):
-    """The diagnosis with a black box beside it.
+def with_box(end, *, alone, learned):
+    """The end with a black box beside it.
 
     alone: its squares without a model, over those that the model leaves;  learned: of the latter
     """
-    left = diagnosis.after.check_error
+    left = end.after.check_error
     box = Learnable(left=left, error=left * (1.0 - learned) ** 0.5, alone=left * alone**0.5)
-    return replace(diagnosis, learnable=box)
+    return replace(end, learnable=box)
 
 
 @pytest.mark.parametrize(
@@ -224,16 +223,16 @@ def with_box(diagnosis, *, alone, learned):
     ],
 )
 def test_what_a_black_box_sees_and_cannot_learn_is_open_to_no_other_effect(
-    diagnosis, alone, learned, part
+    end, alone, learned, part
 ):
-    assessment = with_box(diagnosis, alone=alone, learned=learned)
+    assessment = with_box(end, alone=alone, learned=learned)
     assert open_to_others(assessment.learnable, assessment.after) == pytest.approx(part, abs=1e-9)
     assert open_to_others(None, assessment.after) == 1.0
 
 
-def test_an_effect_is_believed_more_the_less_of_what_is_left_follows_the_motion(diagnosis):
-    floor = replace(diagnosis.floor, value=0.5 * diagnosis.after.check_error)
-    noisy = replace(diagnosis, floor=floor)
+def test_an_effect_is_believed_more_the_less_of_what_is_left_follows_the_motion(end):
+    floor = replace(end.floor, value=0.5 * end.after.check_error)
+    noisy = replace(end, floor=floor, sensor_floor=floor)
 
     def outweighs(one):
         return next(e.outweighs for e in evidence_of(one) if e.accepted)

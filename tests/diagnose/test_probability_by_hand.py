@@ -8,8 +8,7 @@ import pytest
 from diagnose.stand_ins import fit, floor, ranked
 from diagnose.stub_models import Names, candidate
 
-from teleopdesign.diagnose.decision import open_to_others
-from teleopdesign.diagnose.diagnosis import Diagnosis, SetAside
+from teleopdesign.diagnose.ladder_end import LadderEnd
 from teleopdesign.diagnose.learnable import Learnable
 from teleopdesign.diagnose.probability import (
     CandidateEvidence,
@@ -19,6 +18,8 @@ from teleopdesign.diagnose.probability import (
 )
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.rung import Rung
+from teleopdesign.diagnose.statements import SetAside
+from teleopdesign.diagnose.verdict import open_to_others
 
 
 def entry(name, error, **more):
@@ -39,15 +40,14 @@ def diagnosis(steps, *, last=(), first=0.5, noise=0.1, needs=(), **more):
         ranking = Ranking(rungs[-1].fit, (accepted, *alternatives, *others))
         alike = tuple(r.candidate for r in alternatives)
         rungs.append(Rung(accepted.candidate, accepted.fit, ranking, alike))
-    return Diagnosis(
-        experiment=None,
-        prepared=None,
+    return LadderEnd(
+        search=None,
         verdict="effects_missing",
         rungs=tuple(rungs),
         last=Ranking(rungs[-1].fit, tuple(last)),
         estimated=rungs[-1].fit,
         floor=floor(noise),
-        **more,
+        **{"sensor_floor": floor(noise), **more},
     )
 
 

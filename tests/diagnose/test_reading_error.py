@@ -1,7 +1,6 @@
 """What reading a motion by sensors does to estimates, found on a motion whose truth is known."""
 
 from dataclasses import replace
-from importlib import import_module
 
 import numpy as np
 import pytest
@@ -9,8 +8,8 @@ import pytest
 import teleopdesign as td
 from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value
-from teleopdesign.diagnose.corrected_fit import correct_fit
 from teleopdesign.diagnose.effort import EFFORTS
+from teleopdesign.diagnose.estimates import correct_fit
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.ladder_state import LadderSearch
 from teleopdesign.diagnose.noise_floor import noise_floor
@@ -260,9 +259,7 @@ def test_a_correction_that_leaves_clearly_more_is_not_taken(rod, monkeypatch, ti
         calls.append(adequate(worse))
         return fit
 
-    # the folder has a function of the module's name
-    module = import_module("teleopdesign.diagnose.corrected_fit")
-    monkeypatch.setattr(module, "with_reading_error", ask)
+    monkeypatch.setattr("teleopdesign.diagnose.estimates.with_reading_error", ask)
     search = LadderSearch(prepared.experiment, prepared, prepared, rod_fit.model)
     floor = noise_floor(rod_fit.model, prepared, np.random.default_rng(0))
     correct_fit(search, rod_fit, floor)
@@ -283,8 +280,8 @@ def test_the_final_fit_has_its_interchangeable_parts_in_order(rod, monkeypatch, 
     mixed = estimate(
         model.with_effect("maxwell_slip", values=values), prepared, effort=EFFORTS.stay
     )
-    module = import_module("teleopdesign.diagnose.corrected_fit")
-    monkeypatch.setattr(module, "with_reading_error", lambda fit, *_, **__: fit)
+    unread = "teleopdesign.diagnose.estimates.with_reading_error"
+    monkeypatch.setattr(unread, lambda fit, *_, **__: fit)
     search = LadderSearch(prepared.experiment, prepared, prepared, mixed.model)
     last = correct_fit(search, mixed, noise_floor(model, prepared, np.random.default_rng(0)))
     names = [f"device.maxwell_slip.stiffness_{i}" for i in (1, 2, 3, 4)]

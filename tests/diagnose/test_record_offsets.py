@@ -7,14 +7,15 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose.answer import answer, write_predictions
+from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.error_at_command import refer_to_command
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.ladder_text import ladder_text
+from teleopdesign.diagnose.predictions import write_predictions
 from teleopdesign.diagnose.record_offsets import find_offsets, follow_records, offset_groups
 from teleopdesign.diagnose.residual import both_residuals, residuals
 from teleopdesign.measurement.prepare import prepare
+from teleopdesign.show.diagnose.text import ladder_text
 
 BIAS, LEVEL = 0.15, 0.8  # N, and of the rod's friction
 STRIBECK = {"extra_static_level": 0.2, "stribeck_velocity": 0.0225}

@@ -10,16 +10,16 @@ from scipy.signal import lfilter
 
 import teleopdesign as td
 from teleopdesign.diagnose.answer import answer
-from teleopdesign.diagnose.answers.bodies import model_data, model_from
 from teleopdesign.diagnose.clock import with_late_starts, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.ladder_text import ladder_text
+from teleopdesign.diagnose.model_data import model_data, model_from
 from teleopdesign.diagnose.record_shift import RecordShift, shifts_of
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
 from teleopdesign.fitted_checks import check_experiment
 from teleopdesign.measurement.prepare import prepare
+from teleopdesign.show.diagnose.text import ladder_text
 
 
 def shifted(experiment, rows):
@@ -214,7 +214,7 @@ def test_a_shift_that_raises_the_error_on_unseen_records_is_held_at_none(adequat
     beside = estimate(held.model.with_effect("bias", at=place), prepared)
     assert rows_late(beside, experiment)[0] == 0.0
     data = json.loads(json.dumps(model_data(held.model)))
-    back = model_from(data, EFFECTS, file="answer.json", key="models")
+    back = model_from(data, EFFECTS, "models")
     assert back.record_shift[place] == held.model.record_shift[place]
 
 
@@ -371,7 +371,7 @@ def test_the_filter_of_a_force_sensor_is_no_physics(adequate, plain, rows):
 def test_a_model_with_a_shift_is_written_and_read(plain):
     model = plain.model
     data = json.loads(json.dumps(model_data(model)))
-    back = model_from(data, EFFECTS, file="answer.json", key="models")
+    back = model_from(data, EFFECTS, "models")
     for place, late in model.record_shift.items():
         assert back.record_shift[place] == late
 

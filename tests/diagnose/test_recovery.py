@@ -10,9 +10,9 @@ from diagnose.simulated_cases import FEW, truth_of, write_simulated
 
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import answer
-from teleopdesign.diagnose.ladder_text import ladder_text
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.effects import EFFECTS
+from teleopdesign.show.diagnose.text import ladder_text
 
 pytestmark = pytest.mark.slow  # diagnoses of whole cases
 

@@ -8,15 +8,14 @@ import pytest
 from diagnose.made_records import write_made
 
 from teleopdesign import Model, load_experiment
-from teleopdesign.diagnose.decision import open_to_others
+from teleopdesign.base.codec import from_data, to_data
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.repeats import (
     Repeatability,
     _differences,
-    read_repeats,
     repeatability,
-    repeats_data,
 )
+from teleopdesign.diagnose.verdict import open_to_others
 from teleopdesign.measurement.prepare import prepare
 
 NOISE, EXACT = 0.3, 1e-6  # N m, in each reading of the torque
@@ -106,9 +105,8 @@ def test_axis_and_unit_do_not_matter(tmp_path, way):
 
 def test_a_repeatability_returns_from_an_answer():
     repeats = Repeatability(error=0.02, left=0.03, share=0.6, squares=0.7, chance=0.01)
-    content = json.loads(json.dumps({"repeats": repeats_data(repeats)}))
-    assert read_repeats(content) == repeats
-    assert read_repeats({}) is read_repeats({"repeats": repeats_data(None)}) is None
+    content = json.loads(json.dumps(to_data(repeats, {})))
+    assert from_data(Repeatability, content, "repeats", {}) == repeats
     assert str(repeats) == (
         "2 % of the force differs from pass to pass over the same motion (60 % of the rows); "
         "of 3 % left there, 2.2 % repeats"

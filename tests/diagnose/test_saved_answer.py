@@ -18,13 +18,12 @@ from teleopdesign.base.errors import TeleopDesignError
 from teleopdesign.base.files import write_json
 from teleopdesign.blocks import CONTACT, Body
 from teleopdesign.cli import main
-from teleopdesign.diagnose.answer import answer, write_answer
-from teleopdesign.diagnose.answers import load_answer, restore_diagnosis
-from teleopdesign.diagnose.answers.bodies import model_data, model_from
-from teleopdesign.diagnose.answers.fingerprint import digest
-from teleopdesign.diagnose.answers.restored import steps_of
-from teleopdesign.diagnose.ladder_text import ladder_text
+from teleopdesign.diagnose.answer import answer, load_answer, write_answer
+from teleopdesign.diagnose.fingerprint import digest
+from teleopdesign.diagnose.model_data import model_data, model_from
+from teleopdesign.diagnose.predictions import write_predictions
 from teleopdesign.effects import catalogue
+from teleopdesign.show.report import write_report
 from teleopdesign.unexplained import describe_residual
 
 #: what came later than the rest of the format
@@ -68,46 +67,58 @@ def assert_same(one, other):
     assert numbers(one) == numbers(other)
 
 
-def test_the_model_is_read_back_to_the_last_digit(path, diagnosis, experiment):
-    saved = load_answer(path)
-    assert_same(saved.model(), diagnosis.model)
-    assert_same(saved.model(FEW, experiment), diagnosis.model)
-    assert saved.verdict == diagnosis.verdict
-    assert saved.left == pytest.approx(diagnosis.left, rel=1e-12)
+def test_what_is_read_back_is_what_was_written(path, diagnosis, experiment):
+    for read in (load_answer(path, FEW), load_answer(path, FEW, experiment=experiment)):
+        assert read == diagnosis and repr(read) == repr(diagnosis)
+        assert read._repr_html_() == diagnosis._repr_html_()
+        assert_same(read.model, diagnosis.model)
+    assert load_answer(path, FEW).experiment == experiment, "by the folder that the answer names"
 
 
-def test_a_diagnosis_is_read_back_with_its_figures(path, diagnosis, experiment):
-    answer = restore_diagnosis(load_answer(path), experiment, FEW)
-    assert ladder_text(answer) == ladder_text(diagnosis)
-    for one, other in zip(answer.rungs, diagnosis.rungs, strict=True):
-        assert_same(one.fit.model, other.fit.model)
-        assert one.added == other.added and one.alternatives == other.alternatives
-        assert one.fit.free == other.fit.free
-    assert_same(answer.estimated.model, diagnosis.estimated.model)
-    # a search ends a trifle inside its bounds (1e-7 of a scale), and so does what is evaluated
-    assert answer.estimated.fit_residual == pytest.approx(
-        diagnosis.estimated.fit_residual, abs=1e-6
-    )
-    assert answer.floor == diagnosis.floor and answer.moment == diagnosis.moment
+def test_the_report_and_the_predictions_are_the_same_from_memory_and_from_the_answer(
+    path, diagnosis, tmp_path
+):
+    for name, one in (("memory", diagnosis), ("answer", load_answer(path, FEW))):
+        write_report(one, tmp_path / f"{name}.html")
+        write_predictions(one, tmp_path / f"{name}.csv")
+    for ending in ("html", "csv"):
+        files = [(tmp_path / f"{name}.{ending}").read_bytes() for name in ("memory", "answer")]
+        assert files[0] == files[1]
+
+
+def test_a_diagnosis_needs_no_recording_for_what_it_says(path, diagnosis, tmp_path):
+    content = json.loads(path.read_text())
+    del content["experiment"]["folder"]
+    alone = tmp_path / "alone.json"
+    alone.write_text(json.dumps(content))
+    read = load_answer(alone, FEW)
+    assert repr(read) == repr(diagnosis) and answer(read) == answer(diagnosis)
+    with pytest.raises(ExperimentError, match="does not say where its records are"):
+        read.plot()
 
 
 @pytest.mark.slow
-def test_what_is_described_is_the_same_from_the_answer(path, diagnosis, experiment):
-    answer = restore_diagnosis(load_answer(path), experiment, FEW)
-    description = describe_residual(answer.before, answer.prepared, answer.floor)
-    live = describe_residual(diagnosis.before, diagnosis.prepared, diagnosis.floor)
+def test_what_is_described_is_the_same_from_the_answer(path, diagnosis):
+    read = load_answer(path, FEW)
+    description = describe_residual(read.before.model, read.prepared, read.floor)
+    live = describe_residual(diagnosis.before.model, diagnosis.prepared, diagnosis.floor)
     assert description.as_data() == live.as_data()
 
 
 def test_an_older_answer_is_read_with_what_its_experiment_says(changed, diagnosis, experiment):
     file = changed(**dict.fromkeys(LATER, ...))
-    assert_same(load_answer(file).model(FEW, experiment), diagnosis.model)
-    alone = load_answer(file).model(FEW)
+    older = load_answer(file, FEW, experiment=experiment)
+    assert_same(older.model, diagnosis.model)
+    assert (older.verdict, older.left) == (diagnosis.verdict, diagnosis.left)
+    assert str(older).splitlines()[-1] == str(diagnosis).splitlines()[-1]
+    alone = load_answer(file, FEW).model
     assert alone.bodies["device"].axis == "revolute", "the inertia is in kg*m^2"
     values = {n: v.value for n, v in diagnosis.model.parameters.items()}
     assert {n: v.value for n, v in alone.parameters.items()} == values
     with pytest.raises(ExperimentError, match='no key "models": the answer of an earlier version'):
-        restore_diagnosis(load_answer(file), experiment, FEW)
+        older.before.model  # noqa: B018
+    with pytest.raises(ExperimentError, match='no key "open": the answer of an earlier version'):
+        older.questions  # noqa: B018
 
 
 def test_an_older_answer_without_an_axis_is_not_guessed_at(changed, content):
@@ -115,17 +126,16 @@ def test_an_older_answer_without_an_axis_is_not_guessed_at(changed, content):
     parameters["device.inertia"]["unit"] = "g"
     file = changed(**dict.fromkeys(LATER, ...), model_parameters=parameters)
     with pytest.raises(ExperimentError, match='inertia.unit: found "g", expected "kg" or "kg'):
-        load_answer(file).model()
+        load_answer(file)
 
 
 @pytest.mark.parametrize("old", [False, True])
-def test_the_answer_to_another_experiment_is_refused(old, changed, experiment, diagnosis):
+def test_the_answer_to_another_experiment_is_refused(old, changed):
     file = changed(**dict.fromkeys(LATER, ...)) if old else changed()
     rod = td.load_experiment(td.example("rod"))
-    for reader in (lambda s: s.model(EFFECTS, rod), lambda s: restore_diagnosis(s, rod)):
-        with pytest.raises(ExperimentError, match="is not an answer to rod but to another") as why:
-            reader(load_answer(file))
-        assert str(why.value).startswith(f"{file}: ") and "\n" not in str(why.value)
+    with pytest.raises(ExperimentError, match="is not an answer to rod but to another") as why:
+        load_answer(file, experiment=rod)
+    assert str(why.value).startswith(f"{file}: ") and "\n" not in str(why.value)
 
 
 def test_records_that_read_differently_now_are_noticed(path, experiment):
@@ -134,8 +144,7 @@ def test_records_that_read_differently_now_are_noticed(path, experiment):
     signals["device.position"][100] += 1e-12
     other = replace(experiment, records=(replace(record, signals=signals), *experiment.records[1:]))
     with pytest.raises(ExperimentError, match="records of the same names, but they read differ"):
-        load_answer(path).require(other)
-    load_answer(path).require(experiment)
+        load_answer(path, experiment=other)
     assert digest(other) != digest(experiment)
 
 
@@ -145,12 +154,8 @@ def test_models_of_other_bodies_than_those_recorded_are_refused(changed, content
     models["ladder"][-1]["device"]["effects"] = {"coulomb": {}, "stribeck": {}}
     models["estimated"] = models["ladder"][-1]
     file = changed(models=models)
-    for reader in (
-        lambda s: s.model(FEW, experiment),
-        lambda s: restore_diagnosis(s, experiment, FEW),
-    ):
-        with pytest.raises(ExperimentError, match=r"models: found device \(prismatic\), expected"):
-            reader(load_answer(file))
+    with pytest.raises(ExperimentError, match=r"models: found device \(prismatic\), expected"):
+        load_answer(file, FEW, experiment=experiment)
 
 
 def test_an_effect_of_the_user_is_asked_for_and_then_there(changed, content, experiment, tmp_path):
@@ -167,8 +172,8 @@ def test_an_effect_of_the_user_is_asked_for_and_then_there(changed, content, exp
         row["device"]["effects"]["magnet"] = {"pull": {"value": 2.0, "unit": "N*m/rad"}}
     file = changed(models=models)
     with pytest.raises(ExperimentError, match='no effect "magnet".*give its file with --effect'):
-        load_answer(file).model()
-    model = load_answer(file).model(catalogue([path]), experiment)
+        load_answer(file)
+    model = load_answer(file, catalogue([path]), experiment=experiment).model
     assert model.parameters["device.magnet.pull"].value == 2.0
 
 
@@ -182,7 +187,7 @@ def test_a_modelled_environment_comes_back(tmp_path):
     model = Model.from_experiment(experiment)
     model = model.with_values({"environment.stiffness": Value(3.0, stderr=0.1)})
     data = json.loads(json.dumps(model_data(model)))
-    assert_same(model_from(data, EFFECTS, file="a.json", key="models"), model)
+    assert_same(model_from(data, EFFECTS, "models"), model)
     assert model.places[-1] == "environment"
     older = {
         "verdict": "undecided", "missing": [], "noise_floor": 0.1, "indistinguishable": [],
@@ -193,9 +198,8 @@ def test_a_modelled_environment_comes_back(tmp_path):
         },
     }  # fmt: skip
     write_json(tmp_path / "older.json", older)
-    saved = load_answer(tmp_path / "older.json")
-    assert_same(saved.model(EFFECTS, experiment), model)
-    assert saved.model().body("environment").axis == "revolute"
+    assert_same(load_answer(tmp_path / "older.json", experiment=experiment).model, model)
+    assert load_answer(tmp_path / "older.json").model.body("environment").axis == "revolute"
 
 
 @pytest.mark.parametrize("name", sorted(EFFECTS))
@@ -208,7 +212,7 @@ def test_any_body_comes_back_even_where_its_effects_are_absent(name):
         body = body.with_effect(EFFECTS.get(effect, CONTACT))
     model = Model({"device": body})
     data = json.loads(json.dumps(model_data(model), allow_nan=False))
-    assert_same(model_from(data, EFFECTS, file="a.json", key="models"), model)
+    assert_same(model_from(data, EFFECTS, "models"), model)
 
 
 @pytest.mark.parametrize(("key", "wrong"), [("value", "1"), ("fixed", None), ("stderr", "small")])
@@ -216,9 +220,9 @@ def test_a_wrong_entry_of_a_records_shift_is_one_line_with_its_place(key, wrong)
     model = Model({"device": Body("prismatic", {"inertia": Value(0.2)})}, EFFECTS)
     data = model_data(model.with_record_shift({"device": Value(1e-3)}))
     data["record_shift"]["device"][key] = wrong
-    place = rf"^a\.json: models\.record_shift\.device\.{key}: found"
+    place = rf"^models: record_shift\.device\.{key}: found"
     with pytest.raises(ExperimentError, match=place):
-        model_from(data, EFFECTS, file="a.json", key="models")
+        model_from(data, EFFECTS, "models")
 
 
 MISTAKES = {
@@ -298,13 +302,9 @@ def test_a_spoilt_answer_is_read_or_refused_in_one_line(
             break
     file = tmp_path_factory.getbasetemp() / "spoilt.json"
     file.write_text(json.dumps(spoilt))
-    for use in (
-        lambda saved: saved.model(FEW),
-        lambda saved: saved.model(FEW, experiment),
-        lambda saved: steps_of(saved, FEW),
-    ):
+    for more in ({}, {"experiment": experiment}):
         try:
-            use(load_answer(file))
+            str(load_answer(file, FEW, **more))
         except TeleopDesignError as error:
             assert str(error).startswith(str(file)) and "\n" not in str(error)
 

@@ -22,7 +22,7 @@ from teleopdesign.diagrams import (
 )
 from teleopdesign.frequency import delay_margin, loop_gain
 from teleopdesign.passivity import diagram_claims, ports
-from teleopdesign.passivity.ports import impedance_matrix
+from teleopdesign.passivity.linear.family import family_at
 from teleopdesign.realise.lti import S
 from teleopdesign.simulate import Sampling, simulate
 
@@ -56,7 +56,7 @@ sizes = st.floats(0.05, 5.0).map(lambda x: round(x, 3))
 def test_to_its_port_it_is_a_damper_and_a_spring(mass, viscous, inertia, damping):
     """Z = M s + B + g (M_n + B_n/s), passive for any nominal body; 1e-12: rounding of pi."""
     made = observed(body(mass, viscous__damping=viscous), inertia=inertia, damping=damping)
-    form = impedance_matrix(made, ports(made))[0, 0]
+    form = family_at(made, ports(made)).z[0, 0]
     for s in (0.3 + 2j, 40j, 5.0):
         expected = mass * s + viscous + POLE * (inertia + damping / s)
         assert complex(form.subs(S, s)) == pytest.approx(expected, rel=1e-12)

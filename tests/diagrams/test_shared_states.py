@@ -18,7 +18,8 @@ from teleopdesign.diagrams import (
     controller_parts,
     with_shared_states,
 )
-from teleopdesign.passivity.linear.hidden_modes import growth_within
+from teleopdesign.passivity import claim_over_intervals, ports
+from teleopdesign.passivity.linear.family import family_at
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.simulate import Sampling, simulate
 
@@ -122,10 +123,11 @@ def test_a_computer_steps_the_states_together(pole, discrete):
 @pytest.mark.slow
 def test_what_grows_inside_is_counted_once():
     """The loop decays, though each of four entries has a pole in the right half plane."""
-    assert growth_within(two_rods(stabilising(3.0))) is None
-    apart = two_rods(stabilising(3.0))
-    blocks = [replace(b, entry=None) if isinstance(b, Control) else b for b in apart.blocks]
-    assert growth_within(replace(apart, blocks=tuple(blocks))) is not None
+    whole = two_rods(stabilising(3.0))
+    assert claim_over_intervals(whole, {}, claim="stable").status == "proved"
+    blocks = [replace(b, entry=None) if isinstance(b, Control) else b for b in whole.blocks]
+    apart = replace(whole, blocks=tuple(blocks))
+    assert claim_over_intervals(apart, {}, claim="stable").status == "refuted"
 
 
 @pytest.mark.slow
@@ -147,7 +149,7 @@ def test_what_no_output_shows_is_there_all_the_same():
     rod = Moving("Z", body(0.1, viscous__damping=2.0), "x", "u", {"f": 1.0}, "f")
     late = Control("D", controller("low_pass", {"bandwidth": 9.0}), "x", "v", "x", True)
     diagram = Diagram("hidden", (rod, late, *controls), sums, {"f": "force"}, ("x",))
-    assert growth_within(diagram) == pytest.approx(2.0)
+    assert family_at(diagram, ports(diagram)).undecayed == pytest.approx([2.0])
 
 
 @pytest.mark.parametrize(

@@ -15,10 +15,9 @@ from next_experiment.next_cases import KNOWN, POOR, RATE, Rod
 from teleopdesign import Model, find_missing
 from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
-from teleopdesign.diagnose.answer import write_answer
-from teleopdesign.diagnose.answers import load_answer, restore_diagnosis
+from teleopdesign.diagnose.answer import load_answer, write_answer
 from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.diagnosis import OpenQuestion
+from teleopdesign.diagnose.statements import OpenQuestion, OpenRival
 from teleopdesign.effects import EFFECTS
 from teleopdesign.next_experiment import (
     Limits,
@@ -57,7 +56,7 @@ def one_speed(tmp_path_factory):
 def test_a_proposal_from_the_answer_is_the_same(one_speed, tmp_path):
     _, experiment, proposal = one_speed
     write_answer(proposal.diagnosis, tmp_path / "answer.json")
-    again = propose(restore_diagnosis(load_answer(tmp_path / "answer.json"), experiment, FEW))
+    again = propose(load_answer(tmp_path / "answer.json", FEW, experiment=experiment))
     assert proposal.rivals and proposal_data(again) == proposal_data(proposal)
 
 
@@ -328,7 +327,7 @@ def test_a_rod_that_stands_for_itself_needs_no_next_experiment(tmp_path):
 
 def test_one_candidate_beside_named_effects_has_no_rival(diagnosis):
     """More is missing, and one effect comes near: only longer check records decide."""
-    nearest = Candidate(EFFECTS["cogging"], "device"), diagnosis.rungs[-1].fit
+    nearest = OpenRival(Candidate(EFFECTS["cogging"], "device"), diagnosis.model)
     proposal = propose(replace(diagnosis, open=(OpenQuestion(None, (nearest,)),)))
     assert not proposal.separations
     assert "only cogging at device comes near" in proposal.sentence

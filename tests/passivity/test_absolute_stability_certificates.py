@@ -25,27 +25,27 @@ def sealed(rows, **other):
 
 
 @pytest.mark.parametrize(
-    ("rows", "problem"),
+    "rows",
     [
-        ([["s + 1 + 1/s", "2/s"], ["2/s", "s + 1 + 1/s"]], "at s = 0"),
-        ([["1", "1/s"], ["1/s", "1"]], "at s = 0"),
-        ([["s + 1", "s"], ["s", "1 + s/2"]], "at infinity"),
-        ([["0", TANK], [TANK, "1"]], "at 1.414 rad/s"),
-        ([[TANK, TANK], [TANK, f"999999/1000000*{TANK}"]], "at 1.414 rad/s"),
-        ([[f"1 + {TANK}", f"2*{TANK}"], [f"2*{TANK}", f"1 + {TANK}"]], "at 1.414 rad/s"),
-        ([["1", "1"], ["1001/1000", "1"]], "beside|at every frequency"),
-        ([["1", "0"], ["0", "-1"]], "z22 is positive real"),
-        ([["1/(s - 1)", "0"], ["0", "1"]], "z11 is positive real"),
-        ([["1", "1/(s - 1)"], ["0", "1"]], "z12 has no pole"),
-        ([["1", "0"], ["1/(s**2 - s + 1)", "1"]], "z21 has no pole"),
-        ([["1", "0"], ["1/s**2", "1"]], "every pole of z21"),
-        ([["1", "s**2"], ["0", "1"]], "every pole of z12"),
-        ([["1", "1/(s**2 + 1)**2"], ["0", "1"]], "every pole of z12"),
-        ([["1", "(s - 1)/(s - 1)/s"], ["1/s", "1"]], "at s = 0"),
+        [["s + 1 + 1/s", "2/s"], ["2/s", "s + 1 + 1/s"]],
+        [["1", "1/s"], ["1/s", "1"]],
+        [["s + 1", "s"], ["s", "1 + s/2"]],
+        [["0", TANK], [TANK, "1"]],
+        [[TANK, TANK], [TANK, f"999999/1000000*{TANK}"]],
+        [[f"1 + {TANK}", f"2*{TANK}"], [f"2*{TANK}", f"1 + {TANK}"]],
+        [["1", "1"], ["1001/1000", "1"]],
+        [["1", "0"], ["0", "-1"]],
+        [["1/(s - 1)", "0"], ["0", "1"]],
+        [["1", "1/(s - 1)"], ["0", "1"]],
+        [["1", "0"], ["1/(s**2 - s + 1)", "1"]],
+        [["1", "0"], ["1/s**2", "1"]],
+        [["1", "s**2"], ["0", "1"]],
+        [["1", "1/(s**2 + 1)**2"], ["0", "1"]],
+        [["1", "(s - 1)/(s - 1)/s"], ["1/s", "1"]],
     ],
 )
-def test_a_false_certificate_is_refused_for_the_condition_that_fails(rows, problem):
-    with pytest.raises(Refused, match=problem):
+def test_a_false_certificate_is_refused(rows):
+    with pytest.raises(Refused, match="absolutely stable"):
         check(sealed(rows))
 
 
@@ -161,5 +161,5 @@ def test_masses_at_high_frequency_are_coefficients_over_those_of_the_denominator
     if holds:
         assert check(content)
     else:
-        with pytest.raises(Refused, match="infinity"):
+        with pytest.raises(Refused, match="absolutely stable"):
             check(content)

@@ -5,13 +5,9 @@ from fractions import Fraction
 from itertools import product
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from passivity.small_certificates import sealed, storage
 
 from teleopdesign.passivity.checker import Refused, check, main
-from teleopdesign.passivity.checker.polynomials import multiply
-from teleopdesign.passivity.checker.positive_roots import are_surely_coprime
 from teleopdesign.passivity.claims.certificate import Certificate
 from teleopdesign.passivity.claims.second_opinion import second_opinion
 
@@ -82,20 +78,3 @@ def test_the_command_says_by_its_status_whether_all_files_prove_something(tmp_pa
         assert ["proved" in line for line in lines] == [f is good for f in files]
     assert main([str(good)]) == 0 and main([str(tmp_path / "none.json")]) == 1
     assert main([]) == 2
-
-
-PRIME = 2**61 - 1
-small = st.lists(st.integers(-4, 4), min_size=2, max_size=4).filter(lambda p: p[-1] and any(p))
-
-
-@given(p=small, q=small)
-def test_only_polynomials_that_share_no_root_are_coprime(p, q):
-    """Factors by a prime are lost modulo it: then nothing is said."""
-    p, q = [Fraction(x) for x in p], [Fraction(x) for x in q]
-    apart = [Fraction(1), Fraction(0), Fraction(1)]  # no real root
-    line = [Fraction(1), Fraction(9)]  # a root that no small polynomial has
-    assert are_surely_coprime(multiply(line, line), apart)
-    assert are_surely_coprime(line, p) and are_surely_coprime(p, line)
-    for common in (apart, line, [Fraction(1), Fraction(PRIME)], [Fraction(PRIME), Fraction(1)]):
-        assert not are_surely_coprime(multiply(common, p), multiply(common, q))
-    assert not are_surely_coprime([], p) and not are_surely_coprime(p, [])

@@ -3,13 +3,12 @@
 import control as ct
 import numpy as np
 import pytest
-import sympy as sp
 from devices import body
-from sympy.polys.matrices import DomainMatrix
 
 from teleopdesign.controllers import controller
+from teleopdesign.derive.all_states import all_states
+from teleopdesign.derive.polynomials import as_poly
 from teleopdesign.diagrams import Attached, Control, Diagram, Junction, Moving, teleoperator
-from teleopdesign.passivity.linear.in_full import equations_in_full
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.lti import S
 
@@ -68,23 +67,10 @@ DIAGRAMS = {
 }
 
 
-def determinant(diagram):
-    equations = equations_in_full(diagram)
-    names = list(dict.fromkeys(n for row in equations for n in row))
-    assert len(names) == len(equations)
-    ring = sp.QQ[S]
-    entries = [
-        [ring.from_sympy(row[n].as_expr()) if n in row else ring.zero for n in names]
-        for row in equations
-    ]
-    matrix = DomainMatrix(entries, (len(names), len(names)), ring)
-    return sp.Poly(ring.to_sympy(matrix.charpoly()[-1]), S)
-
-
 @pytest.mark.parametrize("name", DIAGRAMS)
 def test_the_determinant_has_the_poles_of_the_closed_loop_and_no_others(name):
     diagram = DIAGRAMS[name]
-    roots = np.roots([float(c) for c in determinant(diagram).all_coeffs()])
+    roots = np.roots([float(c) for c in as_poly(all_states(diagram).determinant(), S).all_coeffs()])
     system = to_iosystem(diagram)
     linear = ct.linearize(system, np.zeros(system.nstates), np.zeros(system.ninputs))
     expected = list(np.linalg.eigvals(linear.A))

@@ -56,7 +56,7 @@ def test_a_growing_mode_moves_the_closed_loop_by_itself(name, turned):
     entries = UNSETTLED[name]
     if turned:
         entries = [row[::-1] for row in entries[::-1]]
-    mode = growing_mode(two_port(entries).z)
+    mode = growing_mode(two_port(entries).family)
     assert mode is not None and mode.rate > 0 and mode.frequency >= 0
     assert mode.energy > 0 and mode.is_confirmed()
     s, v = mode.s, np.array(mode.velocity)
@@ -77,7 +77,7 @@ def test_a_growing_mode_moves_the_closed_loop_by_itself(name, turned):
 
 @pytest.mark.parametrize("name", DECAYING)
 def test_a_two_port_that_is_stable_between_all_terminations_has_no_growing_mode(name):
-    assert growing_mode(two_port(DECAYING[name]).z) is None
+    assert growing_mode(two_port(DECAYING[name]).family) is None
 
 
 @pytest.mark.parametrize("frequency", [Fraction(0), Fraction(3)])

@@ -4,17 +4,16 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+import sympy as sp
 from devices import body
 from passivity.attacks.test_late_boxes import late_diagram
 from realise.test_delay_blocks import held
 
-from teleopdesign.base.errors import ModelError
+from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.passivity import claim_over_intervals
-from teleopdesign.passivity.intervals import late_cells
-from teleopdesign.passivity.intervals.late_cells import is_zero_free
-from teleopdesign.passivity.intervals.late_roots import holds_root, rightmost_root
-from teleopdesign.passivity.intervals.late_terms import LateTerms
+from teleopdesign.passivity.intervals.box import ValueBox
+from teleopdesign.passivity.intervals.late_cells import LateSum, is_zero_free
 
 TIME = "T_1.delay.time"
 DAMPING, STIFFNESS, MASS = 5.0, 20.0, 0.1
@@ -27,20 +26,16 @@ def limit(stiffness):
     return np.arctan2(DAMPING, MASS * w) / w
 
 
-def terms(rows, values=(), times=((0.0, 1.0),)):
-    """rows: coefficient, then powers of s, values and late factors."""
-    return LateTerms(
-        tuple(Fraction(row[0]) for row in rows),
-        np.array([row[1:] for row in rows]),
-        tuple((Fraction(a), Fraction(b)) for a, b in values),
-        tuple((Fraction(a), Fraction(b)) for a, b in times),
-        tuple(range(len(values))),
-        tuple(range(len(values), len(values) + len(times))),
-    )
-
-
-def exact(late):
-    return {Fraction(t): [Fraction(c) for c in p] for t, p in late.items()}
+def terms(rows, values=()):
+    """rows: coefficient, then powers of s, values and e^(-s T), with T up to 1 s."""
+    names = tuple(f"v{k}" for k in range(len(values)))
+    mark = sp.Symbol("E")
+    ring, *_ = sp.ring((sp.Symbol("s"), *map(sp.Symbol, names), mark), sp.QQ)
+    p = ring({})
+    for c, *powers in rows:
+        p += ring({tuple(powers): sp.QQ(*Fraction(c).as_integer_ratio())})
+    low, high = zip(*values, strict=True) if values else ((), ())
+    return LateSum.of(p, {mark: sp.S(1)}, ValueBox(names, tuple(low), tuple(high)))
 
 
 @pytest.mark.parametrize(("share", "status"), [(0.999, "proved"), (1.02, "refuted")])
@@ -101,45 +96,13 @@ def test_terms_as_strong_as_the_first_at_high_frequency_are_not_called_free_of_z
     assert is_zero_free(terms([(1, 1, 1), (1, 0, 0)])) is None
 
 
-def test_a_root_is_shown_only_where_there_is_one():
-    late = {0.0: np.array([1.0, 0.0]), 1.0: np.array([2.0])}  # s + 2 e^(-s): grows, 2 > pi/2
-    root = rightmost_root(late)
-    radius = holds_root(exact(late), root)
-    assert root.real > 0 and radius is not None and radius < root.real
-    assert abs(root + 2 * np.exp(-root)) < 1e-12
-    assert holds_root(exact(late), root + 0.5) is None
-
-
-def test_a_root_is_followed_from_where_there_is_no_dead_time():
-    """A spring of 291 N/m that is 0.076 s late, beside what damps: at T = 0 its roots decay."""
-    late = {0.0: np.array([1.0, 3.452, 2.443, 0.3395]), 0.07643: np.array([291.1, 209.3])}
-    root = rightmost_root(late)
-    assert root.real > 1 and holds_root(exact(late), root) is not None
-
-
-def test_a_dead_time_of_an_actuator_is_refused_in_one_line():
+@pytest.mark.parametrize(("gain", "status"), [(10.0, "proved"), (1000.0, "refuted")])
+def test_a_dead_time_of_an_actuator_counts_as_one_of_a_law(gain, status):
+    """m s^2 + b s + k + g e^(-s T) for a rod that a gain holds through a late actuator."""
     device = body(0.1, viscous__damping=1.0, spring__stiffness=1.0, actuation_delay__delay=0.01)
-    with pytest.raises(ModelError, match="rational blocks"):
-        claim_over_intervals(
-            haptic_interface(device), {"Z_M.inertia": (0.1, 0.2)}, claim="stable", points=2
-        )
-
-
-def test_a_part_with_a_zero_on_a_corner_is_never_shown_and_one_beside_it_is():
-    """s^2 + v + c (e^(-s T) - 1), zero at w = 3/2, v = 9/4, T = 0: parts of any size about it."""
-    rng = np.random.default_rng(8)
-    for share in (Fraction(0), Fraction(1, 3), Fraction(7)):
-        rows = [(1, 2, 0, 0), (1, 0, 1, 0), (-share, 0, 0, 0), (share, 0, 0, 1)]
-        groups = late_cells._groups(terms(rows, [(2, 3)]), False)
-        zero = np.array([1.5, 2.25, 0.0])
-        sizes = 10 ** rng.uniform(-17, 0, (500, 3))
-        side = rng.integers(0, 2, (500, 3)) * [1, 1, 0]
-        low, high = zero - side * sizes, zero + (1 - side) * sizes
-        assert not late_cells._is_shown(groups, low, high, False).any()
-        low[:, 1], high[:, 1] = zero[1] + 1e-6, zero[1] + 2e-6
-        low[:, 0], high[:, 0] = zero[0], zero[0] + 1e-9 * rng.random(500)
-        high[:, 2] = low[:, 2] + 1e-9 * rng.random(500)
-        assert late_cells._is_shown(groups, low, high, False).all()
+    diagram = haptic_interface(device, position_loop=controller("gain", {"gain": gain}))
+    claim = claim_over_intervals(diagram, {"Z_M.inertia": (0.1, 0.2)}, claim="stable", points=2)
+    assert claim.status == status, claim
 
 
 @pytest.mark.slow

@@ -146,7 +146,7 @@ def test_a_claim_that_holds_everywhere_has_no_margin_below_zero_though_rounding_
     box = {"M.inertia": (0.1, 0.3), "P.gain.gain": (10.0, 30.0)}
     proved = claim_over_intervals(plain(20.0), box, points=4)
     assert proved.status == "proved" and proved.margin >= 0.0
-    monkeypatch.setattr(linear, "_is_proved", lambda *_: False)
+    monkeypatch.setattr(linear, "is_shown", lambda *_: False)
     claim = claim_over_intervals(plain(20.0), box, points=4)
     assert claim.status == "evidence" and claim.margin >= 0.0
     assert claim.how.startswith("no proof over the whole box")
@@ -171,7 +171,7 @@ def test_a_point_that_is_not_decided_leaves_the_box_open_and_says_why():
     claim = claim_over_intervals(whole, {"M.inertia": (0.1, 0.3)}, points=4)
     assert claim.status == "unknown" and claim.holds is None
     assert claim.how == f"at the worst point of the search: {claim.at_worst.verdict}"
-    assert "a mode that no port shows grows" in claim.how
+    assert "a mode that no port shows does not decay, at s = 1 1/s" in claim.how
 
 
 def test_a_refuted_box_has_a_margin_below_zero():

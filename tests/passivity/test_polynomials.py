@@ -8,7 +8,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.passivity.linear.polynomials import (
+from teleopdesign.derive.polynomials import (
     X,
     is_hurwitz,
     is_non_negative,

@@ -17,8 +17,9 @@ from teleopdesign.diagrams import (
     tip_coordinates,
 )
 from teleopdesign.passivity import diagram_claims, ports
+from teleopdesign.passivity.linear.family import family_of_matrix
+from teleopdesign.passivity.linear.judge import passive_claim
 from teleopdesign.passivity.linear_diagrams import linear_claims
-from teleopdesign.passivity.two_port.several_ports import passive_together
 from teleopdesign.realise.lti import S
 
 STAR = 1000.0 * (3 * np.eye(3) - np.ones((3, 3)))
@@ -80,7 +81,7 @@ def test_no_wave_beats_what_is_proved_and_each_refutation_is_one(size):
     kinds = set()
     for less in (0, 0, sp.Rational(1, 50), 3):
         z = random_matrix(rng, size, less)
-        claim = passive_together(z)
+        claim = passive_claim(family_of_matrix(z.tolist()))
         values = np.array(sp.lambdify(S, z.tolist(), "numpy")(points), dtype=object)
         values = np.array([[np.broadcast_to(e, points.shape) for e in row] for row in values])
         values = np.moveaxis(values.astype(complex), 2, 0)
@@ -91,11 +92,6 @@ def test_no_wave_beats_what_is_proved_and_each_refutation_is_one(size):
         assert not (claim.status == "refuted" and claim.record.replay() <= 0)
         kinds.add(claim.status)
     assert kinds >= {"proved", "refuted"}
-
-
-def test_with_dead_times_nothing_is_claimed_of_three_ports():
-    z = sp.eye(3) * (1 + sp.exp(-S / 10))
-    assert passive_together(z).status == "unknown"
 
 
 JOINT = td.Body("revolute", {"inertia": 0.01}).with_effect(td.EFFECTS["viscous"], {"damping": 0.1})
@@ -128,7 +124,7 @@ def test_a_refutation_of_three_ports_states_the_frequency_of_its_wave(frequency)
     """A damper of 1 N s/m less twice a resonance at that many rad/s."""
     s = S / frequency
     dip = 1 - 2 * (s / 5) / (s**2 + s / 5 + 1)
-    claim = passive_together(sp.diag(1, dip, 1))
+    claim = passive_claim(family_of_matrix(sp.diag(1, dip, 1).tolist()))
     assert claim.status == "refuted"
     stated = float(str(claim.verdict).partition("at ")[2].split()[0])
     assert stated == pytest.approx(frequency / (2 * np.pi), rel=0.15)

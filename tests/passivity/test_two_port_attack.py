@@ -11,48 +11,31 @@ import sympy as sp
 from passivity.random_two_ports import KINDS, attack, is_free_motion, random_two_port
 
 from teleopdesign.passivity import absolutely_stable, passive, two_port
-from teleopdesign.passivity.checker.absolute_stability import conditions
-from teleopdesign.passivity.two_port.growing_mode import entries_of, growing_mode
 from teleopdesign.realise.lti import S
 
 TRIES = 60  # pairs of terminations, and half as many steps from the worst of them
 
 
-def judged(rng, kind, *, whole):
-    """Status of a random two-port, once it was held against the attacker or replayed.
-
-    whole: the claim with its certificates, else what decides it
-    """
+def judged(rng, kind):
+    """Status of a random two-port, once it was held against the attacker or replayed."""
     z = random_two_port(rng, kind)
-    system = two_port(z.tolist())
-    failed = [c for c in conditions(entries_of(system.z)) if not c.holds]
-    if whole:
-        claim = absolutely_stable(system)
-        mode = claim.record if claim.status == "refuted" else None
-        assert (claim.status == "proved") is not bool(failed), (claim, z)
-    else:
-        mode = growing_mode(system.z) if failed else None
-    if mode is not None:
-        assert failed, z
+    claim = absolutely_stable(two_port(z.tolist()))
+    if claim.status == "refuted":
+        mode = claim.record
         assert is_free_motion(mode), z
         assert mode.is_confirmed(), z
         # what came before the last 500 periods, or twelve time constants, is left off
         assert 0 < mode.replay() <= mode.energy * (1 + 1e-5), z
         return "refuted"
     held = attack(rng, z, TRIES)
-    assert held is None, (failed, z, held)
-    if not failed:
-        return "proved"
-    # a failed condition that is needed has a motion; a multiple pole on the axis need not
-    assert all(c.name.startswith("every pole of") for c in failed), (failed, z)
-    return "unknown"
+    assert held is None, (claim, z, held)
+    return claim.status
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("seed", "number"), [(1, 30), (2, 105)])
-def test_no_termination_contradicts_what_is_claimed(seed, number):
-    rng = np.random.default_rng(seed)
-    counts = Counter(judged(rng, KINDS[i % len(KINDS)], whole=seed > 1) for i in range(number))
+def test_no_termination_contradicts_what_is_claimed():
+    rng, number = np.random.default_rng(2), 105
+    counts = Counter(judged(rng, KINDS[i % len(KINDS)]) for i in range(number))
     print(dict(counts))
     # a test in which nearly all are refuted, or left open, would show nothing
     assert counts["proved"] >= 0.25 * number, counts

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from teleopdesign.passivity.search.points import _best_far
 from teleopdesign.passivity.theorems.compliant_transmission import any_environment
 from teleopdesign.passivity.theorems.delayed_inertia import cancelled_inertia
 from teleopdesign.passivity.theorems.quantised_spring import quantised_spring
 from teleopdesign.passivity.theorems.sampled_compensation import sampled_compensation
 from teleopdesign.passivity.theorems.velocity_compensation import velocity_compensation
 from teleopdesign.passivity.theorems.wave_channel import wave_channel
-from teleopdesign.passivity.two_port.growth_points import _best_far
 
 JOINT = {
     "motor_level": 0.5,

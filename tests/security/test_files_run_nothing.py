@@ -158,8 +158,7 @@ def answer(**changed):
     pairs(("effect", "at", "body", "parameter", "own", "value", "stderr"), CODE[:12]),
 )
 def test_an_entry_of_an_answer_is_refused_in_one_line(guard, tmp_path, capsys, key, text):
-    from teleopdesign.design import read_answer
-    from teleopdesign.diagnose import Diagnosis  # noqa: F401, loaded before what reads is watched
+    from teleopdesign.diagnose import load_answer
 
     path = tmp_path / "answer.json"
     path.write_text(json.dumps(answer(**{key: text})))
@@ -168,7 +167,7 @@ def test_an_entry_of_an_answer_is_refused_in_one_line(guard, tmp_path, capsys, k
         output = capsys.readouterr().err
         assert output.count("\n") == 1 and one_line(output.strip())
         with pytest.raises(ExperimentError) as caught:
-            read_answer(path, load_experiment(write_rod(tmp_path / "rod")))
+            load_answer(path, experiment=load_experiment(write_rod(tmp_path / "rod")))
     one_line(caught.value)
 
 
@@ -182,7 +181,7 @@ def test_an_entry_of_an_answer_is_refused_in_one_line(guard, tmp_path, capsys, k
     ids=range(12),
 )  # fmt: skip
 def test_another_content_of_an_answer_is_refused_in_one_line(guard, tmp_path, capsys, content):
-    from teleopdesign.design import read_answer
+    from teleopdesign.diagnose import load_answer
 
     path = tmp_path / "answer.json"
     path.write_text(content)
@@ -191,7 +190,7 @@ def test_another_content_of_an_answer_is_refused_in_one_line(guard, tmp_path, ca
         output = capsys.readouterr().err
         assert output.count("\n") == 1 and one_line(output.strip())
         with pytest.raises(ExperimentError) as caught:
-            read_answer(path, load_experiment(write_rod(tmp_path / "rod")))
+            load_answer(path, experiment=load_experiment(write_rod(tmp_path / "rod")))
     one_line(caught.value)
 
 

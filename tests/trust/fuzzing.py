@@ -19,7 +19,7 @@ from trust.fuzzed_logs import made_readers
 
 from teleopdesign.base.errors import TeleopDesignError
 from teleopdesign.cli import main
-from teleopdesign.diagnose.answers import load_answer
+from teleopdesign.diagnose import load_answer
 from teleopdesign.diagrams import read_diagram
 from teleopdesign.effects import load_effect
 from teleopdesign.fitted_checks import check_experiment
@@ -127,7 +127,7 @@ READERS = {
     "h5": (experiment_bytes("h5"), lambda c, f: read_experiment(c, f, ending="h5")),
     "answer": (
         (ROOT / "docs" / "examples" / "diagnosed_joint.json").read_bytes(),
-        lambda c, f: read_file(c, f, name="a.json", read=lambda p: load_answer(p).model()),
+        lambda c, f: read_file(c, f, name="a.json", read=lambda p: load_answer(p).model),
     ),
     "claims": (
         json.dumps(CLAIMS).encode(),

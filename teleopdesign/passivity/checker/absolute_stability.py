@@ -1,274 +1,128 @@
-"""Absolute stability of rational two-ports: Llewellyn's criterion, poles and residues included.
+"""Certificates of absolute stability of two-ports: "absolute stability", and the same over a box.
 
-Z(s) is a 2x2 matrix of rational functions with real coefficients. k_ij is the residue of z_ij at a
-pole on the axis (at infinity: the coefficient of s), and L = z12 z21. The claim: no pair of
+Z(s) is a 2x2 matrix of rational functions with real coefficients. The claim: no pair of
 positive-real terminations (Z1, Z2) for which (Z + diag(Z1, Z2))^-1 exists gives this inverse a pole
-in the open right half plane. The claim holds if the conditions 1 to 4 hold. Each of them is also
-necessary, except the second line of 2:
+in the open right half plane. With E = (Z + 1)^-1 the checker shows, at each point of a box:
 
-    1. z11 and z22 are positive real;
-    2. z12 and z21 have no pole in the open right half plane,
-       and their poles on the axis, infinity included, are simple;
-    3. A = 2 Re z11 Re z22 - Re L >= |L| at every w that is no pole;
-    4. 2 k11 k22 - Re(k12 k21) >= |k12 k21| at every pole on the axis, 0 and infinity included
-       (with 3, k12 k21 is real and >= 0 there, so that this is k11 k22 >= k12 k21).
+1. E11, E22 and E12 E21 have no pole with Re s >= 0;
+2. E12 and E21 have no pole with Re s > 0, and simple ones on the axis, infinity included;
+3. Re z11, Re z22 >= 0 and A = 2 Re z11 Re z22 - Re(z12 z21) >= |z12 z21| at every w that is no pole
+   (Llewellyn's inequality), as signs of polynomials.
 
-Condition 3 is Llewellyn's inequality. Without 4 it calls [[1, 1/s], [1/s, 1]] stable, although this
-two-port with both ports free has a pole at s = 1. At a lossless pole the axis shows nothing.
+Proof. Let S = 1 - 2 E and Zi = (1 + Gi)/(1 - Gi), with Gi analytic and |Gi| <= 1 for Re s > 0 (a
+clamped port has G = 1). The inverse is made of 1 - Gi, of S and of 1/F, with
 
-The conditions are sufficient. By 3, L has no simple pole on the axis: near such a pole L ~ l/(j u)
-with u = w - w0, and one sign of u makes A < |L|. Near a double pole L ~ -k12 k21/u^2 while the
-Re z_ii stay bounded, so k12 k21 > 0.
+    F = 1 - a G1 - b G2 + (a b - l) G1 G2,    a = S11,  b = S22,  l = S12 S21.
 
-First case: n = z22 + Z2 is not identically 0. It is positive real, so it has no zero in the open
-half plane, and by 1 and 2 z_in = z11 - L/n has no pole there. On the axis Re n >= Re z22 and
-Re(L/n) <= (|L| + Re L)/(2 Re n), so Re z_in >= 0 by 3. Where Re n = 0, L is real and <= 0 by 3, and
-Re(L/n) = 0. The poles of z_in on the axis are simple with residue >= 0:
+By 2 its poles in the open half plane are zeros of F. For constant complex numbers G1, G2 with
+|Gi| < 1, F is a function of s that is analytic for Re s >= 0 by 1.
 
-- where n has a pole with residue K >= k22 > 0, the residue is k11 - k12 k21/K >= 0 by 4;
-- where k22 = 0, L has no pole by 4, and the residue is k11, or k11 - L/n' where n has a zero, with
-  n' > 0 and L <= 0 by 3 (in the limit, if z11 has a pole there).
+On the axis, where Z is finite: by 3 Z + diag(Z1, Z2) is regular for all Z1, Z2 with Re Zi > 0 (for
+each such Z2, Re(z11 - z12 z21/(z22 + Z2)) >= 0), so F is not 0 for any |Gi| < 1. F is continuous in
+s, and for G1 = G2 = 0 it is 1. So F is not 0 for any |Gi| < 1 at the other points of the axis: a
+limit of functions without zeros has none, or is 0 everywhere (Hurwitz). F = 0 has no solution with
+|G2| < 1, so |b - (a b - l) G1| <= |1 - a G1|. Hence |a|, |b| <= 1 and |a b - l| <= 2: on the axis
+a, b and l are bounded, so they are proper, and infinity is one of the other points.
 
-Infinity is the same with 1/s for s. So z_in is positive real, det = n (z_in + Z1) is zero nowhere
-in the open half plane or everywhere, and adj/det has no pole there.
+The number of zeros of F with Re s > 0 does not change while G1, G2 grow from 0, since no zero meets
+the axis or infinity. At 0 there is none. So F(s) is not 0 for Re s > 0 and any numbers |Gi| < 1,
+such as the values of terminations at s. If |Gi(s)| = 1 at some s, Gi is constant (maximum
+principle). F as a function of s and of the other number is then a limit of functions without zeros.
+So it has none, or is 0 everywhere, and no inverse exists.
 
-Second case: n = 0 identically. Then z22 and -z22 are positive real, so z22 = Z2 = 0. L has no pole
-in the closed half plane and is real and <= 0 on the axis, so L(s) = L(-s) = -c, as of a gyrator. If
-c > 0, z12 = -c/z21 and z21 have neither pole nor zero in the open half plane, and the inverse,
-[[0, 1/z21], [1/z12, (z11 + Z1)/c]], has no pole there. If c = 0, or z_in + Z1 = 0 identically, no
-inverse exists: velocities are not determined (a free port without mass), and nothing is claimed.
+Over a box, instead of 1 and 2 the checker may show that the poles of Z are at s = 0 and infinity,
+simple, with k11, k22 >= 0 and k11 k22 >= k12 k21 for the residues there. With 3, this implies 1 and
+2: z22 is positive real, so n = z22 + 1 has no zero for Re s >= 0. If k22 > 0, z12 z21/n has a
+simple pole, with residue k12 k21/k22 <= k11. If k22 = 0, z12 z21 has no pole: beside one its size
+would exceed A, for one sign of w. So z_in = z11 - z12 z21/n is positive real by 3, and
+E11 = 1/(z_in + 1) has no pole for Re s >= 0. The same holds for E22, and for
+E12 E21 = z12 z21 E11^2/n^2, where a double pole of z12 z21 meets one of n^2. E12 = -z12 E11/n has
+the poles of z12 at most.
 
-With port 2 clamped, z11 + Z1 remains, which is positive real by 1.
-
-The conditions are necessary.
-
-1: a port whose z_ii is not positive real oscillates while the other port is clamped.
-2: a pole s0 of L in the open half plane is a pole of z_in, so z_in takes every value near s0. If
-z12 has a pole there and L has none, the inverse has this pole.
-3: where it fails at w, a reactance and a damper at port 2 make Re z_in < 0 beside j w.
-4: where it fails at j w0, let s = j w0 + d and Z2 of the size c/d, c small. Then
-z_in ~ (k11 - k12 k21/(k22 + c))/d < 0.
-
-In 3 and 4 the termination is Z1 = -z_in(s). A damper with a mass or a spring takes every value with
-abs(arg) <= arg s. Near the axis, arg s is near 90 degrees.
-
-If 2 fails by a multiple pole on the axis alone, the signal that passes through grows like time or
-faster, but the open half plane need not contain a pole. Then nothing is claimed.
+The conditions are necessary but for the second half of 2: where 1, the first half of 2, or 3 fails,
+some termination -z_in(s) is passive and grows. If only a pole on the axis is multiple, the signal
+that passes through grows like time or faster, and nothing is claimed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
-from math import isnan
 from typing import Any
 
-from .algebra import Quotient
+from .algebra import Poly
 from .effort import bound_effort, need
 from .fields import expect_fields, read_matrix
-from .polynomials import (
-    Polynomial,
-    add,
-    coefficient_list,
-    derivative,
-    divide,
-    first_root,
-    greatest_common_divisor,
-    halves,
-    is_free_of_growth,
-    is_non_negative,
-    is_positive_real,
-    multiply,
-    odd_part,
-    real_part,
-    signs_at_roots,
-    value,
-    without_zero,
-)
-
-#: numerator and denominator of a rational function, coprime
-Ratio = tuple[Polynomial, Polynomial]
-#: entries of a two-port: z11, z12, z21, z22
-Entries = tuple[Ratio, Ratio, Ratio, Ratio]
-_NAMES = ("z11", "z12", "z21", "z22")
-_ONE = [Fraction(1)]
-
-
-@dataclass(frozen=True)
-class Condition:
-    """One of the conditions: its text, whether it holds, and where it fails ("": not known)."""
-
-    name: str
-    holds: bool
-    where: str = ""
-
-    def __str__(self) -> str:
-        return self.name if self.holds else f"not so: {self.name}{self.where and ', ' + self.where}"
+from .over_a_box import PolyMatrix, SignsOverBox, degree, read_impedance, times_x
+from .polynomials import coefficient_list, derivative, greatest_common_divisor, is_hurwitz
+from .positive_real import with_damper, with_one_denominator
 
 
 def state_absolute_stability(c: dict[str, Any]) -> str:
-    """The statement that a certificate of this kind proves; raises Refused where Z is not so."""
+    """The statement that a certificate at a point proves; raises Refused where Z is not so."""
     expect_fields(c, "kind", "title", "digest", "impedance")
     algebra, rows, text = read_matrix(c["impedance"], (2,))
-    one = Quotient(algebra.number(1), {})
-    below = [[algebra.over(one, e.below, {}) for e in row] for row in rows]
-    with bound_effort(algebra.left):
-        z11, z12, z21, z22 = (
-            coprime(coefficient_list(rows[i][j].above), coefficient_list(below[i][j]))
-            for i in (0, 1)
-            for j in (0, 1)
-        )
-        for condition in conditions((z11, z12, z21, z22)):
-            need(condition.holds, f"not shown to be absolutely stable: {condition}")
+    n, d = with_one_denominator(algebra, rows)
+    _check(SignsOverBox({}, algebra), n, d)
     return (
         f"Z(s) = [{text}] is absolutely stable: no positive-real Z1 and Z2 for which the inverse "
         "(Z + diag(Z1, Z2))^-1 exists give it a pole with Re s > 0"
     )
 
 
-def conditions(z: Entries) -> tuple[Condition, ...]:
-    """All conditions of absolute stability, each decided in rational arithmetic.
-
-    z: coprime numerators and denominators of z11, z12, z21, z22
-    """
+def state_over_a_box(c: dict[str, Any]) -> str:
+    """The statement that Z is absolutely stable over a box; raises Refused where not shown."""
+    box, n, d, text = read_impedance(c)
+    need(len(n) == 2, "numerators: not 2x2")
+    _check(box, n, d)
     return (
-        *(_positive_real(_NAMES[k], z[k]) for k in (0, 3)),
-        *(_without_growth(_NAMES[k], z[k]) for k in (1, 2)),
-        *(_simple_poles(_NAMES[k], z[k]) for k in (1, 2)),
-        *_inequality(z),
-        *_residues(z),
+        f"{text} is absolutely stable: no positive-real Z1 and Z2 for which the inverse "
+        f"(Z + diag(Z1, Z2))^-1 exists give it a pole with Re s > 0, {box.where()}"
     )
 
 
-def coprime(p: Polynomial, q: Polynomial) -> Ratio:
-    """p/q without common factors, with a monic denominator; q: not zero."""
-    common = greatest_common_divisor(p, q)
-    above, below = divide(p, common)[0], divide(q, common)[0]
-    return [c / below[-1] for c in above], [c / below[-1] for c in below]
+def _check(box: SignsOverBox, n: PolyMatrix, d: Poly) -> None:
+    """Raise Refused unless conditions 1 to 3 are shown."""
+    m = with_damper(box, n, d, Fraction(1))
+    below = box.inverse_denominator(m, d)
+    need(below, "not absolutely stable: Z + 1 is singular")
+    grows = max(degree(box.algebra.times(d, m[i][1 - i])) for i in (0, 1))
+    slow = grows <= degree(box.minor(m, (0, 1), (0, 1))) + 1
+    if not (box.is_stable(below) and slow):
+        if box.names:
+            shown = box.has_passive_residues(n, d, symmetric=False)
+            need(shown, "not shown to be absolutely stable: modes between dampers")
+        else:
+            _check_poles(box, m, d)
+    names = ("Re z11", "Re z22", "2 Re z11 Re z22 - Re z12 z21", "Llewellyn's inequality")
+    weight = box.cross(d, d)[0]
+    for name, p in zip(names, _inequalities(box, n, d), strict=True):
+        shown = box.are_non_negative([p], weight)
+        need(shown, f"not shown to be absolutely stable: {name} on the axis")
 
 
-def _positive_real(name: str, z: Ratio) -> Condition:
-    where = "a pole on the axis or at infinity has no residue > 0, or is multiple"
-    if not is_free_of_growth(z[1]):
-        where = "a pole in the open right half plane"
-    elif not is_non_negative(real := real_part(*z)):
-        where = f"its real part is negative {_describe_place(real)}"
-    holds = is_positive_real(*z)
-    return Condition(f"{name} is positive real", holds, "" if holds else where)
+def _check_poles(box: SignsOverBox, m: PolyMatrix, d: Poly) -> None:
+    """Conditions 1 and 2, entry by entry, at a point; m: N + d."""
+    times = box.algebra.times
+    det = box.minor(m, (0, 1), (0, 1))
+    first, second, through, back = (times(d, e) for e in (m[1][1], m[0][0], m[0][1], m[1][0]))
+    loop = box.reduce([times(through, back)], times(det, det))
+    for p in (box.reduce([first], det), box.reduce([second], det), loop):
+        need(box.is_stable(p), "not absolutely stable: a mode between dampers")
+    for above in (through, back):
+        p = box.reduce([above], det)
+        need(box.is_free_of_growth(p), "not absolutely stable: z12 or z21 has a pole that grows")
+        with bound_effort(box.left):
+            q = coefficient_list(p)
+            simple = is_hurwitz(greatest_common_divisor(q, derivative(q)))
+        simple = simple and degree(above) - degree(det) <= 1
+        need(simple, "not shown to be absolutely stable: a multiple pole of z12 or z21")
 
 
-def _without_growth(name: str, z: Ratio) -> Condition:
-    name = f"{name} has no pole in the open right half plane"
-    return Condition(name, is_free_of_growth(z[1]))
-
-
-def _simple_poles(name: str, z: Ratio) -> Condition:
-    """The condition that all poles of z on the axis and at infinity are simple."""
-    p, q = z
-    multiple = greatest_common_divisor(q, derivative(q))
-    even, odd = halves(multiple)
-    on_axis = greatest_common_divisor(even, odd)
-    finite = value(multiple, 0) != 0 and sum(signs_at_roots(_ONE, on_axis)) == 0
-    infinite = len(p) <= len(q) + 1
-    where = "" if finite else "on the axis"
-    return Condition(
-        f"every pole of {name} on the axis and at infinity is simple",
-        finite and infinite,
-        where if infinite else "at infinity",
-    )
-
-
-def _inequality(z: Entries) -> Iterator[Condition]:
-    """Condition 3 as signs of two polynomials in x = w^2, times denominators >= 0."""
-    difference, twice = llewellyn(z)
-    for name, p in (
-        ("2 Re z11 Re z22 - Re z12 z21 >= 0 on the axis", difference),
-        ("(2 Re z11 Re z22 - Re z12 z21)^2 >= abs(z12 z21)^2 on the axis", twice),
-    ):
-        holds = is_non_negative(p)
-        yield Condition(name, holds, "" if holds else _describe_place(p))
-
-
-def llewellyn(z: Entries) -> tuple[Polynomial, Polynomial]:
-    """A and A^2 - abs(z12 z21)^2 as polynomials in x = w^2, times factors that are >= 0."""
-    loop = coprime(multiply(z[1][0], z[2][0]), multiply(z[1][1], z[2][1]))
-    (r1, d1), (r2, d2) = (_real_ratio(one) for one in (z[0], z[3]))
-    re, d = real_part(*loop), real_part(loop[1], loop[1])
-    a = add(multiply([Fraction(2)], r1, r2, d), multiply(re, d1, d2), -1)
-    size = multiply(real_part(loop[0], loop[0]), d, d1, d1, d2, d2)
-    return a, add(multiply(a, a), size, -1)
-
-
-def _real_ratio(z: Ratio) -> tuple[Polynomial, Polynomial]:
-    """Re z = r/d in x = w^2, d >= 0; common factors are divided out where d stays >= 0."""
-    r, d = real_part(*z), real_part(z[1], z[1])
-    common = greatest_common_divisor(r, d)
-    short = divide(d, common)[0]
-    return (divide(r, common)[0], short) if is_non_negative(short) else (r, d)
-
-
-def _describe_place(p: Polynomial) -> str:
-    """Text that names the lowest frequency, rad/s, at which p(x) < 0 begins; approximate."""
-    odd = odd_part(p)
-    x = first_root([Fraction(-1)], odd)
-    return "at every frequency" if isnan(x) else f"beside {x**0.5:.4g} rad/s"
-
-
-def _residues(z: Entries) -> Iterator[Condition]:
-    """Condition 4 at s = 0, at infinity, and at the poles j w that z12 and z21 share."""
-    name = "the residues have 2 k11 k22 - Re k12 k21 >= abs(k12 k21)"
-    yield Condition(f"{name} at s = 0", _is_balanced([_residue_at_zero(one) for one in z]))
-    yield Condition(f"{name} at infinity", _is_balanced([_residue_at_infinity(one) for one in z]))
-    shared = both = greatest_common_divisor(axis_poles(z[1][1]), axis_poles(z[2][1]))
-    for one in (z[0], z[3]):
-        both = greatest_common_divisor(both, axis_poles(one[1]))
-    alone = divide(shared, both)[0]
-    name = f"{name} at s = j w"
-    for poles, of_both in ((both, True), (alone, False)):
-        tests = residue_tests(z, shared=of_both)
-        wrong = [f for f in tests if signs_at_roots(f, poles)[0]]
-        if wrong:
-            where = f"at {first_root(wrong[0], poles) ** 0.5:.4g} rad/s"
-            yield Condition(name, False, where)
-            return
-    yield Condition(name, True)
-
-
-def residue_tests(z: Entries, *, shared: bool) -> tuple[Polynomial, Polynomial]:
-    """B and B^2 - C^2 in x = w^2: both are >= 0 at a pole if and only if it meets condition 4.
-
-    B = 2 k11 k22 - Re k12 k21 and C = abs(k12 k21), both times the same positive number, with
-    k = p/q' at the simple zeros j w of q. shared: whether z11 and z22 have that pole as well
-    """
-    (p11, q11), (p12, q12), (p21, q21), (p22, q22) = ((p, derivative(q)) for p, q in z)
-    above, below = multiply(p12, p21), multiply(q12, q21)
-    size, cross = real_part(below, below), real_part(above, below)
-    passed = multiply(real_part(above, above), size)
-    if not shared:
-        return [-c for c in cross], add(multiply(cross, cross), passed, -1)
-    kept = real_part(multiply(p11, p22), multiply(q11, q22))
-    weight = real_part(multiply(q11, q22), multiply(q11, q22))
-    b = add(multiply([Fraction(2)], kept, size), multiply(cross, weight), -1)
-    return b, add(multiply(b, b), multiply(passed, weight, weight), -1)
-
-
-def axis_poles(q: Polynomial) -> Polynomial:
-    """Polynomial in x whose roots x > 0 are the w^2 of all zeros j w of q."""
-    return without_zero(greatest_common_divisor(*halves(q)))
-
-
-def _residue_at_zero(z: Ratio) -> Fraction:
-    """Residue of z at s = 0; 0 where z has no simple pole there."""
-    p, q = z
-    return value(p, 0) / q[1] if q[0] == 0 and q[1] != 0 else Fraction(0)
-
-
-def _residue_at_infinity(z: Ratio) -> Fraction:
-    """Residue of z at infinity, the coefficient of s; 0 where z does not grow like s."""
-    p, q = z
-    return p[-1] / q[-1] if len(p) == len(q) + 1 else Fraction(0)
-
-
-def _is_balanced(k: Sequence[Fraction]) -> bool:
-    return 2 * k[0] * k[3] - k[1] * k[2] >= abs(k[1] * k[2])
+def _inequalities(box: SignsOverBox, n: PolyMatrix, d: Poly) -> tuple[Poly, ...]:
+    """Re z11, Re z22, A and A^2 - abs(z12 z21)^2 on the axis, times powers of abs(d)^2."""
+    plus, times, number = box.algebra.plus, box.algebra.times, box.algebra.number
+    first, second = (box.cross(n[k][k], d)[0] for k in (0, 1))
+    real, odd = box.cross(times(n[0][1], n[1][0]), times(d, d))
+    a = plus(times(number(2), times(first, second)), real, -1)
+    size = plus(times(real, real), times_x(times(odd, odd)))
+    return first, second, a, plus(times(a, a), size, -1)

@@ -1,113 +1,98 @@
-"""Certificates of kind "positive real": the matrix Z of rational functions of s is positive real.
+"""Certificates that a matrix Z is positive real: "positive real", and "positive real over a box".
 
-The certificate contains Z alone, and the checker decides. Write Z = N/q. The proof has three steps.
+The first kind contains Z alone, at a point, of up to 6 ports. The second contains numerators N, a
+denominator d and a scale c > 0, of one port or two, with names that vary over a box. The checker
+decides, at each point of the box, with Z = N/d and c = 1 where no scale is given:
 
-1. (Z + 1)^-1 has a common denominator, and Routh's scheme shows that all its zeros have Re s < 0.
-   So S = (Z - 1)/(Z + 1) = 1 - 2 (Z + 1)^-1 is analytic for Re s >= 0.
-2. All principal minors of H = N conj(q) + N^H q = abs(q)^2 (Z + Z^H) are >= 0 on the imaginary
+1. (Z + c)^-1 has a denominator all of whose zeros have Re s < 0. So S = (Z - c)/(Z + c) =
+   1 - 2 c (Z + c)^-1 is analytic for Re s >= 0.
+2. All principal minors of H = N conj(d) + N^H d = abs(d)^2 (Z + Z^H) are >= 0 on the imaginary
    axis. So H is positive semidefinite there, and so is
-   1 - S^H S = 2 (Z + 1)^-H (Z + Z^H) (Z + 1)^-1.
-3. By the maximum principle |S| <= 1 for Re s > 0. So Z is analytic for Re s > 0 with Z + Z^H >= 0.
+   1 - S^H S = 2 c (Z + c)^-H (Z + Z^H) (Z + c)^-1.
+3. S is bounded on the axis, so it is proper. By the maximum principle |S| <= 1 for Re s > 0. So Z
+   is analytic for Re s > 0 with Z + Z^H >= 0.
+
+Over a box, step 1 may instead show that the poles of Z are at s = 0 and infinity, simple, with
+symmetric, positive semidefinite residues. Z without them is analytic and bounded for Re s >= 0, so
+v^H (Z + Z^H) v is harmonic there, and >= 0 by the maximum principle. The poles add a term >= 0.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator
+from fractions import Fraction
 from typing import Any
 
-from .algebra import Quotient
-from .effort import bound_effort, need
-from .fields import expect_fields, read_matrix
-from .polynomials import (
-    Polynomial,
-    add,
-    coefficient_list,
-    divide,
-    greatest_common_divisor,
-    halves,
-    is_hurwitz,
-    is_non_negative,
-    multiply,
-    polynomial,
-    real_part,
-)
+from .algebra import Algebra, Poly, Quotient
+from .effort import need
+from .fields import expect_fields, read_matrix, read_number
+from .over_a_box import PolyMatrix, SignsOverBox, halves, read_impedance
 
 #: numbers of rows that are allowed: each further row doubles the number of principal minors
 SIZES = (1, 2, 3, 4, 5, 6)
-Matrix = list[list[Polynomial]]
 
 
 def state_positive_real(c: dict[str, Any]) -> str:
-    """The statement that a certificate of this kind proves; raises Refused where Z is not so."""
+    """The statement that a certificate at a point proves; raises Refused where Z is not so."""
     expect_fields(c, "kind", "title", "digest", "impedance")
-    algebra, z, text = read_matrix(c["impedance"], SIZES)
-    below = {n: max(e.below.get(n, 0) for row in z for e in row) for n in algebra.bases}
-    q = coefficient_list(algebra.over(Quotient(algebra.number(1), {}), below, {}))
-    above = [[coefficient_list(algebra.over(e, below, e.below)) for e in row] for row in z]
-    with bound_effort(algebra.left):
-        _check_stable(above, q)
-        _check_resistive(above, q)
+    algebra, rows, text = read_matrix(c["impedance"], SIZES)
+    n, d = with_one_denominator(algebra, rows)
+    _check(SignsOverBox({}, algebra), n, d, Fraction(1))
     return f"Z(s) = [{text}] is positive real: analytic with Z + Z^H >= 0 for Re s > 0"
 
 
-def _check_stable(above: Matrix, q: Polynomial) -> None:
-    """Raise Refused unless (Z + 1)^-1 = q adj(N + q)/det(N + q) is stable; Z = above/q."""
-    size = len(above)
-    m = [[add(e, q) if i == j else e for j, e in enumerate(row)] for i, row in enumerate(above)]
-    every = range(size)
-    common = d = minor(m, every, every)
-    need(d, "Z + 1 is singular")
-    for i, j in itertools.product(every, repeat=2):
-        if len(common) < 2:
-            break
-        cofactor = minor(m, [k for k in every if k != i], [k for k in every if k != j])
-        common = greatest_common_divisor(common, multiply(q, cofactor))
-    need(is_hurwitz(divide(d, common)[0]), "not positive real: (Z - 1)/(Z + 1) is not stable")
+def state_over_a_box(c: dict[str, Any]) -> str:
+    """The statement that Z is positive real over a box; raises Refused where it is not shown."""
+    box, n, d, text = read_impedance(c, "scale")
+    scale = read_number(c["scale"], "scale")
+    need(scale > 0, "scale: not > 0")
+    _check(box, n, d, scale)
+    return f"{text} is positive real: analytic with Z + Z^H >= 0 for Re s > 0, {box.where()}"
 
 
-def _check_resistive(above: Matrix, q: Polynomial) -> None:
-    """Raise Refused unless all principal minors of Z + Z^H are >= 0 on the axis; Z = above/q."""
-    size, q_late = len(above), _mirror(q)
+def with_one_denominator(algebra: Algebra, rows: list[list[Quotient]]) -> tuple[PolyMatrix, Poly]:
+    """The matrix as numerators over one denominator."""
+    below = {n: max(e.below.get(n, 0) for row in rows for e in row) for n in algebra.bases}
+    d = algebra.over(Quotient(algebra.number(1), {}), below, {})
+    return [[algebra.over(e, below, e.below) for e in row] for row in rows], d
+
+
+def _check(box: SignsOverBox, n: PolyMatrix, d: Poly, scale: Fraction) -> None:
+    """Raise Refused unless steps 1 and 2 are shown."""
+    below = box.inverse_denominator(with_damper(box, n, d, scale), d)
+    need(below, "not positive real: Z + c is singular")
+    shown = box.is_stable(below) or box.names and box.has_passive_residues(n, d, symmetric=True)
+    need(shown, "not positive real: (Z - c)/(Z + c) is not shown to be stable")
+    weight = box.cross(d, d)[0]
+    for minor in _hermitian_minors(box, n, d):
+        shown = box.are_non_negative([minor], weight)
+        need(shown, "not positive real: Z + Z^H is not shown to be >= 0 on the axis")
+
+
+def with_damper(box: SignsOverBox, n: PolyMatrix, d: Poly, scale: Fraction) -> PolyMatrix:
+    """N + c d, with c on the diagonal."""
+    return [
+        [box.algebra.plus(e, d, scale) if i == j else e for j, e in enumerate(row)]
+        for i, row in enumerate(n)
+    ]
+
+
+def _hermitian_minors(box: SignsOverBox, n: PolyMatrix, d: Poly) -> Iterator[Poly]:
+    """Principal minors of N conj(d) + N^H d on the axis, in x = w^2."""
+    times, plus, size = box.algebra.times, box.algebra.plus, len(n)
+    late = _mirror(d)
     h = [
-        [add(multiply(above[i][j], q_late), multiply(_mirror(above[j][i]), q)) for j in range(size)]
+        [plus(times(n[i][j], late), times(_mirror(n[j][i]), d)) for j in range(size)]
         for i in range(size)
     ]
-    weight = real_part(q, q)
     for number in range(1, size + 1):
         for chosen in itertools.combinations(range(size), number):
-            real, odd = halves(minor(h, chosen, chosen))
+            real, odd = halves(box.minor(h, chosen, chosen))
             need(not odd, "not positive real: odd on the axis")
-            real = _divide_out(real, weight)
-            need(is_non_negative(real), "not positive real: Re Z < 0 on the axis")
+            yield real
 
 
-def _mirror(p: Polynomial) -> Polynomial:
+def _mirror(p: Poly) -> Poly:
     """p(-s), which is the conjugate of p(s) on the imaginary axis."""
-    return [(-1) ** k * c for k, c in enumerate(p)]
-
-
-def _divide_out(p: Polynomial, weight: Polynomial) -> Polynomial:
-    """p divided by `weight` as often as it divides p; weight >= 0 on the axis, so signs remain."""
-    while p and len(weight) > 1:
-        quotient, rest = divide(p, weight)
-        if rest:
-            break
-        p = quotient
-    return p
-
-
-def minor(matrix: Matrix, rows: Sequence[int], columns: Sequence[int]) -> Polynomial:
-    """Determinant of the submatrix of these rows and columns, expanded along rows; 1 if empty."""
-    known: dict[tuple[int, ...], Polynomial] = {(): polynomial([1])}
-    for number in range(1, len(rows) + 1):
-        row, smaller = matrix[rows[len(rows) - number]], known
-        known = {}
-        for chosen in itertools.combinations(columns, number):
-            total: Polynomial = []
-            for k, j in enumerate(chosen):
-                rest = smaller[chosen[:k] + chosen[k + 1 :]]
-                if row[j] and rest:
-                    total = add(total, multiply(row[j], rest), (-1) ** k)
-            known[chosen] = total
-    return known[tuple(columns)]
+    return {k: -c if k[0] % 2 else c for k, c in p.items()}

@@ -17,7 +17,10 @@ from ...base.frozen import ByValue
 from ...base.shown import Shown
 from .certificate import Certificate
 
-_EXACT = "decided in exact arithmetic; a certificate would ask for more work than its checker does"
+#: of an exact answer without a certificate
+TOO_MUCH = (
+    "decided in exact arithmetic; a certificate would ask for more work than its checker does"
+)
 
 
 class NotTrueOrFalse:
@@ -134,7 +137,7 @@ def prove_by_certificate(
         made = certificate()
         made.check()
     except (ModelError, ValueError):  # Python writes no integers of more than 4300 digits
-        return Evidence(True, f"{method}: {_EXACT}", margin, unit)
+        return Evidence(True, f"{method}: {TOO_MUCH}", margin, unit)
     return Proof(method, (made,), margin, unit, equality)
 
 

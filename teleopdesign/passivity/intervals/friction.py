@@ -13,19 +13,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from ...blocks import Body
 from ...controllers import laws_that_declare
 from ...diagrams import Diagram
 from ..claims.claim import Claim
 from ..diagram_claims import composed_claim
 from ..friction_pairs import FrictionPair, friction_pairs, pair_claims
+from ..linear.conditions import is_shown
+from ..linear.family import family_of_states
+from ..linear.signs import Signs
 from ..ports import drop_absent_effects, nonlinear_parts, ports, without_friction
 from .box import ValueBox
-from .conditions import Conditions, one_port_is_passive, two_port_is_passive
-from .family import family_of
-from .linear import hides_no_growth
+from .linear import states_over
 
 #: effects that the two conditions cover completely, with their values
 _FRICTION: dict[str, tuple[str, ...]] = {"coulomb": ("level",), "presliding": ("stiffness",)}
@@ -121,10 +120,9 @@ def _rest_is_passive(middle: Diagram, box: ValueBox) -> bool:
         return False
     if not other_values:
         return True  # it is proved in the composed claim
-    family = family_of(rest, box.select(other_values))
-    if family is None or not family.is_rational:
+    within = box.select(other_values)
+    states = states_over(rest, within)
+    if states is None or states.times:
         return False
-    ask, z = Conditions.over(box.select(other_values), family.symbols), family.impedance()
-    one_port = np.shape(z) == (1, 1)
-    passive = one_port_is_passive(ask, z[0, 0]) if one_port else two_port_is_passive(ask, z)
-    return passive and hides_no_growth(ask, family, z)
+    family = family_of_states(states, ports(rest), within.names, within.exact)
+    return is_shown(Signs(within.exact), family, "passive")

@@ -7,22 +7,73 @@ It is stored as a mapping: dead time T_k (s) -> coefficients of p_k, highest pow
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
-import sympy as sp
+from mpmath import iv
 
-from ...realise.enclosure import enclosure_of
-from .late_terms import ExactTerms
-
-Terms = Mapping[float, np.ndarray]
+from ...frequency.late_zeros import Terms, count_growing
 
 #: steps in which the dead times grow from 0 to their values, and Newton steps in each of them
 _STEPS, _NEWTON = 20, 3
+#: of the distance of a zero from the axis: no other zero is nearer than this
+_SHARE = 0.999
 #: most minima of abs(f) along the axis from which a search for zeros starts
 _LOWEST = 12
+
+
+def chain_rate(terms: Terms) -> float:
+    """Largest real part, 1/s, to which chains of zeros far out tend; -inf: there is none.
+
+    Late terms of the highest power of s have such chains (neutral systems): at the real part r at
+    which the sum of their sizes, times e^(-r T), is that of the term without dead time. It is that
+    limit at this dead times or at ones that differ as little as one likes.
+    """
+    from scipy.optimize import brentq
+
+    degree = max(map(len, terms.values()))
+    leads = {t: abs(p[0]) for t, p in terms.items() if len(p) == degree and t > 0}
+    first = terms.get(0.0, np.zeros(0))
+    if not leads or len(first) < degree:
+        return np.inf if leads else -np.inf
+    size = abs(first[0])
+
+    def excess(rate: float) -> float:
+        return float(sum(c * np.exp(-rate * t) for t, c in leads.items()) / size - 1)
+
+    times = max(leads) if excess(0.0) > 0 else min(leads)
+    reach = np.log(max(sum(leads.values()) / size, 1e-300)) / times
+    ends = sorted((2 * reach, 0.0)) if reach else (-1.0, 1.0)
+    return float(brentq(excess, *ends)) if excess(ends[0]) * excess(ends[1]) < 0 else reach
+
+
+def slowest_decay(terms: Terms) -> float:
+    """Distance of the rightmost zero from the axis, 1/s; < 0: it grows, -inf: by an unknown rate.
+
+    The zeros that a search reaches and the limits of chains far out are a candidate. A count of all
+    zeros to the right of it then confirms it, or finds by halving how far zeros come.
+    """
+    rate = -max(rightmost_root(terms).real, chain_rate(terms))
+    if rate <= 0 or np.isinf(rate):
+        return rate if rate <= 0 or not count_growing(terms) else -np.inf
+    if not count_growing(_move_axis(terms, _SHARE * rate)):
+        return rate
+    low, high = 0.0, rate
+    if count_growing(terms):
+        return -np.inf
+    while high - low > (1 - _SHARE) * rate:
+        middle = (low + high) / 2
+        low, high = (low, middle) if count_growing(_move_axis(terms, middle)) else (middle, high)
+    return low
+
+
+def _move_axis(terms: Terms, right: float) -> Terms:
+    """The sum with all its zeros moved to the right, 1/s."""
+    step = np.poly1d([1.0, -right])
+    return {t: np.exp(right * t) * np.poly1d(p)(step).coeffs for t, p in terms.items()}
 
 
 def rightmost_root(terms: Terms) -> complex:
@@ -52,78 +103,56 @@ def rightmost_root(terms: Terms) -> complex:
     return complex(max(s, key=lambda x: x.real)) if len(s) else complex(-np.inf)
 
 
-def holds_root(terms: ExactTerms, at: complex) -> float | None:
+def holds_root(terms: Mapping[Fraction, Sequence[Fraction]], at: complex) -> float | None:
     """Radius of a disc about `at` in which f has a zero, by Rouche's theorem; None: not shown.
 
     On the edge of the disc f - f'(at) (s - at) is smaller than f'(at) (s - at). The rest of the
     series is bounded by the same series with all terms positive. The bounds are intervals that are
     rounded outward.
+
+    terms: exact, dead time (s) -> coefficients, highest first
     """
-    x, y = Fraction(at.real), Fraction(at.imag)
-    # not below the size of `at`
-    base = Fraction(abs(at)) * Fraction(1 + 2**-50)
-    value, slope = _enclose_at(terms, x, y)
-    least_slope, most_value = math.sqrt(slope[0]) * (1 - 1e-15), math.sqrt(value[1]) * (1 + 1e-15)
-    for power in range(-10, -1):
-        radius = base * Fraction(10) ** power
-        rest = sp.Add(*(_further(p, t, x, base, radius) for t, p in terms.items()))
-        _, most = enclosure_of(rest, ())(())
-        edge = float(radius) * (1 - 1e-15)
-        if (most_value + most) * (1 + 1e-15) < least_slope * edge * (1 - 1e-15):
-            return float(radius) * (1 + 1e-15)
+    with _many_digits():
+        s, x = iv.mpc(at.real, at.imag), iv.mpf(at.real)
+        size = abs(s)
+        value, slope = iv.mpc(0), iv.mpc(0)
+        parts = []
+        for time, falling in terms.items():
+            t, p = _interval(time), [_interval(c) for c in falling]
+            late, (f, df) = iv.exp(-s * t), _horner(p, s)
+            value, slope = value + f * late, slope + (df - t * f) * late
+            sizes = [_interval(abs(c)) for c in falling]
+            parts.append((iv.exp(-x * t), t, sizes, _horner(sizes, size)))
+        for power in range(-10, -1):
+            radius = abs(at) * 10.0**power
+            rest = iv.mpf(0)
+            for early, t, sizes, (first, bent) in parts:
+                whole, _ = _horner(sizes, size + radius)
+                rest += early * (whole * iv.exp(t * radius) - first - (bent + t * first) * radius)
+            if (abs(value) + rest).b < (abs(slope) * radius).a:
+                return float(radius)
     return None
 
 
-def _further(
-    coefficients: Sequence[Fraction], time: Fraction, x: Fraction, base: Fraction, radius: Fraction
-) -> sp.Expr:
-    """Bound of the deviation of p e^(-s T) from its tangent within a disc about a point.
-
-    x: real part of the point;  base: bound of its absolute value;  radius: of the disc
-    """
-    sizes = [abs(c) for c in coefficients]
-    first = _value(sizes, (base, Fraction(0)))[0]
-    bent = _value(_slopes(sizes), (base, Fraction(0)))[0] + time * first
-    whole = _value(sizes, (base + radius, Fraction(0)))[0]
-    turned = _number(whole) * sp.exp(_number(time * radius)) - _number(first + bent * radius)
-    return sp.exp(_number(-time * x)) * turned
+@contextmanager
+def _many_digits() -> Iterator[None]:
+    before, iv.dps = iv.dps, 40
+    try:
+        yield
+    finally:
+        iv.dps = before
 
 
-def _enclose_at(
-    terms: ExactTerms, x: Fraction, y: Fraction
-) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Lower and upper bounds of abs(f)^2 and of abs(f')^2 at x + j y."""
-    value, slope = [sp.S(0), sp.S(0)], [sp.S(0), sp.S(0)]
-    for t, p in terms.items():
-        a, b = _value(p, (x, y))
-        c, d = _value(_slopes(p), (x, y))
-        size, turn = sp.exp(_number(-t * x)), _number(t * y)
-        for total, (real, imaginary) in ((value, (a, b)), (slope, (c - t * a, d - t * b))):
-            real, imaginary = _number(real), _number(imaginary)
-            total[0] += size * (real * sp.cos(turn) + imaginary * sp.sin(turn))
-            total[1] += size * (imaginary * sp.cos(turn) - real * sp.sin(turn))
-    first, second = (enclosure_of(r**2 + i**2, ())(()) for r, i in (value, slope))
-    return first, second
+def _interval(x: Fraction) -> Any:
+    return iv.mpf(x.numerator) / x.denominator
 
 
-def _value(
-    coefficients: Sequence[Fraction], at: tuple[Fraction, Fraction]
-) -> tuple[Fraction, Fraction]:
-    """Real and imaginary part of a polynomial at a complex number, exactly."""
-    a, b = Fraction(0), Fraction(0)
-    for c in coefficients:
-        a, b = a * at[0] - b * at[1] + c, a * at[1] + b * at[0]
-    return a, b
-
-
-def _slopes(coefficients: Sequence[Fraction]) -> list[Fraction]:
-    """Coefficients of the derivative of a polynomial, highest power first."""
-    n = len(coefficients) - 1
-    return [c * (n - i) for i, c in enumerate(coefficients[:-1])]
-
-
-def _number(value: Fraction) -> sp.Rational:
-    return sp.Rational(value.numerator, value.denominator)
+def _horner(falling: Sequence[Any], s: Any) -> tuple[Any, Any]:
+    """A polynomial and its slope at s."""
+    value, slope = 0 * s, 0 * s
+    for c in falling:
+        value, slope = value * s + c, slope * s + value
+    return value, slope
 
 
 def _improve(terms: Terms, s: np.ndarray, steps: int) -> np.ndarray:

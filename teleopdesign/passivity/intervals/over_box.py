@@ -8,15 +8,18 @@ from typing import Any
 from ...base.arguments import check_types
 from ...base.errors import ModelError
 from ...base.expectations import describe_value
+from ...derive.effort import TooMuchEffort, bounded_effort
 from ...diagrams import Diagram
 from ...diagrams.units import first_axis, unit_of_value
 from ..claims.axis_units import use_rotary_units
-from ..ports import drop_absent_effects, ports, without_holding
+from ..holders import without_holders
+from ..ports import drop_absent_effects, ports
 from .at_points import judge_at_points
-from .box import box_of, nonlinear_within
+from .box import ValueBox, box_of, nonlinear_within
 from .friction import judge_friction
-from .interval_claim import IntervalClaim, Parts
+from .interval_claim import IntervalClaim, Parts, parts_of
 from .linear import CLAIMS, judge_linear, judge_stability
+from .worst import Worst
 
 
 @check_types
@@ -31,7 +34,7 @@ def claim_over_intervals(
     """Does a claim hold for all values within intervals, and where is it worst?
 
     intervals: names of `diagram.values` -> (low, high), SI
-    claim: "passive": at all ports together, hands and environments (`Z_H`, `Z_E`) left out;
+    claim: "passive": at all ports together, hands and environments (`role`) left out;
         "absolutely stable": two ports between any passive terminations; "stable": every pole of the
         whole diagram, hand and environment included, has a negative real part; delay blocks and
         intervals of their dead times are allowed. Or a function of a diagram that returns a margin
@@ -39,7 +42,7 @@ def claim_over_intervals(
     points: number of points that are evaluated besides the vertices and the middle;  seed: of these
     returns: proved over the whole box, refuted at a point, or checked numerically. Proofs exist for
         linear diagrams, for friction with its cancellation (by theorems), and, with dead times, for
-        "stable" alone: for all dead times from 0 on, in floats that are rounded outward.
+        "stable" alone: for all dead times from 0 on, in floats with all rounding bounded.
         Controllers act in continuous time
     raises ModelError: an unknown value or claim, no valid interval, no port
     """
@@ -48,20 +51,32 @@ def claim_over_intervals(
         return _finish(diagram, intervals, judge_at_points(middle, box, claim, points, seed))
     if claim not in CLAIMS:
         raise ModelError(f"claim: found {describe_value(claim)}, expected {', '.join(CLAIMS)}")
+    try:
+        with bounded_effort():
+            made = _judge(diagram, middle, box, claim, points, seed)
+    except TooMuchEffort as problem:
+        worst = Worst(box.centre, float("nan"), 0)
+        what = f'it is "{claim}"'
+        made = parts_of(what, "unknown", worst, box, CLAIMS[claim], f"no linear form: {problem}")
+    return _finish(diagram, intervals, made)
+
+
+def _judge(
+    diagram: Diagram, middle: Diagram, box: ValueBox, claim: str, points: int, seed: int
+) -> Parts:
+    """Judge a claim by its name; middle: the diagram with values in the middle of the box."""
     if claim == "stable":
-        return _finish(diagram, intervals, judge_stability(middle, box, points, seed))
-    alone = without_holding(drop_absent_effects(middle))
-    away = [n for n in box.names if not without_holding(middle).has(n.partition(".")[0])]
+        return judge_stability(middle, box, points, seed)
+    alone = without_holders(drop_absent_effects(middle))
+    away = [n for n in box.names if not without_holders(middle).has(n.partition(".")[0])]
     if away:
         raise ModelError(f'{away[0]}: holds a port, and no part of what is "{claim}": see "stable"')
     at = ports(alone)
     if len(at) > 2 or (claim == "absolutely stable" and len(at) != 2):
         raise ModelError(f'{diagram.name}: "{claim}" is for two ports at most, found {len(at)}')
-    if nonlinear_within(without_holding(middle), box):
-        return _finish(diagram, intervals, judge_friction(without_holding(middle), box, claim))
-    return _finish(
-        diagram, intervals, judge_linear(without_holding(middle), box, claim, points, seed)
-    )
+    if nonlinear_within(without_holders(middle), box):
+        return judge_friction(without_holders(middle), box, claim)
+    return judge_linear(without_holders(middle), box, claim, points, seed)
 
 
 def _finish(

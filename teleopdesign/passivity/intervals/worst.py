@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from ...realise.lti import S
-from ..two_port.two_port import passive_margin, stable_margin
+from ...derive.polynomials import roots
+from ..linear.family import Family
+from ..linear.signs import coefficient, degree
+from ..linear.sweep import least_over, margin_of
 from .box import ValueBox
-from .family import Family
 
 #: margin at a point of the box, (n,); -inf where the claim fails and no number measures this
 MarginFunction = Callable[[np.ndarray], float]
@@ -69,64 +71,52 @@ def search_worst(
     return Worst(np.array(key), values[key], len(values))
 
 
-def pole_margin(polynomial: sp.Poly, symbols: Sequence[sp.Symbol]) -> MarginFunction:
-    """Margin of stability: distance of the rightmost root from the axis, 1/s; > 0: on the left."""
-    coefficients = _coefficients(polynomial, symbols)
+def pole_margin(p: Any) -> MarginFunction:
+    """Margin of stability: distance of the rightmost root from the axis, 1/s; > 0: on the left.
+
+    p: a polynomial in s and the values
+    """
+    falling = _coefficients(p)
 
     def margin(point: np.ndarray) -> float:
-        roots = np.roots(coefficients(point))
-        return float(-roots.real.max()) if len(roots) else np.inf
+        at = roots(falling(point))
+        return float(-at.real.max()) if len(at) else np.inf
 
     return margin
 
 
-def port_margin(
-    family: Family, z: sp.Matrix, *, stable: bool, poles: Sequence[sp.Poly], box: ValueBox
-) -> MarginFunction:
-    """Least margin over frequency at one port or two; -inf where a pole grows.
+def port_margin(family: Family, claim: str) -> MarginFunction:
+    """Least margin of a claim over frequency; -inf where a mode grows with dampers at the ports.
 
-    z: impedance matrix in S and the symbols, 1x1 or 2x2
-    stable: whether the margin is Llewellyn's (dimensionless) or that of passivity (N s/m)
-    poles: polynomials in S and the symbols; a zero with a positive real part is a growing pole
+    "passive": N s/m;  "absolutely stable": Llewellyn's, dimensionless
     """
-    symbols = [family.symbols[n] for n in box.names]
-    call = sp.lambdify([S, *symbols], [e for e in z], "numpy")
-    growing = [_coefficients(p, symbols) for p in poles]
-    size = z.shape[0]
-
-    def over(w: np.ndarray, point: np.ndarray) -> np.ndarray:
-        with np.errstate(all="ignore"):
-            entries = call(1j * w, *point)
-            flat = [np.broadcast_to(np.asarray(e, dtype=complex), w.shape) for e in entries]
-            matrices = np.stack(flat, axis=-1).reshape(-1, size, size)
-            finite = np.isfinite(matrices).all(axis=(1, 2))
-            values = np.full(len(w), np.inf)
-            test = stable_margin if stable and size == 2 else passive_margin
-            values[finite] = test(matrices[finite])
-        return values
+    test = margin_of(claim)
+    held = None if family.times else _coefficients(family.held)
 
     def margin(point: np.ndarray) -> float:
         w = np.array([1e-2, 1e3])
-        for coefficients in growing:
-            roots = np.roots(coefficients(point))
+        if held is not None:
+            modes = roots(held(point))
             # 1e-7: a double root on the axis comes out of rounding by the square root of 1e-16
-            if (roots.real > 1e-7 * np.abs(roots)).any():
+            if (modes.real > 1e-7 * np.abs(modes)).any():
                 return -np.inf
-            w = np.append(w, np.abs(roots[roots != 0]))
+            w = np.append(w, np.abs(modes[modes != 0]))
+        w = np.concatenate([w, *(np.abs(r[r != 0]) for r in (roots(e(point)) for e in poles))])
         # a resonance may be narrower than the distance of two frequencies: each has its own
         grid = np.union1d(np.geomspace(w.min() / 1000, w.max() * 1000, _FREQUENCIES), w)
-        values = over(grid, point)
-        k = int(np.argmin(values))
-        beside = np.geomspace(grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)], 41)
-        return float(min(values[k], over(beside, point).min()))
+        _, least, _ = least_over(
+            lambda x: test(family.at(1j * x, point)), grid, rounds=1, points=41
+        )
+        return least
 
+    poles = [] if family.times else [_coefficients(family.d)]
     return margin
 
 
-def _coefficients(
-    polynomial: sp.Poly, symbols: Sequence[sp.Symbol]
-) -> Callable[[np.ndarray], np.ndarray]:
-    """A function: the coefficients of S at a point of the box, highest power first."""
-    listed = sp.Poly(polynomial.as_expr(), S).all_coeffs()
-    call = sp.lambdify(list(symbols), [c.evalf(17) for c in listed], "math")
-    return lambda point: np.array(call(*point), dtype=float)
+def _coefficients(p: Any) -> Callable[[np.ndarray], np.ndarray]:
+    """A function: the coefficients of s at a point of the box, highest power first."""
+    rising = [coefficient(p, k) for k in range(degree(p), -1, -1)]
+    count = len(p.ring.symbols) - 1
+    forms = [c.as_expr() for c in rising]
+    call = sp.lambdify(p.ring.symbols[1:], [sp.sympify(e).evalf(17) for e in forms], "math")
+    return lambda point: np.array(call(*(*point, *(0.0,) * (count - len(point)))), dtype=float)

@@ -1,1 +1,1 @@
-"""Linear one-ports: impedances, the positive-real test and storage functions."""
+"""Linear claims: one family with all its states, its conditions, their signs over a box."""

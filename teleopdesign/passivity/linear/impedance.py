@@ -17,8 +17,9 @@ import sympy as sp
 from ...base.arguments import describe_value
 from ...base.errors import ModelError
 from ...controllers import resolvent
+from ...derive.polynomials import element, fraction
 from ...realise.lti import S
-from .polynomials import fraction
+from .gaussian import value_at
 
 MotionKind = Literal["velocity", "position"]
 _LONGEST = 9  # most characters of a fraction that a text contains as a fraction
@@ -44,11 +45,7 @@ class Impedance:
 
     def at(self, rate: Fraction, frequency: Fraction) -> tuple[Fraction, Fraction] | None:
         """Exact real and imaginary part at s = rate + j frequency (1/s); None at a pole."""
-        a, b = (gaussian(poly, rate, frequency) for poly in (self.p, self.q))
-        size = b[0] ** 2 + b[1] ** 2
-        if size == 0:
-            return None
-        return (a[0] * b[0] + a[1] * b[1]) / size, (a[1] * b[0] - a[0] * b[1]) / size
+        return value_at(element(self.p), element(self.q), (rate, frequency))
 
     def __call__(self, s: Any) -> Any:
         """Numerical value, N s/m, at complex s (array or number, 1/s)."""
@@ -94,14 +91,6 @@ def readable(expression: sp.Expr) -> str:
 
 def _long_fractions(expression: sp.Expr) -> set[sp.Rational]:
     return {x for x in expression.atoms(sp.Rational) if len(str(x)) > _LONGEST}
-
-
-def gaussian(poly: sp.Poly, rate: Fraction, frequency: Fraction) -> tuple[Fraction, Fraction]:
-    """Exact real and imaginary part of a polynomial at s = rate + j frequency."""
-    re, im = Fraction(0), Fraction(0)
-    for c in poly.all_coeffs():
-        re, im = re * rate - im * frequency + fraction(c), re * frequency + im * rate
-    return re, im
 
 
 def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:

@@ -21,12 +21,12 @@ import sympy as sp
 
 from ...base.errors import ModelError
 from ...base.frozen import ByValue
+from ...derive.polynomials import fraction
 from ..claims.certificate import Term, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
-from .hidden_modes import HIDDEN_GROWTH, has_hidden_growth
 from .impedance import Impedance, MotionKind, impedance
-from .polynomials import fraction
 from .squares import sum_of_squares
+from .unseen import explain_unseen, unseen_modes
 
 FractionRows = list[list[Fraction]]
 #: a double pole on the axis makes the inequality infeasible, but by so little that the solver does
@@ -159,7 +159,7 @@ def storage_function(system: Any, *, motion: MotionKind = "velocity") -> Claim:
     system, motion: see `impedance`
     returns: proved, with V in the certificate; or unknown, where no rounding of the numerical
         solution satisfies the inequality exactly (`positive_real` decides this case, too, without a
-        storage function), or where a mode grows that the port does not show
+        storage function), or where a mode that the port does not show does not decay
     raises ModelError: cvxpy (extra `lmi`) is not installed, or no impedance
     """
     z = impedance(system, motion=motion)
@@ -167,8 +167,8 @@ def storage_function(system: Any, *, motion: MotionKind = "velocity") -> Claim:
     made = realisation(z)
     if made is None:
         return Claim(statement, Unknown("grows faster than s, or as -s: no storage function"))
-    if has_hidden_growth(system):
-        return Claim(statement, Unknown(HIDDEN_GROWTH))
+    if modes := unseen_modes(system):
+        return Claim(statement, Unknown(explain_unseen(modes)))
     for p in _candidates(made):
         storage, loss = _matrices(made, p)
         squares = sum_of_squares(storage), sum_of_squares(loss)

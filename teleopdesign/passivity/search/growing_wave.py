@@ -21,9 +21,10 @@ import numpy as np
 import sympy as sp
 from mpmath.libmp import NoConvergence
 
+from ...derive.polynomials import even_part, fraction, where_negative
 from ...realise.lti import S
+from ..linear.gaussian import square_root
 from ..linear.impedance import Impedance
-from ..linear.polynomials import even_part, fraction, where_negative
 
 LONGEST = 500  # most periods of a wave that are sampled; each of them releases energy
 _DIGITS = 40  # decimal digits of a first numerical value
@@ -211,12 +212,6 @@ def _share(wave: GrowingWave) -> float:
     """-Re Z over abs(Z) at the wave of a one-port: the share that releases energy."""
     z = complex(wave.value[0, 0])
     return -z.real / abs(z)
-
-
-def square_root(x: Fraction, digits: int) -> Fraction:
-    """A rational number near the square root of x; relative error below 10^-digits."""
-    ten = 10**digits
-    return Fraction(math.isqrt(x.numerator * x.denominator * ten**2), x.denominator * ten)
 
 
 def halvings(start: Fraction, number: int) -> Iterable[Fraction]:

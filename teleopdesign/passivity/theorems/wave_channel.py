@@ -28,10 +28,11 @@ from ...realise.lti import S, linear_blocks
 from ..claims.certificate import Certificate, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
 from ..declarations import falsely_linear, is_shipped
-from ..linear.hidden_modes import body_hides_growth, hides_growth
+from ..holders import without_holders
 from ..linear.impedance import decimal, exact
 from ..linear.positive_real import positive_real
-from ..ports import drop_absent_effects, without_holding
+from ..linear.unseen import unseen_within
+from ..ports import drop_absent_effects
 from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, require_hypotheses
 from ._theorem import Theorem
 
@@ -124,7 +125,7 @@ def wave_claim(diagram: Diagram) -> Claim:
     raises ModelError: another wiring, a block without values, two wave impedances that differ, a
         slave's controller that is not linear
     """
-    alone = without_holding(drop_absent_effects(diagram))
+    alone = without_holders(drop_absent_effects(diagram))
     wave_impedance = _wave_impedance(alone)
     linear = linear_blocks(alone)
     if "P" in linear.left_out:
@@ -143,22 +144,17 @@ def wave_claim(diagram: Diagram) -> Claim:
     }
     bent = [n for n in (*linear.left_out, *falsely_linear(alone)) if n not in opposing]
     bent += [f"the actuator of {n}" for n, stage in linear.actuation.items() if stage != 1]
-    bent += [
-        f"a growing mode within {part.name} that a zero cancels"
-        for part in alone.controls
-        if part.dead_time is None and hides_growth(part, linear)
-    ]
-    bent += [
-        f"a mode of {part.name} that its effects cancel"
-        for part in alone.blocks
-        if isinstance(part, Moving) and body_hides_growth(part, linear)
-    ]
     # the channel acts on one side of a compliance, the hand on the other: two ports, not one
     bent += [
         f"{b.name}.{effect.name}"
         for b in alone.bodies
         for effect in getattr(b.body, "effects", ())
         if effect.role == "structure"
+    ]
+    bent = bent or [
+        f"a mode within {part.name} that it does not show and that does not decay"
+        for part in alone.blocks
+        if unseen_within(part)
     ]
     if bent and isinstance(claim.verdict, Proof):
         why = f"not in the impedances that were judged: {', '.join(bent)}"

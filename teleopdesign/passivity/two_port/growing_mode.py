@@ -3,9 +3,9 @@
     Z(s) V + diag(Z1, Z2) V = 0,   v(t) = Re(V e^(s t)),   s = a + j w,   a > 0
 
 At one s, the passive terminations have exactly the values that `termination` can realise. So the
-search runs over s and over the value of one termination (`growth_points`). The other termination is
-then -z_in(s), in exact arithmetic. If Z is finite at s and Z + diag(Z1, Z2) is singular there, its
-inverse has a pole at s, unless the sum is singular everywhere.
+search runs over s and over the value of one termination (`search/points.py`). The other termination
+is then -z_in(s), in exact arithmetic. If Z is finite at s and Z + diag(Z1, Z2) is singular there,
+its inverse has a pole at s, unless the sum is singular everywhere.
 """
 
 from __future__ import annotations
@@ -14,29 +14,24 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 
 import numpy as np
 import sympy as sp
 
-from ...realise.lti import S
-from ..checker.absolute_stability import (
-    Entries,
-    Ratio,
-    axis_poles,
-    coprime,
-    llewellyn,
-)
-from ..checker.polynomials import (
-    Polynomial,
-    greatest_common_divisor,
+from ...derive.polynomials import (
+    X,
+    as_poly,
+    halves,
     is_free_of_growth,
-    polynomial,
+    positive_roots,
+    roots_of,
+    where_negative,
 )
-from ..checker.polynomials import real_part as real_part_of
-from ..linear.polynomials import X, positive_roots, where_negative
-from ..search.growing_wave import LONGEST, square_root
-from .closed_loop import grows_between, hidden_poles
-from .exact_complex import (
+from ...realise.lti import S
+from ..linear.conditions import axis_conditions
+from ..linear.family import Family, family_of_matrix
+from ..linear.gaussian import (
     ZERO,
     Gaussian,
     add,
@@ -45,9 +40,12 @@ from .exact_complex import (
     multiply,
     round_point,
     short,
+    square_root,
     value_at,
 )
-from .growth_points import candidates, evaluate_at, points_of_growth
+from ..linear.matrices import close, inverse_denominator
+from ..search.growing_wave import LONGEST
+from ..search.points import candidates, near_axis, near_poles
 from .termination import (
     CLAMPED,
     Termination,
@@ -58,6 +56,9 @@ from .termination import (
     velocities_in_phase,
     with_resonance,
 )
+
+#: most candidates that are tested exactly, a millisecond each
+_MOST_CANDIDATES = 40
 
 
 @dataclass(frozen=True)
@@ -112,13 +113,16 @@ class GrowingMode:
 
     def is_confirmed(self) -> bool:
         """Whether the closed loop has a pole in the open right half plane, exactly (Routh)."""
-        z = entries_of(self.impedance)
-        first, second = self.terminations
-        if not (first.clamped or second.clamped):
-            return grows_between(z, (first.ratio, second.ratio))
-        kept, held = (z[0], first) if second.clamped else (z[3], second)
-        alone: Entries = (kept, _NONE, _NONE, _UNIT)
-        return not held.clamped and grows_between(alone, (held.ratio, _NONE))
+        family = _family(self.impedance)
+        free = [k for k, held in enumerate(self.terminations) if not held.clamped]
+        if not free:
+            return False
+        s, d = family.d.ring.gens[0], family.d
+        rows = [[family.n[i][j] * s for j in free] for i in free]
+        for row, k in zip(range(len(free)), free, strict=True):
+            rows[row][row] += d * _times_s(self.terminations[k], d.ring)
+        q = inverse_denominator(rows, d * s)
+        return bool(q) and not is_free_of_growth(as_poly(q, S))
 
     def as_dict(self) -> dict[str, object]:
         """Plain data, to be written as JSON."""
@@ -136,155 +140,146 @@ class GrowingMode:
         }
 
 
-_NONE: Ratio = ([], [Fraction(1)])
-
-_UNIT: Ratio = ([Fraction(1)], [Fraction(1)])
-
-
-def entries_of(z: sp.ImmutableMatrix) -> Entries:
-    """z11, z12, z21, z22 as coprime lists of Fractions; z: rational in s."""
-    ratios = []
-    for entry in (z[0, 0], z[0, 1], z[1, 0], z[1, 1]):
-        p, q = (sp.Poly(part, S, domain="QQ") for part in sp.fraction(sp.together(entry)))
-        ratios.append(coprime(sort_by_power(p), sort_by_power(q)))
-    return ratios[0], ratios[1], ratios[2], ratios[3]
+@lru_cache(maxsize=8)
+def _family(impedance: sp.ImmutableMatrix) -> Family:
+    return family_of_matrix(impedance.tolist())
 
 
-def sort_by_power(p: sp.Poly) -> Polynomial:
-    """Coefficients as Fractions, lowest power first."""
-    return polynomial(Fraction(int(c.p), int(c.q)) for c in reversed(p.all_coeffs()))
+def _times_s(held: Termination, ring: sp.PolyRing) -> sp.PolyElement:
+    """s times R + m s + k/s."""
+    parts = (held.stiffness, held.damping, held.inertia)
+    return ring({(k,): sp.QQ(x.numerator, x.denominator) for k, x in enumerate(parts) if x})
 
 
-def growing_mode(impedance: sp.ImmutableMatrix) -> GrowingMode | None:
+def growing_mode(family: Family) -> GrowingMode | None:
     """Search for passive terminations between which a two-port grows.
 
-    impedance: Z (N s/m), 2x2, rational in s
+    family: 2 x 2, without dead times and values
     returns: a motion that is confirmed exactly; None where the search has no result
     """
-    z = entries_of(impedance)
-    points = points_of_growth(z)
-    values = [evaluate_at(one, points) for one in z]
-    for s, second, turned in candidates(values, points)[:_MOST_CANDIDATES]:
-        mode = _mode_at(impedance, z, round_point(s), far_termination(s, second), turned)
-        if mode is not None:
-            return mode
-    return (
-        _mode_in_one_direction(impedance, z) or _narrow(impedance, z) or _find_at_pole(impedance, z)
-    )
+    search = _Search(family)
+    return search.over_points() or search.between_dampers() or search.near_axis()
 
 
-#: most candidates that are tested exactly, a millisecond each
-_MOST_CANDIDATES = 40
+@dataclass(frozen=True)
+class _Search:
+    family: Family
 
-
-def _exchange_ports(z: Entries) -> Entries:
-    return z[3], z[2], z[1], z[0]
-
-
-def _negative_places(z: Entries) -> list[Fraction]:
-    """Values of w^2 at which Re z11, Re z22 or Llewellyn's inequality is negative."""
-    tested = [real_part_of(*z[0]), real_part_of(*z[3]), *llewellyn(z)]
-    return [x for p in tested for x in where_negative(_poly(p))]
-
-
-def _poly(p: Polynomial) -> sp.Poly:
-    return sp.Poly([sp.Rational(c.numerator, c.denominator) for c in reversed(p)] or [0], X)
-
-
-def _mode_at(
-    impedance: sp.ImmutableMatrix, z: Entries, at: Gaussian, far: Termination, turned: bool
-) -> GrowingMode | None:
-    """The growing mode at exactly s = `at` with that far termination.
-
-    turned: the far port is port 1
-    returns: None where the near termination is not passive, or the mode is not confirmed
-    """
-    z11, z12, z21, z22 = (value_at(one, at) for one in (_exchange_ports(z) if turned else z))
-    if z11 is None or z12 is None or z21 is None or z22 is None:
+    def over_points(self) -> GrowingMode | None:
+        """A mode at one of the points of the right half plane at which growth is most likely."""
+        negative = [float(x) ** 0.5 / (2 * np.pi) for x in self._negative_places()]
+        steps = (*range(1, 34, 2), *range(35, 68, 4))
+        points = np.concatenate([near_axis(negative, steps), near_poles(self.family)])
+        z = self.family.at(points)
+        values = [z[:, 0, 0], z[:, 0, 1], z[:, 1, 0], z[:, 1, 1]]
+        for s, second, turned in candidates(values, points)[:_MOST_CANDIDATES]:
+            mode = self._mode_at(round_point(s), far_termination(s, second), turned)
+            if mode is not None:
+                return mode
         return None
-    at_port, ratio = z11, 0j
-    if not far.clamped:
-        below = add(z22, exact_value(far, at))
-        if below == ZERO:
-            return None
-        at_port = add(z11, divide(multiply(z12, z21), below), -1)
-        ratio = -as_complex(divide(z21, below))  # velocity of the far port for 1 m/s of the near
-    plain = termination_of((-at_port[0], -at_port[1]), at)
-    if plain is None or at_port == ZERO:
-        return None
-    for near in (plain, with_resonance(plain, at)):
-        velocity = velocities_in_phase(near, far, ratio, as_complex(at))
-        mode = GrowingMode(impedance, (near, far), *at, velocity)
-        if turned:
-            mode = replace(mode, terminations=(far, near), velocity=velocity[::-1])
-        if mode.energy > 0 and mode.is_confirmed():
-            return mode
-    return None
 
-
-def _mode_in_one_direction(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
-    """A growing mode that is a pole of z12 or z21 alone: it moves one port only."""
-    for k, velocity in ((1, (1 + 0j, 0j)), (2, (0j, 1 + 0j))):
+    def between_dampers(self) -> GrowingMode | None:
+        """A mode that grows between dampers, also one that moves one port only."""
         for size in (1, 100, Fraction(1, 100)):
             held = Termination(Fraction(size))
-            q = hidden_poles(z, (held.ratio, held.ratio), k)
-            roots = np.roots([float(c) for c in reversed(q)]) if len(q) > 1 else np.array([])
-            growing = [r for r in roots if r.real > 0 and r.imag >= 0]
-            if growing and not is_free_of_growth(q):
-                pole = max(growing, key=lambda r: r.real)
-                at = Fraction(float(pole.real)), Fraction(float(pole.imag))
-                return GrowingMode(impedance, (held, held), *at, velocity)
-    return None
+            c = sp.QQ(*Fraction(size).as_integer_ratio())
+            q = close(self.family.n, self.family.d, [c, c])
+            growing = [r for r in roots_of(q) if r.real > 0 and r.imag >= 0] if q else []
+            if not growing or is_free_of_growth(as_poly(q, S)):
+                continue
+            pole = complex(max(growing, key=lambda r: r.real))
+            beside = self.family.at(np.array([pole * (1 + 1e-7)]))[0] + float(size) * np.eye(2)
+            v = np.linalg.svd(np.linalg.inv(beside))[0][:, 0]
+            v = v * np.exp(-1j * np.angle(v[np.argmax(np.abs(v))])) / np.abs(v).max()
+            v = np.where(np.abs(v) < 1e-5, 0, v if pole.imag else v.real)
+            velocity = complex(v[0]), complex(v[1])
+            at = Fraction(pole.real), Fraction(pole.imag)
+            return GrowingMode(self.family.z, (held, held), *at, velocity)
+        return None
 
+    def near_axis(self) -> GrowingMode | None:
+        """A mode beside the axis, with up to 60 digits, where a condition fails by little.
 
-def _narrow(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
-    """A growing mode beside the axis, with up to 40 digits; None: no result.
+        Inequalities fail in a narrow band of frequencies, residues fail at a pole that both ways
+        between the ports share.
+        """
+        narrow = [square_root(x, 30) for x in self._negative_places()]
+        shared = [square_root(x, 60) for x in self._shared_poles()]
+        for k in range(4, 132, 4):
+            places = [(w / 2**k, w) for w in (*narrow, *shared)]
+            places += [(Fraction(1, 2**k), Fraction(0)), (Fraction(2**k), Fraction(0))]
+            for rate, frequency in places:
+                at = short(rate, 6), frequency
+                for turned in (False, True):
+                    for far in self._best_exact(at, turned):
+                        mode = self._mode_at(at, far, turned)
+                        if mode is not None:
+                            return mode
+        return None
 
-    For inequalities that fail by little, or only in a narrow band of frequencies.
-    """
-    for x in _negative_places(z):
-        w = square_root(x, 30)
-        for k in range(4, 132, 8):
-            at = short(w / 2**k, 6), w
-            for turned in (False, True):
-                for far in _best_exact(_exchange_ports(z) if turned else z, at):
-                    mode = _mode_at(impedance, z, at, far, turned)
-                    if mode is not None:
-                        return mode
-    return None
+    def _negative_places(self) -> list[Fraction]:
+        """Values of w^2 at which Re z11, Re z22 or Llewellyn's inequality is negative."""
+        tests = axis_conditions(self.family.n, self.family.d, "absolutely stable")
+        return [x for p in tests for x in where_negative(as_poly(p, X))]
 
+    def _shared_poles(self) -> list[Fraction]:
+        """Values of w^2 of the poles on the axis that z12 and z21 share."""
+        d, n = self.family.d, self.family.n
+        shared = n[0][1].cancel(d)[1].gcd(n[1][0].cancel(d)[1])
+        return positive_roots(sp.gcd(*(as_poly(half, X) for half in halves(shared))), bits=200)
 
-def _find_at_pole(impedance: sp.ImmutableMatrix, z: Entries) -> GrowingMode | None:
-    """A growing mode close to a pole on the axis, with the far port free; None: no result.
+    def _values(self, at: Gaussian, turned: bool) -> list[Gaussian] | None:
+        """z11, z12, z21, z22 at a point, exactly; from the other port where `turned`."""
+        ports = (1, 0) if turned else (0, 1)
+        values = (value_at(self.family.n[i][j], self.family.d, at) for i in ports for j in ports)
+        known = [value for value in values if value is not None]
+        return known if len(known) == 4 else None
 
-    For residues that violate their condition by little.
-    """
-    poles = greatest_common_divisor(axis_poles(z[1][1]), axis_poles(z[2][1]))
-    places = [square_root(x, 60) for x in positive_roots(_poly(poles), bits=200)]
-    free = Termination()
-    for k in range(4, 132, 4):
-        near = [(w / 2**k, w) for w in places]
-        near += [(Fraction(1, 2**k), Fraction(0)), (Fraction(2**k), Fraction(0))]
-        for rate, frequency in near:
-            for turned in (False, True):
-                mode = _mode_at(impedance, z, (short(rate, 6), frequency), free, turned)
-                if mode is not None:
-                    return mode
-    return None
+    def _mode_at(self, at: Gaussian, far: Termination, turned: bool) -> GrowingMode | None:
+        """The growing mode at exactly s = `at` with that far termination.
 
+        turned: the far port is port 1
+        returns: None where the near termination is not passive, or the mode is not confirmed
+        """
+        values = self._values(at, turned)
+        if values is None:
+            return None
+        z11, z12, z21, z22 = values
+        at_port, ratio = z11, 0j
+        if not far.clamped:
+            below = add(z22, exact_value(far, at))
+            if below == ZERO:
+                return None
+            at_port = add(z11, divide(multiply(z12, z21), below), -1)
+            ratio = -as_complex(
+                divide(z21, below)
+            )  # velocity of the far port for 1 m/s of the near
+        plain = termination_of((-at_port[0], -at_port[1]), at)
+        if plain is None or at_port == ZERO:
+            return None
+        for near in (plain, with_resonance(plain, at)):
+            velocity = velocities_in_phase(near, far, ratio, as_complex(at))
+            mode = GrowingMode(self.family.z, (near, far), *at, velocity)
+            if turned:
+                mode = replace(mode, terminations=(far, near), velocity=velocity[::-1])
+            if mode.energy > 0 and mode.is_confirmed():
+                return mode
+        return None
 
-def _best_exact(z: Entries, at: Gaussian) -> Iterator[Termination]:
-    """Far terminations: a clamp, and the one of `growth_points._best_far` to 40 digits."""
-    yield CLAMPED
-    z12, z21, z22 = (value_at(one, at) for one in z[1:])
-    if z12 is None or z21 is None or z22 is None:
-        return
-    loop = multiply(z12, z21)
-    size = square_root(loop[0] ** 2 + loop[1] ** 2, 40)
-    if size + loop[0] == 0 or loop == ZERO:
-        return
-    slope, share = loop[1] / (size + loop[0]), at[0] / at[1]  # tan(arg(L)/2)
-    r = z22[0]
-    for _ in range(6):
-        r = z22[0] + abs(r * slope - z22[1]) * share
-    yield termination_near((r - z22[0], r * slope - z22[1]), at, 40)
+    def _best_exact(self, at: Gaussian, turned: bool) -> Iterator[Termination]:
+        """Far terminations: a clamp, a free port, and the best one of `candidates` to 40 digits."""
+        yield CLAMPED
+        yield Termination()
+        values = self._values(at, turned)
+        if values is None or at[1] == 0:
+            return
+        _, z12, z21, z22 = values
+        loop = multiply(z12, z21)
+        size = square_root(loop[0] ** 2 + loop[1] ** 2, 40)
+        if size + loop[0] == 0 or loop == ZERO:
+            return
+        slope, share = loop[1] / (size + loop[0]), at[0] / at[1]  # tan(arg(L)/2)
+        r = z22[0]
+        for _ in range(6):
+            r = z22[0] + abs(r * slope - z22[1]) * share
+        yield termination_near((r - z22[0], r * slope - z22[1]), at, 40)

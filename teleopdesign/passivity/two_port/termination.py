@@ -14,9 +14,7 @@ from fractions import Fraction
 import sympy as sp
 
 from ...realise.lti import S
-from ..checker.absolute_stability import Ratio, coprime
-from ..checker.polynomials import polynomial
-from .exact_complex import Gaussian, round_point, short
+from ..linear.gaussian import Gaussian, round_point, short
 
 
 @dataclass(frozen=True)
@@ -35,12 +33,6 @@ class Termination:
     def __post_init__(self) -> None:
         if min(self.damping, self.inertia, self.stiffness) < 0:
             raise ValueError(f"Termination: a negative part is not passive: {self}")
-
-    @property
-    def ratio(self) -> Ratio:
-        """Impedance R + m s + k/s as a coprime numerator and denominator."""
-        p = polynomial([self.stiffness, self.damping, self.inertia])
-        return coprime(p, polynomial([0, 1]))
 
     @property
     def expression(self) -> sp.Expr:

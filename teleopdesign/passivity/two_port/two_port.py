@@ -14,9 +14,9 @@ Llewellyn, Proc. IRE 40 (1952) 271. His inequality on the axis is one of several
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -26,8 +26,12 @@ from ...base.arguments import describe_value
 from ...base.errors import ModelError
 from ...base.finding import Graph, Series
 from ...base.frozen import ByValue
+from ...diagrams.control_parts import entry_of
 from ...realise.lti import S
+from ..linear.family import Family, family_of_matrix
 from ..linear.impedance import Impedance, exact, impedance
+from ..linear.sweep import passive_margin, stable_margin
+from ..linear.unseen import unseen_modes
 
 
 @dataclass(frozen=True)
@@ -35,9 +39,11 @@ class TwoPort:
     """A two-port by its impedance matrix.
 
     z: 2x2, N s/m, in `realise.lti.S`, with exact numbers
+    unseen: modes of its systems that no port shows and that do not decay, 1/s
     """
 
     z: sp.ImmutableMatrix
+    unseen: tuple[complex, ...] = ()
 
     @property
     def has_delay(self) -> bool:
@@ -51,25 +57,18 @@ class TwoPort:
         """
         return impedance(self.z[row - 1, column - 1])
 
+    @cached_property
+    def family(self) -> Family:
+        """The two-port as a family of functions, at a point."""
+        return family_of_matrix(self.z.tolist())
+
     def over(self, frequency: np.ndarray) -> np.ndarray:
         """Impedance matrices at each frequency (Hz), N s/m, (n, 2, 2)."""
         return self.at(2j * np.pi * np.asarray(frequency, dtype=float))
 
     def at(self, s: np.ndarray) -> np.ndarray:
         """Impedance matrices at each complex s (1/s), N s/m, (n, 2, 2)."""
-        s = np.asarray(s, dtype=complex)
-        out = np.empty((len(s), 2, 2), dtype=complex)
-        for i in range(2):
-            for j in range(2):
-                with np.errstate(all="ignore"):  # a pole is infinite, a late term far out is 0
-                    out[:, i, j] = _function(self.z[i, j])(s)
-        return out
-
-
-@lru_cache(maxsize=64)  # one sweep asks a dozen times for the same four
-def _function(entry: sp.Expr) -> Callable[[np.ndarray], np.ndarray]:
-    made: Callable[[np.ndarray], np.ndarray] = sp.lambdify(S, entry, "numpy")
-    return made
+        return self.family.at(np.asarray(s, dtype=complex))
 
 
 def two_port(entries: Any) -> TwoPort:
@@ -85,7 +84,11 @@ def two_port(entries: Any) -> TwoPort:
                 "two_port: expected two inputs and two outputs, found "
                 f"{entries.ninputs} and {entries.noutputs}"
             )
-        entries = [[entries[i, j] for j in range(2)] for i in range(2)]
+        unseen = unseen_modes(entries)
+        rows = [
+            [impedance(entry_of(entries, i, j, "two_port")) for j in range(2)] for i in range(2)
+        ]
+        return TwoPort(_matrix(rows), unseen)
     if isinstance(entries, sp.MatrixBase):
         entries = entries.tolist()
     if isinstance(entries, str) or not (_is_pair(entries) and all(map(_is_pair, entries))):
@@ -93,7 +96,12 @@ def two_port(entries: Any) -> TwoPort:
             "two_port: expected [[z11, z12], [z21, z22]] or a system of python-control, found "
             f"{describe_value(entries)}"
         )
-    return TwoPort(sp.ImmutableMatrix([[_entry(e) for e in row] for row in entries]))
+    modes = (mode for row in entries for entry in row for mode in unseen_modes(entry))
+    return TwoPort(_matrix(entries), tuple(modes))
+
+
+def _matrix(entries: Any) -> sp.ImmutableMatrix:
+    return sp.ImmutableMatrix([[_entry(e) for e in row] for row in entries])
 
 
 def _is_pair(value: Any) -> bool:
@@ -177,26 +185,3 @@ def sweep_margins(
     f = np.geomspace(1e-4, 1e4, 4001) if frequency is None else np.asarray(frequency, dtype=float)
     z = system.over(f)
     return FrequencyMargins(f, passive_margin(z), stable_margin(z))
-
-
-def passive_margin(z: np.ndarray) -> np.ndarray:
-    """Smallest eigenvalue of the Hermitian part of each matrix, (n,); NaN where z is not finite.
-
-    z: (n, k, k), on the axis or in the right half plane
-    """
-    finite = np.isfinite(z).all(axis=(1, 2))
-    margin = np.full(len(z), np.nan)
-    margin[finite] = np.linalg.eigvalsh((z[finite] + z[finite].conj().swapaxes(1, 2)) / 2)[:, 0]
-    return margin
-
-
-def stable_margin(z: np.ndarray) -> np.ndarray:
-    """Llewellyn's stability parameter minus 1 of each matrix, (n,); z: (n, 2, 2), on the axis.
-
-    inf where z12 z21 = 0;  -inf where Re z11 < 0 or Re z22 < 0
-    """
-    r1, r2, loop = z[:, 0, 0].real, z[:, 1, 1].real, z[:, 0, 1] * z[:, 1, 0]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        margin = (2 * r1 * r2 - loop.real) / np.abs(loop) - 1
-    margin = np.where(loop == 0, np.inf, margin)
-    return np.where((r1 < 0) | (r2 < 0), -np.inf, margin)

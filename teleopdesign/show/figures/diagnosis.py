@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,12 +15,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...diagnose.arms.diagnosis import ArmRung
     from ...diagnose.diagnosis import Diagnosis
-    from ...diagnose.rung import Rung
+    from ...measurement.prepare import Prepared
+    from ...model import Model
 
 MEASURED, BEFORE, AFTER = "0.55", "#D55E00", "#0072B2"
 FORWARD, BACKWARD, UNTOLD = "#009E73", "#CC79A7", "0.6"
+#: inches: of a joint's row, of what stands around all rows; of the ladder, and each of its rungs
+ROW, AROUND, LADDER, RUNG = 1.4, 0.6, 0.75, 0.22
 #: most points drawn in a panel; more are not visible and make files large
 POINTS = 6000
 
@@ -126,11 +127,14 @@ def _force_axes(ax: Axes, data: Any) -> None:
 def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
     """Forces and residual before and after, residual over velocity and position, the ladder.
 
-    The curves are low-passed forces of the check records (of the fit records if there is no check
+    Of an arm: forces, residual over time and over velocity of each joint, and the ladder. The
+    curves are low-passed forces of the check records (of the fit records if there is no check
     record).
     """
     import matplotlib.pyplot as plt
 
+    if diagnosis.joints:
+        return _plot_joints(diagnosis)
     before = check_rows(residual_data(diagnosis.before.model, diagnosis.prepared))
     after = check_rows(residual_data(diagnosis.model, diagnosis.prepared))
     changed = len(diagnosis.rungs) > 1
@@ -161,9 +165,69 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
         ax.set(xlabel=label_of(before, "time"), ylabel=label_of(before, "residual"))
         ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
         _residual_maps(axes, before, after, changed=changed)
-        floor = diagnosis.floor.value
-        draw_ladder(axes["ladder"], diagnosis.rungs, floor, of="the measured force")
+        _draw_ladder(axes["ladder"], diagnosis, of="the measured force")
     return figure
+
+
+def _plot_joints(diagnosis: Diagnosis) -> Figure:
+    """A row for each joint of an arm, and the ladder for the whole arm.
+
+    The models are those in which all joints agree on the links. The panels over time show the first
+    of the records.
+    """
+    import matplotlib.pyplot as plt
+
+    joints = list(diagnosis.joints)
+    ends = [dict(zip(joints, diagnosis.parts(row), strict=True)) for row in (0, -1)]
+    height, below = ROW * len(joints) + AROUND, LADDER + RUNG * len(diagnosis.rungs)
+    with plt.style.context(house_style()):
+        figure = plt.figure(figsize=(7.16, height + below), layout="constrained")
+        # names of effects are long: they take no room from the joints
+        parts: Any = figure.subfigures(2, 1, height_ratios=[height, below])
+        upper, lower = parts
+        axes = upper.subplots(len(joints), 3, squeeze=False, width_ratios=[1.25, 1.25, 1.0])
+        for joint, row in zip(joints, axes, strict=True):
+            _plot_joint(list(row), diagnosis, joint, [parts[joint] for parts in ends])
+        for ax in axes[0, :2]:
+            ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.1), borderaxespad=0.1, ncols=3)
+        direction_legend(axes[0, 2])
+        for ax in axes[-1, :2]:
+            ax.set_xlabel("time (s)")
+        # anybody's text: no formula in it
+        upper.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
+        of = "the measured force, root of the mean square over joints"
+        _draw_ladder(lower.subplots(), diagnosis, of=of)
+    return figure
+
+
+def _plot_joint(
+    row: list[Any], diagnosis: Diagnosis, joint: str, ends: list[tuple[Prepared, Model]]
+) -> None:
+    """The three panels of a joint; ends: its records and model before and after."""
+    changed = len(diagnosis.rungs) > 1
+    before, after = (check_rows(residual_data(model, prepared)) for prepared, model in ends)
+    force, time, velocity = row
+    every, before, after = after, _first_record(before), _first_record(after)
+    draw_over_time(force, before, "measured", MEASURED, "measured", 1.4)
+    draw_over_time(force, after, "model", AFTER, "model", 0.6)
+    unit = label_of(before, "measured").removeprefix("measured ")
+    force.set_ylabel(f"{joint}\nforce {unit}")
+    draw_over_time(time, before, "residual", BEFORE, "before", 0.6)
+    if changed:
+        draw_over_time(time, after, "residual", AFTER, "after", 0.6)
+    time.set_ylabel(label_of(before, "residual"))
+    draw_by_direction(velocity, every, "velocity")
+    velocity.set_ylim(time.get_ylim())
+    velocity.set_ylabel("")
+    velocity.set_xlabel(label_of(every, "velocity"))
+    rows = (diagnosis.before, diagnosis.after)[0 if changed else 1 :]
+    errors = " to ".join(f"{100 * r.joints[joint].check_error:.2f} %" for r in rows)
+    time.set_title(errors, loc="left", fontsize="small", pad=2)
+
+
+def _first_record(data: Any) -> Any:
+    """The rows of the first record; over time, several records would lie on each other."""
+    return data.isel(sample=data["record"].values == data["record"].values[0])
 
 
 def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None:
@@ -180,17 +244,17 @@ def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None
     direction_legend(axes["v0"])
 
 
-def draw_ladder(ax: Axes, rungs: Sequence[Rung | ArmRung], floor: float, *, of: str) -> None:
-    """Check errors of the rungs as bars, with the noise floor.
+def _draw_ladder(ax: Axes, diagnosis: Diagnosis, *, of: str) -> None:
+    """Check errors of the ladder as bars, with the noise floor.
 
-    floor: noise floor, relative like the errors;  of: words for what the errors are relative to
+    of: words for what the errors are relative to
     """
+    rungs, floor = diagnosis.rungs, 100 * diagnosis.floor.value
     names = ["your model, re-estimated" if r.added is None else f"+ {r.title}" for r in rungs]
-    errors = [100 * r.fit.check_error for r in rungs]
+    errors = [100 * r.check_error for r in rungs]
     rows = np.arange(len(names))
     colors = [BEFORE] + [AFTER] * (len(names) - 1)
     ax.barh(rows, errors, height=0.62, color=colors)
-    floor = 100 * floor
     for y, error in zip(rows, errors, strict=True):
         # the label stands clear of the floor's line
         end = max(error, floor) if error > floor - 0.12 * max(errors) else error

@@ -9,7 +9,6 @@ from ...base.finding import Finding, Graph, Series
 from ...base.sentences import percent
 from ...base.units import si_factor
 from ...diagnose.noise_floor import say_floors
-from ...diagnose.open_questions import open_questions
 from ...next_experiment.prediction import DECIDES, SAME
 from ..registry import shows
 
@@ -60,7 +59,8 @@ def _explain_nothing_open(proposal: Proposal) -> str:
             "No candidate effect lowers the error: there are no rivals to distinguish, and no "
             "motion is proposed."
         )
-    nearest = [q.others[0][0] for q in open_questions(proposal.diagnosis) if q.added is None]
+    questions = proposal.diagnosis.questions
+    nearest = [q.others[0].candidate for q in questions if q.added is None]
     if nearest:
         return (
             f"More is missing, and only {nearest[0]} comes near: there is no rival to distinguish "

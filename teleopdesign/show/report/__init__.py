@@ -5,9 +5,6 @@ from typing import TYPE_CHECKING
 from ...base.folders import lazy_face
 
 if TYPE_CHECKING:
-    from .arm import ArmPage as ArmPage
-    from .arm import arm_page_of as arm_page_of
-    from .arm import write_arm_report as write_arm_report
     from .page import Page as Page
     from .page import page_of as page_of
     from .write import write_report as write_report

@@ -24,11 +24,8 @@ from ...base.sentences import (
 )
 from ...diagnose.criteria import CRITERIA
 from ...diagnose.diagnosis import Diagnosis
-from ...diagnose.evidence import whole_score
-from ...diagnose.fit import Fit
-from ...diagnose.ranking import Ranked
-from ...diagnose.record_shift import shifts_of
-from ...diagnose.rung import Rung
+from ...diagnose.fit import Fit, free_parameters
+from ...diagnose.statements import LadderRow
 from ...effects import CONTACT_ROLES
 
 #: correlation of two estimates from which they are called known only together: the standard error
@@ -47,7 +44,7 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
         *_findings_at_bound(diagnosis),
         *_clock(diagnosis),
         *_open_parameters(diagnosis),
-        *_find_correlated(diagnosis.after),
+        *_find_correlated(diagnosis.last_fit),
         *_open_candidates(diagnosis),
         *_excluded_effects(diagnosis),
         *_findings_on_exclusions(diagnosis),
@@ -88,33 +85,30 @@ def _clock(diagnosis: Diagnosis) -> list[Finding]:
             sentence=f"{shift}.",
             numbers={"late": shift.late, "stderr": shift.stderr, "row": shift.row},
         )
-        for shift in shifts_of(diagnosis.model, diagnosis.prepared.stretches)
+        for shift in diagnosis.record_shift.values()
         if shift.at_bound or shift.is_like_a_delay
     ]
 
 
-def _group(rung: Rung) -> Finding:
-    assert rung.added is not None
-    if rung.ranking is None:  # of an answer that was read back
+def _group(row: LadderRow) -> Finding:
+    names = [str(row.added), *(str(one.candidate) for one in row.alternatives)]
+    apart = max(one.apart for one in row.alternatives)
+    likeness = min(one.likeness for one in row.alternatives)
+    if not math.isfinite(apart):  # an older answer says no more
         return Finding(
             topic="effects that look alike",
             concern="warning",
-            sentence=f"{join_names([str(c) for c in (rung.added, *rung.alternatives)])} explain "
-            "these records equally well, as the answer says.",
+            sentence=f"{join_names(names)} explain these records equally well, as the answer says.",
         )
-    ranked = {r.candidate.key: r for r in rung.ranking.ranked}
-    names = [str(c) for c in (rung.added, *rung.alternatives)]
-    group = [ranked[c.key] for c in (rung.added, *rung.alternatives)]
-    likeness = min(_likeness(rung.ranking.base, group[0], r) for r in group[1:])
-    apart = max(abs(whole_score(r.fit, group[0].fit)) for r in group[1:])
-    errors = join_names([percent(r.fit.check_error) for r in group])
-    numbers = {f"check_error of {n}": r.fit.check_error for n, r in zip(names, group, strict=True)}
+    errors = [row.check_error, *(one.check_error for one in row.alternatives)]
+    numbers = {f"check_error of {n}": error for n, error in zip(names, errors, strict=True)}
     return Finding(
         topic="effects that look alike",
         concern="warning",
         sentence=(
             f"{join_names(names)} explain these records equally well: added at the same step they "
-            f"leave {errors}, at most {number(apart, 2)} standard deviations of chance apart (from "
+            f"leave {join_names([percent(error) for error in errors])}, at most "
+            f"{number(apart, 2)} standard deviations of chance apart (from "
             f"{CRITERIA.close:g} on, the records would distinguish them). Along this motion they "
             f"change the model's force in the same way: the correlation is {number(likeness, 4)}."
         ),
@@ -122,17 +116,9 @@ def _group(rung: Rung) -> Finding:
     )
 
 
-def _likeness(base: Fit, one: Ranked, other: Ranked) -> float:
-    """Correlation of the changes that two candidates make to the residual of the check records."""
-    a = base.check_residual - one.fit.check_residual
-    b = base.check_residual - other.fit.check_residual
-    size = float(np.linalg.norm(a) * np.linalg.norm(b))
-    return float(a @ b) / size if size > 0 else float("nan")
-
-
 def _findings_at_bound(diagnosis: Diagnosis) -> list[Finding]:
     findings = []
-    for name in diagnosis.after.at_bound:
+    for name in diagnosis.at_bound:
         value = diagnosis.model.parameters[name].value
         findings.append(
             Finding(
@@ -151,9 +137,9 @@ def _findings_at_bound(diagnosis: Diagnosis) -> list[Finding]:
 def _open_parameters(diagnosis: Diagnosis) -> list[Finding]:
     findings = []
     model = diagnosis.model
-    for name in diagnosis.after.free:
+    for name in free_parameters(model):
         value = model.parameters[name]
-        if name in diagnosis.after.at_bound or value.stderr < abs(value.value):
+        if name in diagnosis.at_bound or value.stderr < abs(value.value):
             continue
         if math.isfinite(value.stderr):
             angle = model.declared(name).quantity == "angle"
@@ -206,11 +192,8 @@ def _find_correlated(fit: Fit) -> list[Finding]:
 
 
 def _open_candidates(diagnosis: Diagnosis) -> list[Finding]:
-    names = [
-        str(r.candidate)
-        for r in diagnosis.last.ranked
-        if not r.is_identifiable and r.candidate.key not in r.fit.model.absent
-    ]
+    last = [(c.candidate, c.steps[-1]) for c in diagnosis.candidates if c.steps]
+    names = [str(one) for one, step in last if step is not None and not step.determined]
     if not names:
         return []
     return [
@@ -229,9 +212,9 @@ def _open_candidates(diagnosis: Diagnosis) -> list[Finding]:
 def _excluded_effects(diagnosis: Diagnosis) -> list[Finding]:
     """Effects of the catalogue that could not be candidates on the last step."""
     model = diagnosis.model
-    fitted = {r.candidate.key for r in diagnosis.last.ranked}
-    if diagnosis.recorded is not None:
-        fitted = {(row["effect"], row["at"]) for row in diagnosis.recorded["candidates"]}
+    fitted = {
+        c.candidate.key for c in diagnosis.candidates if not c.steps or c.steps[-1] is not None
+    }
     reasons = []
     for place in model.places:
         body = model.body(place)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
 
-    from .candidate_table import LadderRow
+    from .candidate_table import LadderLine
 
 #: inches: widths of a panel; a panel fits a telephone, and two or three fit side by side on a
 #: screen
@@ -41,7 +41,7 @@ def make_diverging_colormap() -> Colormap:
     return LinearSegmentedColormap.from_list("residual", stops)
 
 
-def ladder_figure(rows: tuple[LadderRow, ...], floor: float) -> Markup:
+def ladder_figure(rows: tuple[LadderLine, ...], floor: float) -> Markup:
     """Check error of every rung as a bar, fit error as a ring, noise floor as a line."""
 
     def draw(figure: Figure) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from typing import Any
@@ -13,14 +13,15 @@ from ...base.finding import Finding, Graph
 from ...diagnose import Diagnosis
 from ...diagnose.answer import answer
 from ...measurement.reading import ReadingStep
+from ..diagnose.text import sentence
 from ..figures.graph import thin_series
 from .candidate_table import (
     CandidateRow,
     CandidateStep,
-    LadderRow,
+    LadderLine,
     candidate_rows,
     candidate_steps,
-    ladder_rows,
+    ladder_lines,
 )
 from .cannot_tell import cannot_tell
 from .parameter_table import AddedEffect, ParameterRow, added_effects, parameter_rows
@@ -34,13 +35,47 @@ POINTS = 400
 DIGITS = 5
 
 
+#: findings on what is left; of an arm, joint -> such findings
+Unexplained = Sequence[Finding] | Mapping[str, Sequence[Finding]]
+
+
+@dataclass(frozen=True)
+class JointPart:
+    """A joint of an arm: its errors with all joints estimated together, and its own page.
+
+    left: check error in noise floors of the joint;  sentence: the verdict on the joint in words
+    """
+
+    name: str
+    before: float
+    after: float
+    floor: float
+    left: float
+    sentence: str
+    page: Page
+
+
+@dataclass(frozen=True)
+class LinkRow:
+    """A base parameter of an arm's links, SI; stderr: None if it is not determined."""
+
+    name: str
+    unit: str
+    value: float
+    stderr: float | None
+
+
 @dataclass(frozen=True)
 class Page:
-    """The content of a report, from top to bottom. Errors are relative, everything else is SI."""
+    """The content of a report, from top to bottom. Errors are relative, everything else is SI.
+
+    Of an arm, what is said of a body stands in the pages of its joints.
+    """
 
     title: str
     folder: str
     verdict: str
+    named: tuple[str, ...]
     judged_on: str
     shown: str
     before: float
@@ -51,7 +86,9 @@ class Page:
     learnable: str
     near_reversals: str
     repeats: str
-    ladder: tuple[LadderRow, ...]
+    ladder: tuple[LadderLine, ...]
+    joints: tuple[JointPart, ...]
+    links: tuple[LinkRow, ...]
     added: tuple[AddedEffect, ...]
     views: tuple[BodyView, ...]
     parameters: tuple[ParameterRow, ...]
@@ -73,7 +110,7 @@ def page_of(
     diagnosis: Diagnosis,
     *,
     soundness: Sequence[Finding] = (),
-    unexplained: Sequence[Finding] = (),
+    unexplained: Unexplained = (),
     next_steps: Sequence[Finding] = (),
 ) -> Page:
     """The page of a diagnosis.
@@ -81,12 +118,15 @@ def page_of(
     soundness: findings on the recording;  unexplained: findings on the last residual
     next_steps: findings on what to measure next; a section without findings is left out
     """
-    experiment, rows = diagnosis.experiment, parameter_rows(diagnosis)
-    ladder = ladder_rows(diagnosis)
+    experiment, ladder = diagnosis.experiment, ladder_lines(diagnosis)
+    left = unexplained if isinstance(unexplained, Mapping) else {"": unexplained}
+    body = None if diagnosis.joints else diagnosis  # of one arm each joint is a body
+    rows = () if body is None else parameter_rows(body)
     return Page(
         title=experiment.title,
         folder=experiment.folder.name,
         verdict=verdict(diagnosis),
+        named=tuple(sorted({r.added.effect.name for r in diagnosis.rungs if r.added is not None})),
         judged_on=describe_judgement(experiment),
         shown="check records" if experiment.check_records else "fit records",
         before=diagnosis.before.check_error,
@@ -98,21 +138,39 @@ def page_of(
         near_reversals=sentence_of(diagnosis.near_reversals),
         repeats=sentence_of(diagnosis.repeats),
         ladder=ladder,
-        added=added_effects(diagnosis, rows),
-        views=body_views(diagnosis, tuple(r.name for r in ladder)),
+        joints=tuple(_joint(diagnosis, j, left.get(j, ())) for j in diagnosis.joints),
+        links=tuple(
+            LinkRow(name, one.unit, one.value, make_plain(one.stderr))
+            for name, one in diagnosis.links.items()
+        ),
+        added=() if body is None else added_effects(body, rows),
+        views=() if body is None else body_views(body, tuple(line.name for line in ladder)),
         parameters=rows,
-        candidate_steps=candidate_steps(diagnosis),
-        candidates=candidate_rows(diagnosis),
-        cannot_tell=cannot_tell(diagnosis),
+        candidate_steps=() if body is None else candidate_steps(body),
+        candidates=() if body is None else candidate_rows(body),
+        cannot_tell=() if body is None else cannot_tell(body),
         soundness=limit_size(soundness),
-        unexplained=limit_size(unexplained),
+        unexplained=limit_size(left.get("", ())),
         next_steps=limit_size(next_steps),
         records=record_rows(experiment),
         reading=experiment.reading,
         channels=channel_rows(experiment),
-        bandwidth=diagnosis.prepared.bandwidth,
-        bandwidth_stated=experiment.bandwidth == diagnosis.prepared.bandwidth,
+        bandwidth=diagnosis.bandwidth,
+        bandwidth_stated=experiment.bandwidth == diagnosis.bandwidth,
         version=version(),
+    )
+
+
+def _joint(diagnosis: Diagnosis, joint: str, left: Sequence[Finding]) -> JointPart:
+    one = diagnosis.joints[joint]
+    return JointPart(
+        name=joint,
+        before=diagnosis.before.joints[joint].check_error,
+        after=diagnosis.after.joints[joint].check_error,
+        floor=one.floor.value,
+        left=one.left,
+        sentence=sentence(one).removeprefix("verdict: "),
+        page=page_of(one, unexplained=left),
     )
 
 

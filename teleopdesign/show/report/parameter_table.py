@@ -82,7 +82,7 @@ def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
                 low=low,
                 high=high,
                 fixed=value.fixed,
-                at_bound=name in diagnosis.after.at_bound,
+                at_bound=name in diagnosis.at_bound,
                 added=(effect, place) in added,
             )
         )
@@ -92,7 +92,7 @@ def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
 def _rows_removed(diagnosis: Diagnosis, stated: Mapping[str, float]) -> list[ParameterRow]:
     """The parameters of effects in the user's model that other effects replaced."""
     model, there = diagnosis.before.model, diagnosis.model.parameters
-    instead = {r.instead_of.key: r.added for r in diagnosis.rungs if r.added and r.instead_of}
+    instead = {(r.instead_of, r.added.at): r.added for r in diagnosis.rungs if r.added}
     rows = []
     for name, value in model.parameters.items():
         place, effect, parameter = _parts(name)
@@ -136,7 +136,7 @@ def added_effects(diagnosis: Diagnosis, rows: tuple[ParameterRow, ...]) -> tuple
         AddedEffect(
             effect=r.added.effect.name,
             at=r.added.at,
-            alike=tuple(map(str, r.alternatives)),
+            alike=tuple(str(one.candidate) for one in r.alternatives),
             title=r.added.effect.title,
             law=r.added.effect.text.strip(),
             source=r.added.effect.source,

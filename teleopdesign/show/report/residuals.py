@@ -76,12 +76,12 @@ def body_views(diagnosis: Diagnosis, names: tuple[str, ...]) -> tuple[BodyView, 
     """
     prepared = diagnosis.prepared
     shown = replace(prepared, stretches=prepared.of("check") or prepared.of("fit"))
-    data = [residual_data(r.fit.model, shown) for r in diagnosis.rungs]
+    data = [residual_data(r.model, shown) for r in diagnosis.rungs]
     views = []
     for body in diagnosis.experiment.bodies:
         rows = _rows(data, body)
         rungs = _list_changed_rungs(rows.residual)
-        errors = [diagnosis.rungs[i].fit.check_error for i in rungs]
+        errors = [diagnosis.rungs[i].check_error for i in rungs]
         steps = [(names[i], error) for i, error in zip(rungs, errors, strict=True)]
         views.append(_view(body, diagnosis, steps, rows.select_rungs(rungs)))
     return tuple(views)
@@ -148,7 +148,7 @@ def _view(
         noise=noise,
         limit=limit,
         steps=steps,
-        excerpt=excerpt(rows, axis, diagnosis.prepared.bandwidth),
+        excerpt=excerpt(rows, axis, diagnosis.bandwidth),
         over_velocity=plot_over_velocity(rows, axis, force),
     )
 

@@ -7,9 +7,9 @@ from ...base.sentences import number_on_page as number
 from ...base.sentences import percent_on_page as percent
 from ...diagnose.criteria import CRITERIA
 from ...diagnose.diagnosis import Diagnosis
-from ...diagnose.ladder_text import floors_apart
-from ...diagnose.rung import Rung
+from ...diagnose.statements import LadderRow
 from ...measurement.experiment import Experiment
+from ..diagnose.text import floors_apart
 
 
 def sentence_of(entry: object | None) -> str:
@@ -18,11 +18,11 @@ def sentence_of(entry: object | None) -> str:
     return f"{text[:1].upper()}{text[1:]}." if text else ""
 
 
-def step_name(rung: Rung) -> str:
-    """The effect that a rung adds, with equally good ones: "stribeck at device"."""
+def step_name(rung: LadderRow) -> str:
+    """The effect that a row adds, with equally good ones: "stribeck at device"."""
     if rung.added is None:
         return "your model, re-estimated"
-    return " or ".join((rung.title, *map(str, rung.alternatives)))
+    return " or ".join((rung.title, *(str(one.candidate) for one in rung.alternatives)))
 
 
 def describe_judgement(experiment: Experiment) -> str:
@@ -39,6 +39,8 @@ def _floors(left: float) -> str:
 
 def verdict(diagnosis: Diagnosis) -> str:
     """The verdict in one or two sentences."""
+    if diagnosis.joints:
+        return _verdict_on_arm(diagnosis)
     before, after = diagnosis.before.check_error, diagnosis.after.check_error
     floor, left = percent(diagnosis.floor.value), _floors(diagnosis.left)
     fell = f"the force error on {describe_judgement(diagnosis.experiment)} falls from "
@@ -74,8 +76,8 @@ def verdict(diagnosis: Diagnosis) -> str:
         others = f" {join_names(less)} {helps} less likely than not." if less else ""
         added_words = "this effect" if len(added) == 1 else "all added effects"
         return f"Your model lacks {join_names(named)}. With {added_words}, {fell}.{others} {rest}"
-    if silent := diagnosis.why_silent:
-        return f"Undecided. {silent}"
+    if diagnosis.silence:
+        return f"Undecided. {diagnosis.silence}"
     if not added:
         return (
             "Undecided: something is missing, but no candidate effect explains the remaining "
@@ -94,3 +96,22 @@ def verdict(diagnosis: Diagnosis) -> str:
     return (
         f"Undecided: {join_names(added)} {helps} less than half of what is missing: {fell}. {rest}"
     )
+
+
+def _verdict_on_arm(diagnosis: Diagnosis) -> str:
+    """The verdict on an arm; that on each joint stands in the part of the joint."""
+    before, after = percent(diagnosis.before.check_error), percent(diagnosis.after.check_error)
+    where = describe_judgement(diagnosis.experiment)
+    if diagnosis.verdict == "model_adequate":
+        return (
+            f"Your model of the arm is adequate: it leaves {after} of the forces unexplained on "
+            f"{where}."
+        )
+    fell = f"the force error on {where} falls from {before} to {after}"
+    if diagnosis.verdict == "effects_missing":
+        names = join_names([str(c) for c in diagnosis.missing])
+        return f"Your model of the arm lacks {names}. With all that was added {fell}."
+    if len(diagnosis.rungs) > 1:
+        added = join_names([r.title for r in diagnosis.rungs[1:]])
+        return f"Undecided: with {added} {fell}, but these records do not show what is missing."
+    return f"Undecided: something is missing, but no candidate effect explains the {after}."

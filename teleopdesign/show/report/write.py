@@ -38,14 +38,17 @@ from ...base.sentences import (
 )
 from ...diagnose import Diagnosis
 from .figures import WIDE, colour_scale, graph_figure, ladder_figure, step_figure
-from .page import Page, page_data, page_of
+from .page import Page, Unexplained, page_data, page_of
 
 TEMPLATES = Path(__file__).with_name("templates")
 
 
 @dataclass(frozen=True)
 class Figures:
-    """The pictures of a page; scales, steps etc. by body, findings by (section, row)."""
+    """The pictures of a page; scales, steps etc. by body, findings by (section, row).
+
+    joints: of the joints of an arm
+    """
 
     ladder: Markup
     scales: tuple[Markup, ...]
@@ -53,6 +56,7 @@ class Figures:
     over_velocity: tuple[Markup, ...]
     excerpts: tuple[Markup, ...]
     findings: dict[tuple[str, int], Markup]
+    joints: tuple[Figures, ...]
 
 
 def write_report(
@@ -60,12 +64,13 @@ def write_report(
     path: str | Path,
     *,
     soundness: Sequence[Finding] = (),
-    unexplained: Sequence[Finding] = (),
+    unexplained: Unexplained = (),
     next_steps: Sequence[Finding] = (),
 ) -> None:
     """Write the page of a diagnosis; the same diagnosis gives the same bytes.
 
-    soundness: findings on the recording;  unexplained: findings on the last residual
+    soundness: findings on the recording;  unexplained: findings on the last residual, of an arm
+        those of each joint
     next_steps: findings on what to measure next; a section without findings is left out
     """
     page = page_of(diagnosis, soundness=soundness, unexplained=unexplained, next_steps=next_steps)
@@ -74,13 +79,8 @@ def write_report(
 
 
 def render(page: Page, figures: Figures, data: dict[str, Any]) -> str:
-    """The page as HTML, with all its texts escaped."""
-    return render_page("report.html.jinja", page, figures, data)
-
-
-def render_page(name: str, page: object, figures: object, data: dict[str, Any]) -> str:
-    """A page from the named template, with embedded data; its texts are escaped."""
-    template = _environment().get_template(name)
+    """The page as HTML with embedded data, all its texts escaped."""
+    template = _environment().get_template("report.html.jinja")
     script = figure_script()
     text = template.render(
         page=page,
@@ -145,6 +145,7 @@ def figures_of(page: Page) -> Figures:
             for i, f in enumerate(rows)
             if f.graph is not None
         },
+        joints=tuple(figures_of(joint.page) for joint in page.joints),
     )
 
 

@@ -16,7 +16,8 @@ from teleopdesign.passivity import (
     delayed_small_motion,
     largest_passive_inertia,
 )
-from teleopdesign.passivity.two_port.late_one_port import late_one_port
+from teleopdesign.passivity.linear.family import family_of_matrix
+from teleopdesign.passivity.linear.judge import passive_claim
 from teleopdesign.realise.lti import S
 
 
@@ -131,7 +132,7 @@ def one_port(rng):
     whole = sp.Add(
         *(written(p) / written(q) * sp.exp(-S * sp.Rational(repr(t))) for p, q, t in terms)
     )
-    claim = late_one_port(whole)
+    claim = passive_claim(family_of_matrix([[whole]]))
 
     def z(s, exp):
         def at(p):

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from teleopdesign.base.finding import Graph, Series
 from teleopdesign.show.figures.diagnosis import AFTER, BEFORE
 from teleopdesign.show.report import figures
-from teleopdesign.show.report.candidate_table import LadderRow
+from teleopdesign.show.report.candidate_table import LadderLine
 from teleopdesign.show.report.residuals import BodyView, RungResidual
 from teleopdesign.show.report.scaled import Scaled
 
@@ -39,9 +39,9 @@ VIEW = BodyView(
     over_velocity=EMPTY,
 )
 LADDER = (
-    LadderRow("your model, re-estimated", "your model", 0.05, 0.08, 8.0),
-    LadderRow("drag at device", "drag", 0.11, 0.03, 3.0),
-    LadderRow("stop at device", "stop", 0.01, 0.02, 2.0),
+    LadderLine("your model, re-estimated", "your model", 0.05, 0.08, 8.0),
+    LadderLine("drag at device", "drag", 0.11, 0.03, 3.0),
+    LadderLine("stop at device", "stop", 0.01, 0.02, 2.0),
 )
 
 

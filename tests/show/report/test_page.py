@@ -161,7 +161,7 @@ def bare(page):
     empty = Markup("<b></b>")
     steps = tuple(tuple(empty for _ in v.steps) for v in page.views)
     each = tuple(empty for _ in page.views)
-    return Figures(empty, each, steps, each, each, {})
+    return Figures(empty, each, steps, each, each, {}, ())
 
 
 @pytest.fixture(scope="module")

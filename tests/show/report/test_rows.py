@@ -10,45 +10,33 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.blocks import Value
+from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.fit import Fit
+from teleopdesign.diagnose.statements import Alternative, CandidateResult, StepResult
 from teleopdesign.show.report import (
-    candidate_table,
     cannot_tell,
     parameter_table,
     provenance,
     write,
 )
-from teleopdesign.show.report.candidate_table import candidate_rows, candidate_steps, ladder_rows
+from teleopdesign.show.report.candidate_table import candidate_rows, candidate_steps, ladder_lines
 from teleopdesign.show.report.parameter_table import added_effects, parameter_rows
 
 
 def test_a_rung_says_its_errors_and_how_many_noise_floors_they_are(diagnosis):
-    rows = ladder_rows(diagnosis)
+    rows = ladder_lines(diagnosis)
     for row, rung in zip(rows, diagnosis.rungs, strict=True):
-        assert (row.fit_error, row.check_error) == (rung.fit.fit_error, rung.fit.check_error)
-        assert row.floors * diagnosis.floor.value == pytest.approx(rung.fit.check_error)
+        assert (row.fit_error, row.check_error) == (rung.fit_error, rung.check_error)
+        assert row.floors * diagnosis.floor.value == pytest.approx(rung.check_error)
     assert [r.brief for r in rows] == ["your model", "stribeck"]
-    free = ladder_rows(replace(diagnosis, floor=replace(diagnosis.floor, value=0.0)))
+    free = ladder_lines(replace(diagnosis, floor=replace(diagnosis.floor, value=0.0)))
     assert all(r.floors == math.inf for r in free)
 
 
 def test_each_step_of_the_candidates_has_a_heading_and_the_error_before(diagnosis):
     steps = candidate_steps(diagnosis)
     assert [s.heading for s in steps] == ["on your model", "with stribeck"]
-    assert [s.check_error for s in steps] == [r.fit.check_error for r in diagnosis.rungs]
-
-
-def test_a_candidate_has_on_each_step_the_errors_of_its_fit_there(diagnosis):
-    rows = {r.effect: r for r in candidate_rows(diagnosis)}
-    rankings = [diagnosis.rungs[1].ranking, diagnosis.last]
-    for step, ranking in enumerate(rankings):
-        for ranked in ranking.ranked:
-            score = rows[ranked.candidate.effect.name].steps[step]
-            assert score.score == ranked.score
-            if score.outcome != "added":
-                assert score.check_error == ranked.fit.check_error
-    assert rows["stribeck"].steps[0].check_error == diagnosis.rungs[1].fit.check_error
-    assert all(len(r.steps) == len(rankings) for r in rows.values())
+    assert [s.check_error for s in steps] == [r.check_error for r in diagnosis.rungs]
 
 
 def test_the_order_of_candidates_is_added_then_probable_then_small_error(diagnosis):
@@ -62,35 +50,6 @@ def test_the_order_of_candidates_is_added_then_probable_then_small_error(diagnos
         assert one.probability > other.probability or alike and best(one) <= best(other)
 
 
-def outcome(diagnosis, rung=None, **changes):
-    """Of the best candidate of the first step, that counts and has no parameter at a bound."""
-    ranking = diagnosis.rungs[1].ranking
-    best = replace(ranking.best, is_identifiable=True, refused="", implausible="")
-    best = replace(best, fit=replace(best.fit, at_bound=ranking.base.at_bound))
-    return candidate_table._outcome(rung, ranking, replace(best, **changes))
-
-
-def test_what_became_of_a_candidate_is_reported_where_its_error_does_not_show_it(diagnosis):
-    rung = diagnosis.rungs[1]
-    ranked, other = rung.ranking.best, rung.ranking.ranked[1].candidate
-    candidate, bounds = ranked.candidate, rung.ranking.base.at_bound
-    assert outcome(diagnosis) == ""
-    assert outcome(diagnosis, replace(rung, added=candidate)) == "added"
-    assert outcome(diagnosis, replace(rung, added=other, alternatives=(candidate,))) == "as good"
-    assert outcome(diagnosis, replace(rung, added=other, alternatives=())) == ""
-    assert outcome(diagnosis, replace(rung, added=None, alternatives=())) == ""
-    assert outcome(diagnosis, refused="weak", implausible="it is none") == "weak"
-    assert outcome(diagnosis, implausible="it is none", is_identifiable=False) == "implausible"
-    assert outcome(diagnosis, is_identifiable=False) == "open"
-    at_bound = replace(ranked.fit, at_bound=(*bounds, "device.inertia"))
-    assert outcome(diagnosis, fit=at_bound) == "displaces"
-    idle = [r for r in diagnosis.last.ranked if r.candidate.key in r.fit.model.absent]
-    assert {candidate_table._outcome(None, diagnosis.last, r) for r in idle} == {"no gain"}
-
-
-RECORDED = {"check_error": 0.04, "probability": 0.25, "at": "device"}
-
-
 @pytest.mark.parametrize(
     ("effect", "refused", "message"),
     [
@@ -101,23 +60,20 @@ RECORDED = {"check_error": 0.04, "probability": 0.25, "at": "device"}
         ("quadratic_drag", None, "as good"),
     ],
 )
-def test_of_a_saved_answer_each_candidate_has_one_step_and_what_became_of_it(
+def test_where_the_steps_are_not_known_a_candidate_has_one_and_what_became_of_it(
     diagnosis, effect, refused, message
 ):
-    row = {**RECORDED, "effect": effect, "refused": refused}
-    other = next(
-        r.candidate for r in diagnosis.last.ranked if r.candidate.effect.name == "quadratic_drag"
-    )
-    rungs = (diagnosis.rungs[0], replace(diagnosis.rungs[1], alternatives=(other,)))
-    saved = replace(diagnosis, rungs=rungs, recorded={"candidates": [row]})
-    (entry,) = candidate_rows(saved)
+    there = {c.candidate.effect.name: c.candidate for c in diagnosis.candidates}
+    row = CandidateResult(there[effect], 0.25, 0.04, {}, refused=refused)
+    alike = (Alternative(there["quadratic_drag"]),)
+    rungs = (diagnosis.rungs[0], replace(diagnosis.rungs[1], alternatives=alike))
+    older = replace(diagnosis, rungs=rungs, candidates=(row,))
+    (entry,) = candidate_rows(older)
     (step,) = entry.steps
     assert (entry.effect, entry.at, entry.probability) == (effect, "device", 0.25)
     assert (step.check_error, step.outcome) == (0.04, message) and math.isnan(step.score)
-    (heading,) = candidate_steps(saved)
+    (heading,) = candidate_steps(older)
     assert heading.check_error == diagnosis.before.check_error
-    row["check_error"] = None
-    assert math.isnan(candidate_rows(saved)[0].steps[0].check_error)
 
 
 # parameters
@@ -165,7 +121,7 @@ def test_a_row_says_what_the_models_before_and_after_hold(diagnosis):
 
 
 def fit_with(diagnosis, columns, names, correlated=None) -> Fit:
-    return replace(diagnosis.after, jacobian=np.array(columns).T, free=names)
+    return replace(diagnosis.last_fit, jacobian=np.array(columns).T, free=names)
 
 
 @given(correlation=st.sampled_from([0.9, 0.94, 0.96, 0.999, -0.96, -0.94]), size=st.floats(0.1, 50))
@@ -201,18 +157,6 @@ def test_the_closest_pairs_are_listed_first_and_six_at_most(diagnosis):
     assert "a and b" in cannot_tell._find_correlated(fit)[0].sentence
 
 
-@pytest.mark.parametrize(("turn", "expected"), [(1.0, 1.0), (-2.0, -1.0), (0.0, math.nan)])
-def test_how_alike_two_candidates_are_is_the_cosine_of_what_they_take_away(
-    diagnosis, turn, expected
-):
-    first, second = diagnosis.rungs[1].ranking.ranked[:2]
-    base = diagnosis.before
-    gain = base.check_residual - first.fit.check_residual
-    changed = replace(second.fit, check_residual=base.check_residual - turn * gain)
-    likeness = cannot_tell._likeness(base, first, replace(second, fit=changed))
-    assert likeness == pytest.approx(expected, nan_ok=True)
-
-
 @pytest.mark.parametrize(
     ("value", "stderr", "is_open"),
     [(1.0, 0.99, False), (1.0, 1.0, True), (0.5, math.inf, True)],
@@ -222,8 +166,8 @@ def test_a_parameter_is_left_open_from_an_error_as_large_as_its_value(
 ):
     name = "device.viscous.damping"
     model = diagnosis.model.with_values({name: Value(value, stderr=stderr)})
-    last = replace(diagnosis.rungs[-1], fit=replace(diagnosis.after, model=model, free=(name,)))
-    findings = cannot_tell._open_parameters(replace(diagnosis, rungs=(*diagnosis.rungs[:-1], last)))
+    there = cannot_tell._open_parameters(diagnosis.with_final_model(model))
+    findings = [f for f in there if name in f.sentence]
     assert [f.numbers["value"] for f in findings] == ([value] if is_open else [])
     if is_open:
         distinguished = "cannot be distinguished" in findings[0].sentence
@@ -234,47 +178,45 @@ def test_a_parameter_is_left_open_from_an_error_as_large_as_its_value(
     ("at_bound", "like", "sentence"), [(False, False, 0), (True, False, 1), (False, True, 1)]
 )
 def test_a_shift_of_the_log_is_reported_where_it_is_at_its_bound_or_like_a_delay(
-    diagnosis, monkeypatch, at_bound, like, sentence
+    diagnosis, at_bound, like, sentence
 ):
     class Shift(SimpleNamespace):
         def __str__(self):
             return "the log is late"
 
     shift = Shift(at_bound=at_bound, is_like_a_delay=like, late=2e-3, stderr=1e-4, row=1e-3)
-    monkeypatch.setattr(cannot_tell, "shifts_of", lambda model, stretches: [shift])
-    finding = cannot_tell._clock(diagnosis)
+    finding = cannot_tell._clock(replace(diagnosis, record_shift={"device": shift}))
     assert len(finding) == sentence
     for one in finding:
         assert one.sentence == "the log is late."
         assert one.numbers == {"late": 2e-3, "stderr": 1e-4, "row": 1e-3}
 
 
-def test_effects_that_may_be_there_unseen_are_those_not_determined(diagnosis):
-    first, second, *_ = diagnosis.last.ranked
-    left = (
-        replace(first, is_identifiable=False, fit=replace(first.fit)),
-        replace(second, is_identifiable=True),
+def with_last_steps(diagnosis, last):
+    """Name of a candidate -> its result on the last step; all others were not fitted there."""
+    rows = tuple(
+        replace(c, steps=(None, last.get(c.candidate.effect.name))) for c in diagnosis.candidates
     )
-    ranking = replace(diagnosis.last, ranked=left)
-    absent = first.candidate.key in first.fit.model.absent
-    findings = cannot_tell._open_candidates(replace(diagnosis, last=ranking))
-    assert len(findings) == (0 if absent else 1)
-    assert all(str(first.candidate) in f.sentence for f in findings)
-    assert all(str(second.candidate) not in f.sentence for f in findings)
-    ranking_of_all = replace(diagnosis.last, ranked=left[1:])
-    assert cannot_tell._open_candidates(replace(diagnosis, last=ranking_of_all)) == []
+    return replace(diagnosis, candidates=rows)
+
+
+def test_effects_that_may_be_there_unseen_are_those_not_determined(diagnosis):
+    step = StepResult(0.04, 1.0, "")
+    last = {"spring": replace(step, determined=False), "bias": step}
+    (finding,) = cannot_tell._open_candidates(with_last_steps(diagnosis, last))
+    assert "spring at device" in finding.sentence and "bias" not in finding.sentence
+    assert cannot_tell._open_candidates(with_last_steps(diagnosis, {"bias": step})) == []
 
 
 def test_a_candidate_of_the_last_step_or_an_effect_of_the_model_is_not_called_excluded(diagnosis):
-    (finding,) = cannot_tell._excluded_effects(
-        replace(diagnosis, last=replace(diagnosis.last, ranked=diagnosis.last.ranked[:1]))
-    )
-    effect = diagnosis.last.ranked[0].candidate.effect.name
-    there = {"coulomb", "viscous", "stribeck"}
+    one = with_last_steps(diagnosis, {"spring": StepResult(0.04, 1.0, "")})
+    (finding,) = cannot_tell._excluded_effects(one)
+    there = {"coulomb", "viscous", "stribeck", "spring"}
     for name in diagnosis.model.known:
-        assert (f"{name} at device" in finding.sentence) == (name != effect and name not in there)
-    saved = {"candidates": [{"effect": n, "at": "device"} for n in diagnosis.model.known]}
-    assert cannot_tell._excluded_effects(replace(diagnosis, recorded=saved)) == []
+        assert (f"{name} at device" in finding.sentence) == (name not in there)
+    every = [Candidate(e, "device") for e in diagnosis.model.known.values()]
+    older = tuple(CandidateResult(c, 0.0, 0.04, {}) for c in every)
+    assert cannot_tell._excluded_effects(replace(diagnosis, candidates=older)) == []
 
 
 def test_what_a_search_left_out_is_one_sentence(diagnosis):

@@ -6,9 +6,9 @@ from teleopdesign.base.sentences import (
     number_on_page,
     percent_on_page,
 )
-from teleopdesign.diagnose import ladder_text
 from teleopdesign.diagnose.one_moment import Moment
-from teleopdesign.diagnose.ranking import Ranking
+from teleopdesign.diagnose.statements import Alternative
+from teleopdesign.show.diagnose import text as ladder_text
 from teleopdesign.show.report.words import sentence_of, verdict
 
 
@@ -23,16 +23,15 @@ def test_the_verdict_names_the_effect_and_both_errors(diagnosis):
 
 def test_look_alikes_are_named_together(diagnosis):
     first, second = diagnosis.rungs
-    other = next(r.candidate for r in second.ranking.ranked if r.candidate.key != second.added.key)
-    alike = replace(
-        diagnosis, verdict="undecided", rungs=(first, replace(second, alternatives=(other,)))
-    )
+    other = diagnosis.candidates[-1].candidate
+    second = replace(second, alternatives=(Alternative(other),))
+    alike = replace(diagnosis, verdict="undecided", rungs=(first, second))
     text = verdict(alike)
     assert text.startswith(f"Undecided, stribeck at device or {other}: these records do not")
 
 
 def test_an_adequate_model_and_an_unexplained_rest_are_reported_as_such(diagnosis):
-    only = replace(diagnosis, rungs=diagnosis.rungs[:1], last=Ranking(diagnosis.before, ()))
+    only = replace(diagnosis, rungs=diagnosis.rungs[:1])
     assert "Your model is adequate" in verdict(replace(only, verdict="model_adequate"))
     undecided = verdict(replace(only, verdict="undecided"))
     assert "no candidate effect explains the remaining force" in undecided
@@ -42,24 +41,28 @@ def test_an_adequate_model_and_an_unexplained_rest_are_reported_as_such(diagnosi
 
 def test_effects_that_help_too_little_are_reported_as_such(diagnosis):
     first, second = diagnosis.rungs
-    little = replace(second.fit, check_error=0.9 * first.fit.check_error)
-    rungs = (first, replace(second, fit=little))
-    text = verdict(replace(diagnosis, verdict="undecided", rungs=rungs, named=()))
+    little = replace(second, check_error=0.9 * first.check_error, named=False)
+    text = verdict(replace(diagnosis, verdict="undecided", rungs=(first, little)))
     assert "stribeck at device helps, but explains less than half" in text
 
 
 def test_effects_that_explain_most_but_are_unlikely_are_reported_as_such(diagnosis):
-    text = verdict(replace(diagnosis, verdict="undecided", named=()))
+    text = verdict(replace(unnamed(diagnosis), verdict="undecided"))
     assert text.startswith("Undecided: with stribeck at device the force error")
     assert "less likely than not" in text
+
+
+def unnamed(diagnosis):
+    """The diagnosis with no effect probable enough to be named."""
+    return replace(diagnosis, rungs=tuple(replace(r, named=False) for r in diagnosis.rungs))
 
 
 def two_added(diagnosis):
     """A ladder whose second effect is not probable enough to be named."""
     first, second = diagnosis.rungs
-    other = next(r.candidate for r in second.ranking.ranked if r.candidate.key != second.added.key)
-    rungs = (first, second, replace(second, added=other))
-    return replace(diagnosis, rungs=rungs, named=(second.added,)), other
+    other = diagnosis.candidates[-1].candidate
+    rungs = (first, second, replace(second, added=other, named=False))
+    return replace(diagnosis, rungs=rungs), other
 
 
 def test_an_effect_that_helps_and_is_not_named_is_reported_beside_those_that_are(diagnosis):
@@ -69,12 +72,12 @@ def test_an_effect_that_helps_and_is_not_named_is_reported_beside_those_that_are
         "Your model lacks stribeck at device. With all added effects, the force error"
     )
     assert f" {other} helps, but is less likely than not." in text
-    each = verdict(replace(both, verdict="undecided", named=()))
+    each = verdict(replace(unnamed(both), verdict="undecided"))
     assert f"with stribeck at device and {other} the force error" in each
     assert "but each is less likely than not" in each
-    little = replace(both.rungs[2].fit, check_error=0.95 * diagnosis.before.check_error)
-    rungs = (*both.rungs[:2], replace(both.rungs[2], fit=little))
-    text = verdict(replace(both, verdict="undecided", rungs=rungs, named=()))
+    little = replace(both.rungs[2], check_error=0.95 * diagnosis.before.check_error)
+    less = unnamed(replace(both, rungs=(*both.rungs[:2], little)))
+    text = verdict(replace(less, verdict="undecided"))
     assert f"stribeck at device and {other} help, but explain less than half" in text
 
 

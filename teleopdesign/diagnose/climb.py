@@ -1,0 +1,112 @@
+"""The climb of one ladder: effects added one at a time, each supported by check records."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from .adequacy import is_a_tone
+from .commoner import compare_look_alikes
+from .conclusion import remove_doubtful_rung, with_last_corrected
+from .exchange import compare_alternatives, exchange
+from .ladder_state import LadderSearch, LadderState, look
+from .led_astray import return_from_astray
+from .moves import add, remove
+from .noise_floor import noise_floor
+from .pairs import add_pair, replace_by_pair
+from .rung import Rung
+from .stand_in import stands_in_for_moments, stands_in_for_readings, stands_in_for_values
+from .straight import straighten
+from .together import add_together
+from .transmission import add_transmission
+
+
+def climb(search: LadderSearch, state: LadderState) -> tuple[LadderState, tuple[Rung, ...]]:
+    """The state where the ladder ends, and its rungs with their final errors.
+
+    By these errors an effect may be set aside; the ladder then continues without it.
+    """
+    while True:
+        while (
+            len(state.set_aside) <= search.plan.searched_on
+            and (moved := make_next_move(search, state)) is not None
+        ):
+            if (back := return_from_astray(search, state, moved)) is not None:
+                search.progress("once more, from values that a candidate led back to")
+                state = look(search, back.rungs, back)
+                continue
+            barred = bar_what_explains_nothing(search, state, moved)
+            if barred is None:
+                state = look(search, moved.rungs, moved)
+                continue
+            stays = len(barred.supported) == len(state.supported)
+            state = barred
+            if stays:  # no candidate was removed: the same move would follow again
+                break
+        rungs = with_last_corrected(search, state) if search.plan.corrected else state.rungs
+        less = remove_doubtful_rung(search, state, rungs)
+        if less is None:
+            return state, rungs
+        state = look(search, less.rungs, less)
+
+
+def bar_what_explains_nothing(
+    search: LadderSearch, state: LadderState, moved: LadderState
+) -> LadderState | None:
+    """The state before a move, with the move's new effects barred; None: they explain something.
+
+    An effect is barred if it only does what other values of the model do as well, only weakens
+    the errors of the readings, or explains a few moments of one log. A move that replaces rungs is
+    exempt: it may explain as much as they did, more simply.
+    """
+    before, after = ({r.added.key for r in s.rungs if r.added} for s in (state, moved))
+    new = [r for r in moved.rungs if r.added is not None and r.added.key not in state.effects]
+    if not search.plan.stand_ins or not new or not before <= after:
+        return None
+    if moved.fit.check_error >= state.fit.check_error:
+        return None
+    last = replace(new[-1], fit=moved.fit)
+    prepared, criteria = search.prepared, search.criteria
+    drawn = noise_floor(moved.fit.model, prepared, search.generator())
+    barred = stands_in_for_readings(state.fit, state.floors.drawn, last, drawn, criteria=criteria)
+    if barred is None:
+        barred = stands_in_for_values(
+            state.fit, last, prepared, state.floor, criteria=criteria
+        ) or stands_in_for_moments(state.fit, last, prepared, criteria=criteria)
+    if barred is None:
+        return None
+    gone = {r.added.key for r in new if r.added is not None}
+    search.progress(f"set aside: {barred}")
+    state = replace(
+        state,
+        supported=tuple(r for r in state.supported if r.candidate.key not in gone),
+        barred=(*state.barred, barred),
+    )
+    return state.with_floor_limited(criteria) if barred.of_readings else state
+
+
+def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | None:
+    """The state after the next move; None: the ladder ends here.
+
+    First, a supported effect is added. Where there is none, a straight line replaces bends, effects
+    that explained equally well are compared again, and a commoner effect replaces a similar one.
+    Then, where more than a tone is left, these moves follow: a pair, a transmission with friction
+    behind it, an exchange, a pair in place of all rungs, many effects at once.
+    """
+    if state.step > search.plan.most_effects:
+        return straighten(search, state)
+    added = add(search, state)
+    if added is not None:
+        fewer = remove(search, added)
+        # else two effects, each of which makes the other superfluous, would alternate for ever
+        return added if fewer is None or fewer.effects in state.visited else fewer
+    for settle in (straighten, compare_alternatives, compare_look_alikes):
+        if (moved := settle(search, state)) is not None:
+            return moved
+    if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):
+        return None
+    # pairs and exchanges were searched before, with the effects that were set aside
+    if state.set_aside:
+        return None
+    moves = (add_pair, add_transmission, exchange, replace_by_pair, add_together)
+    attempts = (move(search, state) for move in moves)
+    return next((moved for moved in attempts if moved is not None), None)

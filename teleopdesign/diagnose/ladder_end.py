@@ -1,0 +1,78 @@
+"""The end of a ladder in the search: its rungs with their final errors, and what they leave."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from ..base.frozen import ByValue
+from .adequacy import is_adequate
+from .candidates import Candidate
+from .fit import Fit
+from .ladder_state import LadderSearch
+from .learnable import Learnable, NearReversals
+from .noise_floor import NoiseFloor
+from .one_moment import Moment
+from .ranking import Ranking
+from .repeats import Repeatability
+from .rung import Rung
+from .statements import SetAside, Undetermined
+from .verdict import VerdictName
+
+
+@dataclass(frozen=True, eq=False)
+class LadderEnd(ByValue):
+    """What a search ends with; `result.diagnosis_of` states it as a `Diagnosis`.
+
+    last: ranking after the last rung, none of which was accepted
+    estimated: the last rung's fit, parameters not yet corrected for errors of the readings
+    sensor_floor: error that the sensors alone leave, used for the probability of effects. Where the
+        scatter of a command is noise too (`between_rows`), an effect may imitate it
+    named: accepted effects that are probable enough to be called missing
+    silence: why the records tell no effect; "": they may tell one
+    The other fields are those of `Diagnosis`.
+    """
+
+    search: LadderSearch
+    verdict: VerdictName
+    rungs: tuple[Rung, ...]
+    last: Ranking
+    estimated: Fit
+    floor: NoiseFloor
+    sensor_floor: NoiseFloor
+    moment: Moment | None = None
+    learnable: Learnable | None = None
+    near_reversals: NearReversals | None = None
+    repeats: Repeatability | None = None
+    undetermined: tuple[Undetermined, ...] = ()
+    set_aside: tuple[SetAside, ...] = ()
+    on_all_records: float | None = None
+    named: tuple[Candidate, ...] = ()
+    silence: str = ""
+
+    @property
+    def before(self) -> Fit:
+        """The fit of the user's model, re-estimated."""
+        return self.rungs[0].fit
+
+    @property
+    def after(self) -> Fit:
+        """The fit of the model with every accepted effect."""
+        return self.rungs[-1].fit
+
+    def reason_set_aside(self, key: tuple[str, str]) -> str:
+        """Why an effect (name, place) was accepted and removed again; "" for all other effects."""
+        return next((one.reason for one in self.set_aside if one.candidate.key == key), "")
+
+    @property
+    def more_is_missing(self) -> bool:
+        """Whether the final model leaves more than noise."""
+        return not is_adequate(self.after, self.floor) and self.moment is None
+
+    @property
+    def may_be_noise(self) -> bool:
+        """Whether the whole residual may be noise: sensors alone leave as much of the final model.
+
+        The noise floor in use was limited below that value, so that no effect hides in it.
+        """
+        drawn = replace(self.floor, value=self.floor.drawn)
+        return self.more_is_missing and self.floor.held and is_adequate(self.after, drawn)

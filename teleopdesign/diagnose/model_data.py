@@ -1,0 +1,136 @@
+"""Bodies of a model as plain data, in the format of experiments, diagrams and answers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.toml import Table, describe_toml_value
+from ..blocks import Body, Value, with_block_effects
+from ..blocks.described import body_of
+from ..effects import Effect
+from ..measurement.arm_description import joints_from
+from ..measurement.description import ONE_BODY, TWO_BODIES, bodies_from
+from ..model import Model
+from ..realise.stages_along import RECORD_SHIFT
+
+#: key of an arm's base parameters beside its bodies
+LINKS = "links"
+
+
+def model_data(model: Model) -> dict[str, Any]:
+    """The bodies by their places, the shifts of their records, an arm's base parameters; SI."""
+    data: dict[str, Any] = {place: body_data(body) for place, body in model.bodies.items()}
+    if model.record_shift:
+        data[RECORD_SHIFT] = {
+            place: {"value": late.value, "unit": "s", "fixed": late.fixed} | _error(late)
+            for place, late in model.record_shift.items()
+        }
+    if model.links:
+        data[LINKS] = list(model.links)
+    return data
+
+
+def model_of_body(model: Model, place: str) -> Model:
+    """The model of one of its bodies, with the shifts of its records and the links of its arm."""
+    late = {n: x for n, x in model.record_shift.items() if n.partition(".")[0] == place}
+    return replace(model, bodies={place: model.bodies[place]}, record_shift=late)
+
+
+def body_data(body: Body) -> dict[str, Any]:
+    """A body as the table that `measurement.description.body_from` reads.
+
+    A value that is not finite is left out: its effect is absent there, and a reader restores it so.
+    """
+    return {
+        "axis": body.axis,
+        "inertia": _value(body, "inertia"),
+        "effects": {
+            e.name: {
+                p: _value(body, f"{e.name}.{p}")
+                for p in e.parameters
+                if math.isfinite(body.parameters[f"{e.name}.{p}"].value)
+            }
+            for e in body.effects
+        },
+    }
+
+
+def _value(body: Body, name: str) -> dict[str, Any]:
+    value = body.parameters[name]
+    data = {"value": value.value, "unit": body.unit(name), "fixed": value.fixed}
+    return data | _error(value)
+
+
+def _error(value: Value) -> dict[str, float]:
+    return {"stderr": value.stderr} if math.isfinite(value.stderr) else {}
+
+
+def model_from(
+    content: Any,
+    known: Mapping[str, Effect],
+    where: str,
+    *,
+    may_take: Mapping[str, Effect] | None = None,
+) -> Model:
+    """The model of data that `model_data` wrote.
+
+    known: effects by name;  where: place of the data in their file, for messages
+    may_take: the effects that may be added to the model; None: all that are known
+    raises ExperimentError: the data are no model, or an effect is unknown
+    """
+    if not isinstance(content, dict):
+        raise ExperimentError(f"{where}: found {describe_toml_value(content)}, expected a table")
+    bodies, effects = {}, with_block_effects(known)
+    shifts = Table(content, where).table(RECORD_SHIFT) if RECORD_SHIFT in content else None
+    links = _links_from(content.get(LINKS, []), f"{where}.{LINKS}")
+    content = {n: body for n, body in content.items() if n not in (RECORD_SHIFT, LINKS)}
+    of_arm = bool(content) and not content.keys() & {*ONE_BODY, *TWO_BODIES}
+    read = joints_from if of_arm else bodies_from
+    for place, described in read(Table(content, where)).items():
+        for name in described.effects:
+            known_effect(name, effects, where=f"{described.where}.effects")
+        bodies[place] = body_of(described, effects)
+    late = {} if shifts is None else _shifts_from(shifts)
+    return Model(bodies, known if may_take is None else may_take, late, links)
+
+
+def _links_from(entry: object, where: str) -> tuple[float, ...]:
+    """The base parameters of an arm, in SI.
+
+    raises ExperimentError: the entry is no list of finite numbers
+    """
+    if isinstance(entry, list) and all(
+        isinstance(x, int | float) and not isinstance(x, bool) and math.isfinite(x) for x in entry
+    ):
+        return tuple(map(float, entry))
+    raise ExperimentError(f"{where}: expected a list of finite numbers")
+
+
+def _shifts_from(shifts: Table) -> dict[str, Value]:
+    """The shifts of the records (s) by log."""
+    tables = {place: shifts.table(place) for place in shifts.content}
+    return {
+        place: Value(
+            table.number("value"),
+            table.flag("fixed", False),
+            math.nan if (error := table.number_or_none("stderr")) is None else error,
+        )
+        for place, table in tables.items()
+    }
+
+
+def known_effect(name: str, known: Mapping[str, Effect], *, where: str) -> Effect:
+    """The effect of that name.
+
+    raises ExperimentError: the name is unknown; the message asks for the file of a user's effect
+    """
+    if name not in known:
+        raise ExperimentError(
+            f"{where}: no effect {quote(name)}{did_you_mean(name, known)}; "
+            "if it is your own, give its file with --effect FILE"
+        )
+    return known[name]

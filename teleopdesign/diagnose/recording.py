@@ -1,0 +1,151 @@
+"""The recording that a diagnosis belongs to: read and prepared when it is first needed.
+
+From memory and from an answer file the same is computed, by the models that the diagnosis states.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+from ..base.errors import ExperimentError, did_you_mean, quote
+from ..measurement.experiment import Experiment, load_experiment
+from ..measurement.prepare import Prepared
+from ..model import Model
+from .effort import EFFORTS
+from .fingerprint import Fingerprint, bodies_text
+from .fit import Fit, estimate
+from .other_motion import with_other_motions
+from .parts import PreparedParts, isolate_joint, prepare_parts, with_bodies_of
+from .search_plan import cut_to_windows
+
+
+@dataclass(frozen=True, eq=False)
+class DiagnosedRecording:
+    """The experiment of a diagnosis, and its records prepared for comparison.
+
+    stated: the experiment; None: it is loaded from the folder
+    folder: of the experiment, relative to the answer file;  file: the answer file
+    fingerprint: of the experiment that the answer belongs to; None: not known
+    bandwidth: Hz; None: the experiment's
+    model: the final model: an arm's links are prepared with the inertias of its bodies
+    other_motion: joint -> the joint whose motion is its channel `other_position`
+    whole, joint: of the arm of which this is one joint; None, "": of the whole experiment
+    """
+
+    stated: Experiment | None = None
+    folder: str | None = None
+    file: str = ""
+    fingerprint: Fingerprint | None = None
+    bandwidth: float | None = None
+    model: Model | None = None
+    other_motion: Mapping[str, str] = field(default_factory=dict)
+    whole: DiagnosedRecording | None = None
+    joint: str = ""
+
+    @cached_property
+    def experiment(self) -> Experiment:
+        """The experiment; of one joint: with the channels of this joint alone.
+
+        raises ExperimentError: it is nowhere, or another one than that of the answer
+        """
+        if self.whole is not None:
+            return isolate_joint(self.whole.experiment, self.joint)
+        experiment = self.stated if self.stated is not None else load_experiment(self.place)
+        self.require(experiment)
+        return experiment
+
+    @property
+    def place(self) -> Path:
+        """The folder of the experiment.
+
+        raises ExperimentError: an answer of an earlier version names no folder, or the folder is
+            absent
+        """
+        if self.folder is None:
+            raise ExperimentError(
+                f"{self.file}: does not say where its records are: give the folder of its "
+                f"experiment, and --answer {self.file}"
+            )
+        place = Path(self.file).parent / self.folder
+        if not place.is_dir():
+            raise ExperimentError(
+                f"{self.file}: its experiment was in {quote(self.folder)}, found no such folder: "
+                f"give the folder, and --answer {self.file}"
+            )
+        return place
+
+    def require(self, experiment: Experiment) -> None:
+        """Refuse another experiment than that of the answer, or other bodies than its model has.
+
+        raises ExperimentError: with the difference in words
+        """
+        differs = None if self.fingerprint is None else self.fingerprint.difference(experiment)
+        if differs is not None:
+            raise ExperimentError(
+                f"{self.file}: is not an answer to {experiment.folder.name} but to another "
+                f"experiment: {differs}"
+            )
+        if self.model is None:
+            return
+        axes = {name: body.axis for name, body in self.model.bodies.items()}
+        expected = {name: body.axis for name, body in experiment.bodies.items()}
+        if axes != expected:
+            raise ExperimentError(
+                f"{self.file}: models: found {bodies_text(axes)}, expected "
+                f"{bodies_text(expected)} as in {experiment.folder.name}"
+            )
+
+    @property
+    def prepared(self) -> Prepared:
+        """The records, prepared for comparison."""
+        return (self.whole or self).parts.parts[self.joint]
+
+    @cached_property
+    def parts(self) -> PreparedParts:
+        """The records of all parts; joints of an arm with the bodies of the final model.
+
+        raises ExperimentError: an arm with other joints or links than the model
+        """
+        prepared, model = prepare_parts(self.experiment, bandwidth=self.bandwidth), self.model
+        if model is None:
+            return prepared
+        if len(model.links) != len(prepared.initial):
+            raise ExperimentError(
+                f"{self.file}: models.ladder: found {len(model.links)} base parameters, expected "
+                f"{len(prepared.initial)} as the links of {self.experiment.folder.name} have"
+            )
+        for joint in (*self.other_motion, *self.other_motion.values()):
+            if joint not in prepared.parts:
+                raise ExperimentError(
+                    f"{self.file}: other_motion: no joint {quote(joint)}, has "
+                    f"{', '.join(prepared.parts)}{did_you_mean(joint, prepared.parts)}"
+                )
+        return with_other_motions(with_bodies_of(model, prepared), self.other_motion)
+
+    @cached_property
+    def searched(self) -> Prepared:
+        """The windows of the records that models are fitted on; those of a joint are whole."""
+        return self.prepared if self.whole is not None else cut_to_windows(self.prepared)
+
+    def evaluate(self, model: Model) -> Fit:
+        """A fit with the residuals of a model and their derivatives; no parameter changes.
+
+        Without check records, the held-out blocks are fitted from these values, as by `estimate`.
+        """
+        return replace(estimate(model, self.searched, effort=EFFORTS.stay), model=model)
+
+    def of_joint(self, joint: str, model: Model | None) -> DiagnosedRecording:
+        """The recording of one joint of an arm; model: the final model of the joint."""
+        return replace(self, model=model, whole=self, joint=joint)
+
+    def __getstate__(self) -> dict[str, object]:
+        state = {f: self.__dict__[f] for f in self.__dataclass_fields__}
+        if self.stated is None and "experiment" in self.__dict__ and self.whole is None:
+            state["stated"] = self.__dict__["experiment"]
+        return state
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        self.__dict__.update(state)

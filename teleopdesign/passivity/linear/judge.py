@@ -1,0 +1,216 @@
+"""Claims about a family at a point: passive at its ports, or absolutely stable between any two.
+
+Without dead times the answer is exact: a certificate that the checker accepts, or a motion. With
+dead times a margin over frequency is evidence, if every mode decays with dampers at the ports: then
+(Z - 1)/(Z + 1) is analytic where Re s >= 0, and the axis decides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import sympy as sp
+
+from ...base.errors import ModelError
+from ...derive.effort import TooMuchEffort, bounded_effort
+from ...derive.polynomials import X, as_poly, where_negative
+from ..claims.certificate import (
+    Certificate,
+    absolute_stability_certificate,
+    positive_real_certificate,
+)
+from ..claims.claim import TOO_MUCH, Claim, Evidence, Proof, Refutation, Unknown, Verdict
+from ..search.growing_wave import GrowingWave, wave_of
+from ..search.points import candidates, near_axis, near_poles, resonances
+from ..search.wave_search import select_fastest, wave_out_of
+from ..two_port.growing_mode import growing_mode
+from ..two_port.termination import far_termination
+from .box_certificates import stability_certificate
+from .conditions import axis_conditions, is_shown
+from .ends import fails_at_ends, holds_at
+from .excess import damping_excess, describe_equality
+from .family import Family
+from .gaussian import round_point
+from .impedance import readable
+from .signs import Signs
+from .sweep import least_over, margin_of
+from .unseen import explain_unseen
+
+_METHODS = {
+    "passive": "the positive-real test of the matrix",
+    "absolutely stable": "Llewellyn's criterion, its inequalities for all frequencies, and the "
+    "residues at poles on the axis, compared exactly",
+}
+#: Hz: range of a sweep, and its frequencies; those across resonances are added
+_SWEEP = (1e-4, 1e4, 4001)
+_SWEPT = (
+    "margin over 4001 frequencies from 1e-4 to 1e4 Hz and across resonances, refined at the "
+    "lowest; every mode with dampers at the ports, and the ends of the axis"
+)
+#: points with a termination that are tested for a wave
+_CANDIDATES = 40
+#: the reason of an unknown claim, where the test fails and no wave is resolved in double precision
+NO_WAVE = "the positive-real test fails, but no wave that takes energy out was found"
+
+
+def passive_claim(family: Family) -> Claim:
+    """Is a device passive: does no motion of all its ports at once take energy out?
+
+    returns: proved, refuted by a growing wave, unknown, or evidence over frequency (dead times)
+    """
+    shown = _write_out(family)
+    statement = {
+        1: f"Z(s) = {shown} is passive at its port (force, velocity)",
+        2: f"the two-port [{shown}] is passive",
+    }.get(family.size, f"the {family.size} ports of [{shown}] are passive together")
+    return _judge(family, "passive", statement)
+
+
+def stable_claim(family: Family) -> Claim:
+    """Is a two-port stable between any passive terminations?
+
+    returns: proved; refuted by a motion that grows between two terminations that the verdict names,
+        or, with dead times, by a wave with which one port releases energy while the other has the
+        termination that the verdict names; evidence over frequency (with dead times); or unknown
+    """
+    statement = f"the two-port [{_write_out(family)}] is absolutely stable"
+    return _judge(family, "absolutely stable", statement)
+
+
+def _write_out(family: Family) -> str:
+    rows = (family.z if family.written is None else family.written).tolist()
+    return "; ".join(", ".join(map(readable, row)) for row in rows)
+
+
+def _judge(family: Family, claim: str, statement: str) -> Claim:
+    judge = _judge_late if family.times else _judge_exactly
+    try:
+        with bounded_effort():
+            verdict = judge(family, claim, statement)
+    except TooMuchEffort as problem:
+        return Claim(statement, Unknown(str(problem)))
+    if verdict.holds and family.hides and family.undecayed:
+        verdict = Unknown(explain_unseen(family.undecayed))
+    return Claim(statement, verdict)
+
+
+def _judge_exactly(family: Family, claim: str, statement: str) -> Verdict:
+    rows, make = family.z.tolist(), absolute_stability_certificate
+    if claim == "passive":
+        rows = (family.z if family.written is None else family.written).tolist()
+        make = positive_real_certificate
+    method, margin, unit, equality = _METHODS[claim], float("nan"), "", ""
+    try:
+        certificate = make(statement, rows)
+        certificate.check()
+    except (ModelError, ValueError):  # Python writes no integers of more than 4300 digits
+        certificate = None
+        if not is_shown(Signs(()), family, claim):
+            return _refute(family, claim)
+    if family.size == 1:
+        excess = damping_excess(family.impedance)
+        method, margin, unit = "the positive-real test", float(excess.lower), "N s/m"
+        equality = describe_equality(family.impedance, excess)
+    if certificate is None:
+        return Evidence(True, f"{method}: {TOO_MUCH}", margin, unit)
+    return Proof(method, _with_modes(family, certificate), margin, unit, equality)
+
+
+def _with_modes(family: Family, certificate: Certificate) -> tuple[Certificate, ...]:
+    """The certificate, and one of the modes that no port shows, if there are any that decay."""
+    if not family.hides or family.undecayed:
+        return (certificate,)
+    more = stability_certificate("every mode decays with dampers at the ports", family.held)
+    return (certificate, more)
+
+
+def _refute(family: Family, claim: str) -> Verdict:
+    if claim == "passive":
+        wave = wave_out_of(family)
+        if wave is None:
+            return Unknown(NO_WAVE)
+        return Refutation(_describe_wave(wave), wave)
+    why = _describe_failure(family)
+    mode = growing_mode(family)
+    if mode is None:
+        return Unknown(f"{why}; no termination that makes it grow was found")
+    first, second = mode.terminations
+    method = f"{why}; port 1 {first}, port 2 {second}, it grows at {float(mode.rate):.4g} 1/s"
+    if mode.frequency:
+        method += f" and swings at {float(mode.frequency):.4g} rad/s"
+    return Refutation(method, mode)
+
+
+def _describe_wave(wave: GrowingWave) -> str:
+    a, w = float(wave.rate), float(wave.frequency)
+    if len(wave.velocity) > 1 or wave.impedance.has(sp.exp):
+        return f"a growing wave at {w / (2 * np.pi):.4g} Hz"
+    value = wave.value[0, 0].real
+    return f"Re Z = {value:.4g} N s/m at s = {a:.4g} + {w:.4g} j, a growing wave"
+
+
+def _describe_failure(family: Family) -> str:
+    """Words for the condition of absolute stability that fails."""
+    names = ("Re z11 < 0", "Re z22 < 0", *["Llewellyn's inequality fails"] * 2)
+    tests = axis_conditions(family.n, family.d, "absolutely stable")
+    for name, p in zip(names, tests, strict=True):
+        if places := where_negative(as_poly(p, X)):
+            return f"{name} beside {float(min(places)) ** 0.5:.4g} rad/s"
+    return "a mode does not decay between dampers"
+
+
+def _judge_late(family: Family, claim: str, statement: str) -> Verdict:
+    """With dead times: evidence, a motion, or unknown."""
+    margin = margin_of(claim)
+    grid = np.unique(np.concatenate([np.geomspace(*_SWEEP), resonances(family)]))
+    lowest, least, values = least_over(
+        lambda f: margin(family.at(2j * np.pi * f)), grid, rounds=3, points=401
+    )
+    negative = grid[np.flatnonzero(values < 0)]
+    frequencies = [lowest, *map(float, negative[:: max(1, len(negative) // 12)])]
+    unit = "N s/m" if claim == "passive" else "(relative)"
+    if least < 0 and all(holds_at(family, f, claim) for f in frequencies):
+        least = 0.0  # what is below zero there is rounding
+    why = "the inequality fails" if least < 0 else ""
+    try:
+        if not why and family.undecayed:
+            why = "with its dead times a mode does not decay between dampers"
+    except ModelError as problem:
+        why = str(problem)
+    if not why and (ends := fails_at_ends(family, claim)):
+        why, frequencies = f"the inequality fails {ends[0]}", [*frequencies, ends[1]]
+    if not why:
+        return Evidence(True, _SWEPT, least, unit)
+    if claim == "passive":
+        wave = wave_out_of(family, frequencies)
+        if wave is not None:
+            return Refutation(_describe_wave(wave), wave)
+        return Unknown(f"{why}; no wave that takes energy out was found")
+    held = dict(_terminated_waves(family, frequencies))
+    wave = select_fastest(held)
+    if wave is not None:
+        return Refutation(f"port 2 {held[wave]}, a growing wave", wave)
+    return Unknown(f"{why}; no termination that makes it grow was found")
+
+
+def _terminated_waves(
+    family: Family, frequencies: Sequence[float]
+) -> Iterator[tuple[GrowingWave, str]]:
+    """Waves that take energy out of one port while the other has a passive termination, in words.
+
+    Port 2 "moved": port 1 has the termination. Three waves at most.
+    """
+    points = np.concatenate([near_poles(family), near_axis(frequencies, range(1, 34))])
+    z, count = family.at(points), 0
+    values = [z[:, 0, 0], z[:, 0, 1], z[:, 1, 0], z[:, 1, 1]]
+    for s, second, turned in candidates(values, points)[:_CANDIDATES]:
+        far = far_termination(s, second)
+        z11, z12, z21, z22 = reversed(list(family.z)) if turned else family.z
+        at_port = z11 if far.clamped else z11 - z12 * z21 / (z22 + far.expression)
+        wave = wave_of(sp.ImmutableMatrix([[at_port]]), *round_point(s))
+        if wave is not None and wave.energy > 0:
+            yield wave, f"moved, port 1 {far}" if turned else f"{far}"
+            count += 1
+            if count == 3:
+                return

@@ -1,0 +1,145 @@
+"""Points s of the right half plane at which a search for growing motions looks, 1/s."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from ...derive.polynomials import roots_of
+from ..linear.family import Family
+
+#: powers of 1/2 by which points approach the axis or a pole, or (reversed) go far out
+_CLOSER = tuple(range(1, 34, 2))
+#: places across a resonance, in half widths from its frequency: the real part of an entry changes
+#: its sign within the first half width
+_ACROSS = (-30.0, -10.0, -3.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 3.0, 10.0, 30.0)
+
+
+def zeros_and_poles(family: Family) -> tuple[np.ndarray, np.ndarray]:
+    """Zeros and poles of the parts of all entries, one part for each dead time; without values."""
+    above, below = [np.zeros(0)], [np.zeros(0)]
+    whole = _parts(family.d)
+    for row in family.n:
+        for entry in row:
+            for p in _parts(entry):
+                for q in whole:
+                    top, bottom = p.cancel(q)
+                    above.append(roots_of(top))
+                    below.append(roots_of(bottom))
+    return np.concatenate(above), np.concatenate(below)
+
+
+def _parts(p: Any) -> list[Any]:
+    """Coefficients of the powers of dead times, polynomials in s alone."""
+    made: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
+    for k, c in p.items():
+        made.setdefault(k[1:], {})[(k[0], *(0 for _ in k[1:]))] = c
+    return [p.ring(part) for part in made.values()]
+
+
+def resonances(family: Family) -> np.ndarray:
+    """Frequencies across the width of each resonance, Hz, (n,): a grid alone may miss one.
+
+    Poles on the axis have no width and are left out.
+    """
+    _, poles = zeros_and_poles(family)
+    poles = poles[poles.real < -1e-12 * np.abs(poles)]
+    across = poles.imag[:, None] + poles.real[:, None] * np.array(_ACROSS)
+    f = across.ravel() / (2 * np.pi)
+    return np.asarray(f[(f > 0) & np.isfinite(f)])
+
+
+def near_poles(family: Family) -> np.ndarray:
+    """Points beside poles, and on a grid from below the slowest root to above the fastest, (n,)."""
+    zeros, poles = zeros_and_poles(family)
+    sizes = np.abs([r for r in (*poles, *zeros) if r != 0] or [1.0])
+    low, high = sizes.min(), sizes.max()
+    turns = np.exp(1j * np.pi / 4 * np.arange(8))
+    points = [p + abs(p) * 2.0**-k * turn for p in poles for k in _CLOSER for turn in turns]
+    for k in _CLOSER:
+        for turn in np.exp(1j * np.pi / 2 * np.array([0, 0.5, 0.9])):
+            points += [low * 2.0**-k * turn, high * 2.0**k * turn]
+    for size in np.geomspace(low / 4, high * 4, 25):
+        points += list(size * np.exp(1j * np.linspace(0, 0.46 * np.pi, 12)))
+    return np.array(list(_growing(points)))
+
+
+def _growing(points: Sequence[complex]) -> Iterator[complex]:
+    for s in points:
+        imaginary = s.imag if abs(s.imag) > 1e-9 * abs(s) else 0.0  # rounding: no swing
+        if s.real > 1e-12 * abs(s) and imaginary >= 0:
+            yield complex(s.real, imaginary)
+
+
+def near_axis(frequencies: Sequence[float], closer: Sequence[int]) -> np.ndarray:
+    """Points beside the axis at frequencies (Hz), at these powers of 1/2 of their frequency."""
+    w = 2 * np.pi * np.asarray(frequencies, dtype=float)
+    return np.asarray((w[:, None] * (2.0 ** -np.array(closer, dtype=float) + 1j)).ravel())
+
+
+def candidates(
+    values: Sequence[np.ndarray], points: np.ndarray
+) -> list[tuple[complex, complex, bool]]:
+    """Points at which two passive terminations seem to make a two-port grow, the best one first.
+
+    At such a point the near port with its termination -z_in(s) would grow, and -z_in(s) is a value
+    that a passive termination can have. Numerical.
+
+    values: z11, z12, z21, z22 at each point, each (n,);  points: s, 1/s, (n,)
+    returns: (s, value of the far termination, whether the far port is port 1)
+    """
+    z11, z12, z21, z22 = values
+    with np.errstate(all="ignore"):
+        loop = z12 * z21
+    scored = [
+        *_score_points(z11, loop, z22, points, False),
+        *_score_points(z22, loop, z11, points, True),
+    ]
+    scored.sort(key=lambda one: -one[0])
+    return [one[1:] for one in scored]
+
+
+def _score_points(
+    z11: np.ndarray, loop: np.ndarray, z22: np.ndarray, points: np.ndarray, turned: bool
+) -> list[tuple[float, complex, complex, bool]]:
+    """The best far termination at each point, with its score.
+
+    The score says how far -z_in lies inside the values of passive terminations, times the growth
+    relative to abs(s). turned: the far port is port 1
+    """
+    with np.errstate(all="ignore"):
+        half = np.angle(points)
+        sizes = 10.0 ** np.array(sorted(np.arange(-9, 9.1, 0.5), key=abs))
+        turns = np.array([-1, -0.5, 0, 0.5, 1])
+        size = np.where(z22 == 0, 1, np.abs(z22))[:, None, None] * sizes[None, :, None]
+        grid = size * np.exp(1j * half[:, None, None] * turns[None, None, :])
+        # the plain ones stand first: of equals, the first is taken
+        best = _best_far(loop, z22, points)
+        held = np.column_stack([0 * points, best, grid.reshape(len(points), -1)])
+        near = np.column_stack([-z11, loop[:, None] / (z22[:, None] + held) - z11[:, None]])
+        second = np.column_stack([np.full(len(points), np.inf), held])
+        inside = np.where(half[:, None] > 0, 1 - np.abs(np.angle(near)) / half[:, None], near.real)
+        inside = np.where(np.isfinite(near) & (near != 0), inside, -1)
+        inside = np.where(half[:, None] > 0, inside, np.sign(inside))
+        score = np.minimum(inside, 0.2) * (points.real / np.abs(points))[:, None]
+    scores = []
+    for i in np.flatnonzero((score > 0).any(axis=1)):
+        k = int(np.argmax(score[i]))
+        scores.append((float(score[i, k]), complex(points[i]), complex(second[i, k]), turned))
+    return scores
+
+
+def _best_far(loop: np.ndarray, z22: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """A far termination Z2 for which Re(z12 z21/(z22 + Z2)) is about as large as possible.
+
+    z22 + Z2 = r (1 + j tan(arg(L)/2)), with r as small as a passive Z2 lets it be
+    """
+    slope = np.tan(np.angle(loop) / 2)
+    share = s.real / np.maximum(s.imag, 1e-300)
+    r = z22.real
+    for _ in range(4):
+        r = z22.real + np.abs(r * slope - z22.imag) * share
+    second = r - z22.real + 1j * (r * slope - z22.imag)
+    return np.where(np.isfinite(second) & (s.imag > 0), second, 0)

@@ -1,0 +1,3 @@
+"""How diagnoses and comparisons look."""
+
+from ..figures import diagnosis as diagnosis

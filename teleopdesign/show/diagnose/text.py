@@ -1,0 +1,296 @@
+"""A diagnosis in words: the ladder as a table, and the verdict as a sentence."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from ...base.sentences import with_standard_error
+from ...base.shown import html_table
+from ...base.units import unit_after_number
+from ...blocks import Value
+from ...diagnose.adequacy import records_differ
+from ...diagnose.criteria import CRITERIA
+from ...diagnose.noise_floor import say_floors
+from ...diagnose.open_parameters import open_parameters_line
+from ..registry import shows
+
+if TYPE_CHECKING:
+    from ...diagnose.diagnosis import Diagnosis
+    from ...diagnose.statements import LadderRow
+
+#: relative difference from which the error at the command is stated in addition
+DIFFERENT = 0.02
+
+
+def percent(error: float) -> str:
+    """An error in percent; "unknown" where it is not finite: the model is blind everywhere."""
+    return f"{100 * error:.2f} %" if math.isfinite(error) else "unknown"
+
+
+@shows("table")
+def ladder_html(diagnosis: Diagnosis) -> str:
+    """The ladder as an HTML table for a notebook, with the verdict."""
+    rows = [
+        (
+            "(your model, re-estimated)" if r.added is None else f"+ {r.title}",
+            f"{100 * r.fit_error:.2f} %",
+            f"{100 * r.check_error:.2f} %",
+        )
+        for r in diagnosis.rungs
+    ]
+    rows.append(("noise floor", "", f"{100 * diagnosis.floor.value:.2f} %"))
+    sentences = (f"{joint}: {sentence(one)}" for joint, one in diagnosis.joints.items())
+    note = "; ".join(sentences) or sentence(diagnosis)
+    return html_table("Diagnosis", ("added", "fit error", "check error"), rows, note=note)
+
+
+@shows("text")
+def ladder_text(diagnosis: Diagnosis) -> str:
+    """The ladder as a table, with parameters, noise floor and verdict."""
+    lines = [f"{'added':<42}{'fit error':>10}{'check error':>13}"]
+    for row in diagnosis.rungs:
+        name = "(your model, re-estimated)" if row.added is None else f"+ {row.title}"
+        lines.append(f"{name:<42}{100 * row.fit_error:>9.2f}%{100 * row.check_error:>12.2f}%")
+        if row.added is not None:
+            lines += _describe_addition(diagnosis, row)
+    if diagnosis.joints:
+        return "\n".join([*lines, *_lines_of_joints(diagnosis)])
+    lines += [str(offset) for offset in diagnosis.offsets]
+    lines += [str(shift) for shift in diagnosis.record_shift.values()]
+    lines.append(
+        f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
+        f"  ({diagnosis.floor.source})"
+    )
+    source = f" ({diagnosis.bandwidth_source})" if diagnosis.bandwidth_source else ""
+    lines.append(f"compared up to {diagnosis.bandwidth:.3g} Hz{source}")
+    if diagnosis.left > CRITERIA.countable:
+        lines.append(
+            f"{'':<42}the floor contains no noise of the force: state `noise` at the channel"
+        )
+    lines += [*_lines_of_rest(diagnosis), *_lines_not_accepted(diagnosis)]
+    lines += [f"set aside: {one}" for one in diagnosis.set_aside]
+    lines += [f"left out: {words}" for words in diagnosis.left_out]
+    if records_differ(diagnosis.after):
+        lines.append(records_line(diagnosis))
+    lines += diagnosis.remarks
+    if diagnosis.verdict == "model_adequate" and (line := open_parameters_line(diagnosis.model)):
+        lines.append(line)
+    return "\n".join([*lines, "", sentence(diagnosis)])
+
+
+def _lines_of_joints(diagnosis: Diagnosis) -> list[str]:
+    """What follows the ladder of an arm: errors of each joint, and what is said of it."""
+    lines = [f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%", ""]
+    lines.append(f"{'joint':<20}{'before':>10}{'after':>10}{'floor':>10}")
+    for joint, one in diagnosis.joints.items():
+        ends = [row.joints[joint].check_error for row in (diagnosis.before, diagnosis.after)]
+        shown = "".join(f"{100 * e:>9.2f}%" for e in (*ends, one.floor.value))
+        lines.append(f"{joint:<20}{shown}")
+    for joint, one in diagnosis.joints.items():
+        more = _lines_not_accepted(one) if one.more_is_missing else []
+        rest = [*map(str, one.record_shift.values()), *_lines_of_rest(one), *more]
+        rest += [f"set aside: {aside}" for aside in one.set_aside]
+        lines += ["", f"{joint}: {sentence(one)}", *(f"  {line}" for line in rest)]
+    if diagnosis.left_out:
+        lines += ["", *(f"left out: {words}" for words in diagnosis.left_out)]
+    names = ", ".join(map(str, diagnosis.missing))
+    return [*lines, "", f"verdict: {diagnosis.verdict}{': ' + names if names else ''}"]
+
+
+def _lines_of_rest(diagnosis: Diagnosis) -> list[str]:
+    """What the final model leaves: near reversals, what trees learn of it, what repeats."""
+    lines = []
+    if (near := diagnosis.near_reversals) is not None:
+        lines.append(f"check error {near}")
+    if diagnosis.learnable is not None:
+        lines.append(f"black box: {diagnosis.learnable}")
+    if diagnosis.repeats is not None:
+        lines.append(f"repeats: {diagnosis.repeats}")
+    return lines
+
+
+def _lines_not_accepted(diagnosis: Diagnosis) -> list[str]:
+    """The candidates that leave clearly less than the final model, each with the reason."""
+    return [
+        f"refused: {one.candidate} ({percent(one.check_error)}; at the command "
+        f"{percent(one.check_error_at_command)}): {one.reason}"
+        if one.why == "refused"
+        else f"not determined: {one.candidate} leaves least ({percent(one.check_error)}), but "
+        f"{one.reason}"
+        for one in diagnosis.not_accepted
+    ]
+
+
+def _describe_addition(diagnosis: Diagnosis, row: LadderRow) -> list[str]:
+    """Lines on the effect that a row added: its parameters, and other effects that it could be."""
+    added = row.added
+    assert added is not None
+    if diagnosis.joints:  # its joint says more of it
+        diagnosis = diagnosis.joints[added.at]
+        row = next(r for r in diagnosis.rungs if r.added == added)
+    model, lines = diagnosis.model, []
+    for p in added.effect.parameters:
+        full = f"{added.at}.{added.effect.name}.{p}"
+        bound = "  at its bound" if full in diagnosis.at_bound else ""
+        text = _estimate_text(model.parameters[full], model.unit(full))
+        lines.append(f"      {p} = {text}{bound}")
+    if (at_command := command_error_text(row)) is not None:
+        lines.append(f"      {at_command}")
+    if row.alternatives:
+        others = ", ".join(str(one.candidate) for one in row.alternatives)
+        lines.append(f"      equivalent on these records: {others}")
+    if (could_be := could_be_text(row, named=row.named or bool(row.alternatives))) is not None:
+        lines.append(f"      {could_be}")
+    lines += [
+        f"      not determined: {one.sentence}"
+        for one in diagnosis.undetermined
+        if one.candidate == added
+    ]
+    return lines
+
+
+def _estimate_text(value: Value, unit: str) -> str:
+    """A value with its standard error; without one, it is called not determined."""
+    text = f"{with_standard_error(value.value, value.stderr)}{unit_after_number(unit)}"
+    if value.fixed or math.isfinite(value.stderr):
+        return text
+    return f"{text}, not determined by these records"
+
+
+def command_error_text(row: LadderRow) -> str | None:
+    """The error at the command and the blind share; None where both add nothing."""
+    error, blind = row.check_error_at_command, row.blind
+    if abs(error - row.check_error) <= DIFFERENT * row.check_error and blind == 0.0:
+        return None
+    undefined = f", undefined in {100 * blind:.2g} % of the motion" if blind else ""
+    return f"check error at the command: {percent(error)}{undefined}"
+
+
+def could_be_text(row: LadderRow, *, named: bool = True) -> str | None:
+    """Other effects that a row's could be; None where none need be named.
+
+    They are named where the model before left only noise, or the row's effect is not named.
+    """
+    if row.could_be is None:
+        return None
+    others = ", ".join(map(str, row.could_be))
+    if named:
+        others = others or "none of the other candidates"
+        return f"without this effect the model leaves only noise; other possible effects: {others}"
+    also = f"other possible effects: {others}" if others else "no other candidate explains as much"
+    return f"unexplained: this effect is less likely than not; {also}"
+
+
+def records_line(diagnosis: Diagnosis) -> str:
+    """A sentence that the check error exceeds the fit error, with the likely cause."""
+    after, on_all = diagnosis.after, diagnosis.on_all_records
+    ratio = after.check_error / after.fit_error
+    if diagnosis.held_out:
+        return (
+            f"blocks: the error on blocks that are left out of the fit in turn is {ratio:.2g} "
+            "times that on the fit: the other blocks do not determine the parameters. Record each "
+            "motion twice"
+        )
+    line = f"records: the error on the check records is {ratio:.2g} times that on the fit records"
+    if on_all is not None and on_all < 0.5 * after.check_error:
+        return (
+            f"{line}. A fit to all records leaves {100 * on_all:.3g} % of the check records: the "
+            "fit records alone do not determine the parameters. Use a record that moves like the "
+            "check records for the fit, too"
+        )
+    return (
+        f"{line}: the machine was not the same in both (friction, temperature, load), or moved "
+        "differently"
+    )
+
+
+def floors_apart(left: float, without: float) -> tuple[str, str]:
+    """Two errors in noise floors, with as many decimals as show which one is smaller."""
+    if left > CRITERIA.countable:
+        return say_floors(left), say_floors(without)
+    digits = next((d for d in (1, 2, 3) if f"{left:.{d}f}" != f"{without:.{d}f}"), 4)
+    return f"{left:.{digits}f}", f"{without:.{digits}f}"
+
+
+def sentence(diagnosis: Diagnosis) -> str:
+    """The verdict of a diagnosis in words."""
+    rest = _rest(diagnosis)
+    if diagnosis.verdict == "model_adequate":
+        noise = f" The remaining error is noise ({diagnosis.left:.2f} noise floors)."
+        return f"verdict: model_adequate.{rest or noise}"
+    if diagnosis.verdict == "effects_missing":
+        return f"verdict: effects_missing: {_named_effects(diagnosis)}{rest}"
+    left, added = say_floors(diagnosis.left), [r for r in diagnosis.rungs if r.added is not None]
+    names = ", ".join(r.title for r in added)
+    if diagnosis.unlikely:
+        return (
+            f"verdict: undecided, leading candidate {names}: less likely than not, because "
+            f"{left} noise floors are left."
+        )
+    if any(not r.alternatives for r in added):
+        helps = "helps, but explains" if len(added) == 1 else "help, but explain"
+        return (
+            f"verdict: undecided. {names} {helps} less than half of what is missing: "
+            f"{left} noise floors are left."
+        )
+    if diagnosis.groups:
+        names = "; ".join(" or ".join(map(str, g)) for g in diagnosis.groups)
+        return f"verdict: undecided, {names}: these records do not decide.{rest}"
+    if diagnosis.silence:
+        return f"verdict: undecided. {diagnosis.silence}"
+    which = "effect that may be named" if diagnosis.not_accepted else "candidate effect"
+    return (
+        f"verdict: undecided. No {which} explains the {left} noise floors that are left."
+        f"{_nearest(diagnosis)}"
+    )
+
+
+def _named_effects(diagnosis: Diagnosis) -> str:
+    """The effects that are missing, and those that are less likely than not, as a sentence."""
+    added = [r for r in diagnosis.rungs if r.added is not None]
+    names = ", ".join(
+        " or ".join((r.title, *(str(one.candidate) for one in r.alternatives)))
+        for r in added
+        if r.added in diagnosis.missing
+    )
+    less = [r.title for r in added if r.added not in diagnosis.missing]
+    if not less:
+        return f"{names}."
+    describe = "this effect describes" if len(less) == 1 else "these effects describe"
+    return (
+        f"{names}. {', '.join(less)}: less likely than not; the force that {describe} counts as "
+        "unexplained."
+    )
+
+
+def _rest(diagnosis: Diagnosis) -> str:
+    """A sentence on what is left above noise; "": only noise is left."""
+    left = say_floors(diagnosis.left)
+    if (moment := diagnosis.moment) is not None:
+        whole, without = floors_apart(diagnosis.left, moment.without)
+        return (
+            f" The remaining error is {whole} noise floors, but {without} "
+            f"without one moment ({moment})."
+        )
+    if diagnosis.may_be_noise:
+        floor = diagnosis.floor
+        return (
+            f" The remaining error is {left} noise floors of {100 * floor.value:.3g} %. With this "
+            f"model sensor errors leave {100 * floor.drawn:.3g} %: these records do not show "
+            "whether more is missing."
+        )
+    if not diagnosis.more_is_missing:
+        return ""
+    return f" The remaining error is {left} noise floors: more is missing.{_nearest(diagnosis)}"
+
+
+def _nearest(diagnosis: Diagnosis) -> str:
+    """A sentence on the candidate with the least error where none is supported; "": none helps."""
+    near = diagnosis.nearest
+    if near is None:
+        return ""
+    return (
+        f" {near.candidate} comes nearest and would leave {100 * near.check_error:.3g} %: "
+        f"{near.reason or 'on these records this may be chance'}."
+    )
