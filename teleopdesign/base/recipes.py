@@ -35,6 +35,11 @@ def remember(thing: Thing, make: Callable[..., Thing], *arguments: Any) -> Thing
     return thing
 
 
+def maker_of(thing: Any) -> Callable[..., Any] | None:
+    """The function that made the thing, where its recipe is known."""
+    return _RECIPES[thing][0] if thing in _RECIPES else None
+
+
 def recipe(thing: Any) -> tuple[Any, ...]:
     """The return value of `__reduce__` for a frozen dataclass that holds functions.
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from ..effects import Effect
     from ..measurement import Experiment
     from ..model import Model
+    from ..passivity.identified import Basis
     from ..realise.reach import Reach
 
 
@@ -190,13 +191,14 @@ def model_at_place(diagnosis: Diagnosis, source: Path, options: argparse.Namespa
     return model_of_body(diagnosis.model, place)
 
 
-def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Reach | None]:
+def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Reach | None, Basis]:
     """The diagnosed body of an answer (.json), or of a folder, which is diagnosed now and printed.
 
     An answer contains its model, so it needs no folder. With a folder and `--answer`, the model of
     the answer is used with the records of the folder.
 
-    returns: the body, and the range that its records reached; None without records
+    returns: the body, the range that its records reached (None without records), and what limits
+        of its friction rest on
     """
     from ..design.stated_motion import reach_of
     from ..diagnose import load_answer
@@ -204,8 +206,9 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
     if source.suffix == ".json" and not source.is_dir():
         if options.answer is not None:
             raise ExperimentError(f"--answer: found beside {source}, which is an answer itself")
-        model = model_at_place(load_answer(source, effects_by_name(options)), source, options)
-        return next(iter(model.bodies.values())), None
+        diagnosis = load_answer(source, effects_by_name(options))
+        ((place, body),) = model_at_place(diagnosis, source, options).bodies.items()
+        return body, None, basis_of(diagnosis, place)
     experiment = experiment_of(source)
     place = _place(list(experiment.bodies), source, options.body)
     diagnosis = diagnosis_of(experiment, options)
@@ -216,7 +219,28 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
     if diagnosis.joints:
         print(inertia_line(model, place, options))
         experiment = diagnosis.joints[place].experiment
-    return model.bodies[place], reach_of(experiment, place)
+    return model.bodies[place], reach_of(experiment, place), basis_of(diagnosis, place)
+
+
+def basis_of(diagnosis: Diagnosis, place: str) -> Basis:
+    """What limits of the friction of a body rest on.
+
+    An older answer has no friction by cells: the records of its experiment show it, if they are
+    found. An arm's joint has none.
+    """
+    from ..diagnose.friction_cells import friction_cells
+    from ..passivity.identified import Basis
+    from ..realise.friction_cells import FrictionCells
+
+    is_adequate = not diagnosis.more_is_missing
+    cells = diagnosis.friction_cells.get(place, ())
+    if not cells and not is_adequate and not diagnosis.joints:
+        try:
+            cells = friction_cells(diagnosis.model, diagnosis.prepared, place)
+        except ExperimentError:
+            pass  # no records: the limits then say that none is certain
+    shown = FrictionCells(cells) if cells else None
+    return Basis(diagnosis.verdict, diagnosis.left, is_adequate, shown)
 
 
 def _place(bodies: list[str], source: Path, body: str | None) -> str:

@@ -128,7 +128,9 @@ def run(options: argparse.Namespace) -> int:
     from ..passivity.device_claims import margins
     from ..passivity.identified import identify_device
 
-    device = identify_device(*body_of_source(options.source, options))
+    body, reach, basis = body_of_source(options.source, options)
+    print(basis.sentence(body.axis))
+    device = identify_device(body, reach, basis)
     compensator = _choose_compensator(options)
     claims = _settle_claims(options, device, compensator)
     limits = margins(device, compensator)
@@ -136,7 +138,11 @@ def run(options: argparse.Namespace) -> int:
     if options.period is not None and device.damping.low > 0:
         print("\n" + _describe_z_width(device, options.period, options.delay))
     if options.json is not None:
-        content = {"claims": [claim_data(s) for s in claims], "margins": [vars(m) for m in limits]}
+        content = {
+            "basis": basis.sentence(body.axis),
+            "claims": [claim_data(s) for s in claims],
+            "margins": [vars(m) for m in limits],
+        }
         write_json(options.json, content)
     say_written(options.json)
     return 0

@@ -26,12 +26,18 @@ from ._controller import (
     Stage,
     parameter_symbol,
 )
-from ._declarations import broken_declarations, unknown_symbols
+from ._declarations import (
+    broken_declarations,
+    equation_of,
+    has_shape,
+    symbols_of,
+    unknown_symbols,
+)
 from ._exact import exact_decimal, make_exact, resolvent
 from ._from_control import from_control, invert_plant, matrices_of, unit_state
 from ._measured import measured_frequencies, measured_plant
 from ._opaque import calls_in, is_call, opaque_laws
-from ._state_space import sides_of
+from ._state_space import is_of_matrices, sides_of
 
 __all__ = [
     "CONTROLLERS",
@@ -47,13 +53,16 @@ __all__ = [
     "calls_in",
     "catalogue",
     "controller",
+    "equation_of",
     "from_control",
+    "has_shape",
     "make_exact",
     "invert_plant",
     "is_call",
     "laws_that_declare",
     "load_controller",
     "matrices_of",
+    "is_of_matrices",
     "sides_of",
     "measured_frequencies",
     "measured_plant",
@@ -61,6 +70,7 @@ __all__ = [
     "parameter_symbol",
     "resolvent",
     "scheduled_force_feedback",
+    "symbols_of",
     "unit_state",
 ]
 

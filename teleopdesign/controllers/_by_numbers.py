@@ -16,13 +16,13 @@ def has_numbers(stage: Stage) -> bool:
     """Whether the law is a measured response, or has a transfer function in z at a fixed period."""
     if stage.law.response is not None:
         return True
-    return stage.law.shift is not None and stage.values["period"] > 0
+    return stage.law.in_z is not None and stage.values["period"] > 0
 
 
 def is_by_numbers(stage: Stage) -> bool:
     """Whether the law states a transfer function or response, which depends on its input alone."""
     law = stage.law
-    return any(x is not None for x in (law.transfer, law.shift, law.response))
+    return any(x is not None for x in (law.transfer, law.in_z, law.response))
 
 
 def insert_values(stage: Stage, s: sp.Symbol) -> sp.Expr:
@@ -31,11 +31,11 @@ def insert_values(stage: Stage, s: sp.Symbol) -> sp.Expr:
         return stage.law.transfer(stage.values, s)
     if stage.law.response is not None:
         return exact_decimal(stage.values["scale"]) * stage.law.response(s)
-    assert stage.law.shift is not None
+    assert stage.law.in_z is not None
     period, z = exact_decimal(stage.values["period"]), sp.Symbol("z")
     late = sp.exp(-s * period)
     above, below = (
-        sp.Poly(x, z) for x in sp.fraction(sp.together(stage.law.shift(stage.values, z)))
+        sp.Poly(x, z) for x in sp.fraction(sp.together(stage.law.in_z(stage.values, z)))
     )
     # in powers of e^(-s T): those of e^(s T) overflow far out in the right half plane
     order = below.degree()

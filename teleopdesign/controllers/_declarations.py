@@ -1,102 +1,165 @@
-"""Check of the declarations of a control law, on which claims and linear forms depend.
+"""What a control law declares, held against its equations, on which claims and forms depend.
 
-The check is symbolic; whether a law is linear, only a dead time, a smoothed level, a bristle or a
-low-pass. The largest force of a law (`bound`) is a matter of intervals and is not checked here.
+The checks are symbolic: whether a law is linear, only a dead time, a smoothed level, a bristle or a
+low-pass. A stated transfer function, in s or in z, is checked at the values of a stage. The largest
+force of a law (`bound`) is a matter of intervals: see `passivity.declarations`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 
 import sympy as sp
 
+from ..base.errors import ModelError
 from ..effects import delayed, is_linear
 from ._controller import Controller, ControllerEquation, parameter_symbol
-from ._law import SIGNALS, ControlLaw, Stage
+from ._exact import exact_decimal
+from ._law import SIGNALS, Ability, ControlLaw, Stage
+from ._state_space import is_of_matrices
 
 _S = sp.Symbol("s")
+_Symbols = Mapping[str, sp.Symbol]
+#: period of the law as it is written for continuous time, and for a computer of any period
+CONTINUOUS, SAMPLED = sp.S(0), SIGNALS["period"]
 
 
-@lru_cache(maxsize=64)
-def broken_declarations(law: ControlLaw) -> tuple[str, ...]:
-    """Declarations that are wrong for a law in continuous time, in words; () if there are none."""
-    if law.system is not None or law.response is not None or law.shift is not None:
+@lru_cache(maxsize=256)
+def equation_of(law: ControlLaw, period: sp.Expr) -> ControllerEquation | None:
+    """The equations of a law in the block "law", on the symbols of its signals and parameters.
+
+    period: CONTINUOUS, SAMPLED, or a number, s
+    returns: None for a law that is only code or measured, or has no form in continuous time
+    """
+    if law.system is not None or law.response is not None:
+        return None
+    stage = Stage(law, _any_values(law))
+    try:
+        return Controller((stage,)).equation("law", {**SIGNALS, "period": period})
+    except ModelError:
+        if period == 0:
+            return None  # a state exists only in a computer
+        raise
+
+
+def symbols_of(law: ControlLaw) -> _Symbols:
+    """Parameter -> its symbol in `equation_of`."""
+    return {n: parameter_symbol("law", f"{law.name}.{n}") for n in law.parameters}
+
+
+def _any_values(law: ControlLaw) -> dict[str, float]:
+    return {n: p.lower if p.lower > 0 else min(1.0, p.upper) for n, p in law.parameters.items()}
+
+
+@lru_cache(maxsize=256)
+def has_shape(law: ControlLaw, ability: Ability, period: sp.Expr) -> bool:
+    """Whether a law has the shape of an ability that it declares, for all parameters.
+
+    period: CONTINUOUS, or SAMPLED: in a computer of any period
+    """
+    made = equation_of(law, period)
+    return made is not None and _SHAPES[ability](law, made, symbols_of(law))
+
+
+def broken_declarations(law: ControlLaw, stage: Stage | None = None) -> tuple[str, ...]:
+    """Declarations of a law that its equations do not keep, in words; () if there are none.
+
+    Shapes and linearity are those of continuous time.
+
+    stage: with the values for which a stated transfer function is checked; None: some values
+    """
+    if law.system is not None or law.response is not None:
         return ()  # no law that is written down: claims leave these out
-    stage, made = _as_written(law, sp.S(0))
-    symbols = {n: parameter_symbol("law", f"{stage.name}.{n}") for n in law.parameters}
-    checks = {
-        "dead_time, but its output is not its input of that time earlier": (
-            bool(law.dead_time) and made.output != _delay_factor(law, symbols)
-        ),
-        "linear = True, but is not linear in its input, velocity and states": (
-            law.linear and not _keeps_linear(made)
-        ),
-        "a transfer function, but its states have another one": (
-            law.transfer is not None and not law.dead_time and not _keeps_transfer(stage, made)
-        ),
-        "smoothing, but is not bound v/(smoothing + abs(v))": (
-            bool(law.smoothing) and not _keeps_smoothing(law, made.output, symbols)
-        ),
-        "bristle_stiffness, but its law is not that of `dahl`": (
-            bool(law.bristle_stiffness) and not _keeps_bristle(law, made, symbols)
-        ),
-        "filter_bandwidth, but is no low-pass of first order": (
-            bool(law.filter_bandwidth) and not _keeps_bandwidth(law, made, symbols)
-        ),
-    }
-    return tuple(words for words, is_broken in checks.items() if is_broken)
+    if is_of_matrices(law):
+        return ()
+    stage = stage or Stage(law, _any_values(law))
+    broken = [_WORDS[a] for a in _SHAPES if getattr(law, a) and not has_shape(law, a, CONTINUOUS)]
+    if law.linear and not _acts_linearly(law):
+        broken.append("linear = True, but is not linear in its input, velocity and states")
+    if law.transfer is not None and not _keeps_transfer(stage):
+        broken.append("a transfer function, but its states have another one")
+    if law.shift is not None and not _keeps_shift(stage):
+        broken.append("shift, but its steps have another transfer function in z")
+    return tuple(broken)
 
 
 def unknown_symbols(law: ControlLaw) -> list[sp.Symbol]:
-    """Symbols in the output and the rates of a law that are no signal, state or parameter of it."""
-    if law.system is not None or law.response is not None:
-        return []  # no law that is written down
-    stage, made = _as_written(law, SIGNALS["period"])
-    names = (parameter_symbol("law", f"{stage.name}.{n}") for n in law.parameters)
-    known = {*SIGNALS.values(), *made.rates, *names}
-    used = set[sp.Symbol]().union(*(e.free_symbols for e in (made.output, *made.rates.values())))
+    """Symbols in the equations of a law that are no signal, state or parameter of it."""
+    used: set[sp.Symbol] = set()
+    known = {*SIGNALS.values(), *symbols_of(law).values()}
+    for made in (equation_of(law, CONTINUOUS), equation_of(law, SAMPLED)):
+        if made is None:
+            continue
+        known |= {*made.rates, *made.steps}
+        laws = (made.output, *made.rates.values(), *made.steps.values())
+        used = used.union(*(e.free_symbols for e in laws))
     return sorted(used - known, key=str)
 
 
-def _as_written(law: ControlLaw, period: sp.Expr) -> tuple[Stage, ControllerEquation]:
-    """A stage of the law with any values, and its equations in the block "law"."""
-    values = {n: p.lower if p.lower > 0 else 1.0 for n, p in law.parameters.items()}
-    stage = Stage(law, values)
-    return stage, Controller((stage,)).equation("law", {**SIGNALS, "period": period})
-
-
-def _delay_factor(law: ControlLaw, symbols: Mapping[str, sp.Symbol]) -> sp.Expr:
-    return delayed(SIGNALS["input"], symbols[law.dead_time])
-
-
-def _keeps_linear(made: ControllerEquation) -> bool:
+@lru_cache(maxsize=256)
+def _acts_linearly(law: ControlLaw) -> bool:
+    made = equation_of(law, CONTINUOUS)
+    if made is None:
+        return False
     driving = [SIGNALS[n] for n in ("input", "velocity", "travel_rate")]
     return is_linear((made.output, *made.rates.values()), [*driving, *made.rates])
 
 
-def _keeps_transfer(stage: Stage, made: ControllerEquation) -> bool:
+def _keeps_transfer(stage: Stage) -> bool:
     """Whether the stated transfer function, from the input alone, holds at the stage's values."""
-    assert stage.law.transfer is not None
-    numbers = {parameter_symbol("law", f"{stage.name}.{n}"): v for n, v in stage.values.items()}
-    states = sp.solve([_S * x - rate for x, rate in made.rates.items()], *made.rates)
-    output = made.output.subs(states if made.rates else {})
-    stated = stage.law.transfer(stage.values, _S) * SIGNALS["input"]
-    return _is_zero(sp.nsimplify((output - stated).subs(numbers)))
+    made, stated = equation_of(stage.law, CONTINUOUS), stage.law.transfer
+    if made is None or stated is None:
+        return False
+    output = made.output.replace(delayed, lambda signal, time: signal * sp.exp(-_S * time))
+    return _is_response(stage, output, made.rates, _S, stated(stage.values, _S))
 
 
-def _keeps_smoothing(law: ControlLaw, output: sp.Expr, symbols: Mapping[str, sp.Symbol]) -> bool:
+def _keeps_shift(stage: Stage) -> bool:
+    """Whether the stated transfer function in z is that of the steps at the stage's values."""
+    z, stated = sp.Symbol("z"), stage.law.shift
+    made = equation_of(stage.law, SAMPLED)
+    if made is None or stated is None or made.rates or made.before:
+        return False
+    return _is_response(stage, made.output, made.steps, z, stated(stage.values, z))
+
+
+def _is_response(
+    stage: Stage,
+    output: sp.Expr,
+    changes: Mapping[sp.Symbol, sp.Expr],
+    variable: sp.Symbol,
+    stated: sp.Expr,
+) -> bool:
+    """Whether the output is `stated` times the input where `variable` times each state changes it.
+
+    changes: state -> its rate, or its value at the next sample
+    """
+    symbols = symbols_of(stage.law)
+    numbers = {symbols[n]: exact_decimal(v) for n, v in stage.values.items()}
+    output, *after = (sp.sympify(e).subs(numbers) for e in (output, *changes.values()))
+    rows = [variable * x - e for x, e in zip(changes, after, strict=True)]
+    states = sp.solve(rows, *changes) if rows else {}
+    if rows and not isinstance(states, dict):
+        return False
+    return _is_zero(output.subs(states) - sp.sympify(stated) * SIGNALS["input"])
+
+
+def _is_late(law: ControlLaw, made: ControllerEquation, symbols: _Symbols) -> bool:
+    return bool(made.output == delayed(SIGNALS["input"], symbols[law.dead_time]))
+
+
+def _is_smoothed(law: ControlLaw, made: ControllerEquation, symbols: _Symbols) -> bool:
     if not law.bound:
         return False
     v = SIGNALS["velocity"]
     shape = symbols[law.bound] * v / (symbols[law.smoothing] + sp.Abs(v))
-    return _is_zero(output.subs(SIGNALS["speed"], sp.Abs(v)) - shape)
+    return _is_zero(made.output.subs(SIGNALS["speed"], sp.Abs(v)) - shape)
 
 
-def _keeps_bristle(
-    law: ControlLaw, made: ControllerEquation, symbols: Mapping[str, sp.Symbol]
-) -> bool:
-    if len(made.rates) != 1 or not law.bound:
+def _is_bristle(law: ControlLaw, made: ControllerEquation, symbols: _Symbols) -> bool:
+    """Whether the law is that of `dahl`; in a computer with the exact step, which none states."""
+    if len(made.rates) != 1 or made.steps or not law.bound:
         return False
     ((z, rate),), moved = made.rates.items(), SIGNALS["travel_rate"]
     stiffness, level = symbols[law.bristle_stiffness], symbols[law.bound]
@@ -104,13 +167,25 @@ def _keeps_bristle(
     return _is_zero(made.output - stiffness * z) and _is_zero(rate - bent)
 
 
-def _keeps_bandwidth(
-    law: ControlLaw, made: ControllerEquation, symbols: Mapping[str, sp.Symbol]
-) -> bool:
+def _is_low_pass(law: ControlLaw, made: ControllerEquation, symbols: _Symbols) -> bool:
     if list(made.rates) != [made.output]:
         return False
     corner = 2 * sp.pi * symbols[law.filter_bandwidth]
     return _is_zero(made.rates[made.output] - corner * (SIGNALS["input"] - made.output))
+
+
+_SHAPES: Mapping[Ability, Callable[[ControlLaw, ControllerEquation, _Symbols], bool]] = {
+    "dead_time": _is_late,
+    "smoothing": _is_smoothed,
+    "bristle_stiffness": _is_bristle,
+    "filter_bandwidth": _is_low_pass,
+}
+_WORDS: Mapping[Ability, str] = {
+    "dead_time": "dead_time, but its output is not its input of that time earlier",
+    "smoothing": "smoothing, but is not bound v/(smoothing + abs(v))",
+    "bristle_stiffness": "bristle_stiffness, but its law is not that of `dahl`",
+    "filter_bandwidth": "filter_bandwidth, but is no low-pass of first order",
+}
 
 
 def _is_zero(expression: sp.Expr) -> bool:

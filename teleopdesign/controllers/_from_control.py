@@ -93,7 +93,7 @@ def matrices_of(law: object) -> tuple[Array, Array, Array, float, float | None] 
     """
     stages = law.stages if isinstance(law, Controller) else ()
     values = stages[0].values if len(stages) == 1 else {}
-    if not (len(stages) == 1 and stages[0].law.source == "python-control" and "d" in values):
+    if not (len(stages) == 1 and _state_space.is_of_matrices(stages[0].law) and "d" in values):
         return None
     return (*_state_space.as_they_came(values), values.get("period"))
 

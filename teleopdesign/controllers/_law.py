@@ -65,7 +65,8 @@ class ControlLaw:
     takes: "force" if the input must not be the motion itself; "": any input
     transfer(values, s): transfer function from the input, if the states do not determine it
     shift(values, z): transfer function in z of a law that exists only in a computer, stepped each
-        `period` (a parameter of the law, s); its output is held in between
+        `period` (a parameter of the law, s); its output is held in between. A law that is linear,
+        or has no such parameter, has no form in z
     sampled(values, period): the stage that replaces this one in a computer of that period (s);
         None: this stage, with the steps of its states
     system: a python-control system that the law calls; it is only code and has no equation
@@ -131,6 +132,11 @@ class ControlLaw:
 
     def __repr__(self) -> str:
         return f"ControlLaw {self.name or '(no name)'}: {', '.join(self.parameters)}"
+
+    @property
+    def in_z(self) -> Callable[[Mapping[str, float], sp.Symbol], sp.Expr] | None:
+        """The transfer function in z of a law that exists only in a computer; None for others."""
+        return None if self.linear or "period" not in self.parameters else self.shift
 
     def named(self, name: str, text: str) -> ControlLaw:
         """The law under the name of its file, with the file's docstring as its text."""

@@ -16,7 +16,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from ..base.errors import ModelError
-from ..base.recipes import remember
+from ..base.recipes import maker_of, remember
 from ..effects import Parameter
 from ._controller import ControlLaw, ControllerState, Stage, mark_sampled_rate
 from ._exact import exact_decimal, resolvent
@@ -162,6 +162,11 @@ def _law(name: str, form: Form, n: int, discrete: bool) -> ControlLaw:
     )
     made = made.named(name, f"A linear system of order {n} from python-control.")
     return remember(made, _law, name, form, n, discrete)
+
+
+def is_of_matrices(law: ControlLaw) -> bool:
+    """Whether a law was made here, so that its transfer function is that of its own states."""
+    return maker_of(law) is _law
 
 
 def _matrix_law(n: int) -> tuple[_Law, Callable[[int], _Law]]:

@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+import sympy as sp
 
 from ..base.errors import ModelError
 from ..base.sentences import round_down, round_near, round_up
@@ -32,9 +33,11 @@ from ..passivity import (
     positive_real,
 )
 from ..passivity.identified import effects_left_open, extend_to_device
+from ..passivity.linear.impedance import exact
 from ..passivity.theorems.lugre import add_bristle_damping
 from ..realise.damping_interval import damping_interval, small_motion_damping
 from ..realise.friction_interval import FrictionInterval, value_interval
+from ..realise.lti import S
 from ..realise.reach import Reach
 from ..realise.tips import led_motion
 from ..simulate import Sampling
@@ -98,7 +101,7 @@ def cancellation_claims(
     # what actuation makes of a command is in its gain and in how late it is
     actuation = [e.name for e in body.effects if e.role == "actuation"]
     open_ones = effects_left_open(body, reach, errors=errors)
-    left = [name for name in open_ones if name not in actuation]
+    left = {name: why for name, why in open_ones.items() if name not in actuation}
     claims = _friction_claims(body, chosen, friction, reach, gain=gain, late=late, errors=errors)
     return [extend_to_device(c, over=friction.over, left=left) for c in claims]
 
@@ -155,12 +158,19 @@ def _friction_claims(
 
 
 def feedback_claim(body: Body, force_feedback: Controller) -> Claim:
-    """Claim on passivity of the device's linear part under continuous, undelayed feedback."""
+    """Claim on passivity of the device's linear part under continuous, undelayed feedback.
+
+    The coefficients of its impedance have six digits, as they are printed.
+    """
     plain = without_friction(body)
     for effect in [e for e in plain.effects if e.role in ("actuation", "structure", "contact")]:
         plain = plain.without_effect(effect.name)
     port, _ = hand_port(haptic_interface(plain, force_feedback=force_feedback))
-    claim = positive_real(port)
+    above, below = (
+        sp.Poly([exact(round_near(float(c), digits=6)) for c in poly.all_coeffs()], S)
+        for poly in (port.p, port.q)
+    )
+    claim = positive_real(above.as_expr() / below.as_expr())
     return replace(claim, statement=f"without friction, sampling and delay {claim.statement}")
 
 

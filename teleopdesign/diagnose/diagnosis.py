@@ -19,6 +19,7 @@ from ..base.shown import Shown, figure_of
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared
 from ..model import Model
+from ..realise.friction_cells import FrictionCell
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate
 from .fingerprint import Fingerprint
@@ -87,6 +88,8 @@ class Diagnosis(Shown, ByValue):
     joints: joint of an arm -> its own diagnosis, with the information of the others on the links
     other_motion: joint -> the joint whose motion is its channel `other_position`
     links: name -> base parameter of the links of an arm
+    friction_cells: body -> least friction that model and residual show together, by cells of its
+        travel; an older answer, and an arm's joint, have none
     simulation: comparison of the final model by simulation, as plain data
     recording: of the experiment; no part of the content
     """
@@ -124,6 +127,9 @@ class Diagnosis(Shown, ByValue):
     joints: Annotated[Mapping[str, Diagnosis], OMIT] = field(default_factory=dict)
     other_motion: Annotated[Mapping[str, str], OMIT] = field(default_factory=dict)
     links: Annotated[Mapping[str, EstimatedValue], OMIT] = field(default_factory=dict)
+    friction_cells: Annotated[Mapping[str, tuple[FrictionCell, ...]], OMIT] = field(
+        default_factory=dict
+    )
     simulation: Annotated[Any, OMIT] = None
     recording: Annotated[DiagnosedRecording, NEVER] = field(
         default=DiagnosedRecording(), compare=False, repr=False

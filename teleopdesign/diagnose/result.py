@@ -15,6 +15,7 @@ from .diagnosis import Diagnosis
 from .evidence import whole_score
 from .fingerprint import fingerprint_of
 from .fit import Fit
+from .friction_cells import all_friction_cells
 from .ladder_end import LadderEnd
 from .open_questions import nearest, not_accepted, open_questions
 from .parts import PreparedParts
@@ -71,6 +72,7 @@ def diagnosis_of(end: LadderEnd) -> Diagnosis:
         remarks=tuple(short_segment_lines(experiment)),
         left_out=search.plan.omissions(),
         considered=tuple(model.known),
+        friction_cells=all_friction_cells(model, whole),
     )
     return with_recording(diagnosis, recording_of(experiment, whole))
 

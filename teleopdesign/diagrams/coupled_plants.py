@@ -81,7 +81,7 @@ def _bodies(
     drivers: Sequence[str],
 ) -> tuple[tuple[Moving | Linked | Control, ...], tuple[Junction, ...]]:
     """Bodies, their coupling, and the rest beside their commands; continuous time."""
-    import control
+    from ..base.python_control import ss
 
     size = len(motions)
     m, b, k, rest = _split(system, name)
@@ -96,7 +96,7 @@ def _bodies(
     shared: list[str] = []
     if whole is not None:
         shared = [f"{name}_rest_force_{i + 1}" for i in range(size)]
-        states = control.ss(*whole.rest, np.zeros((size, size)))
+        states = ss(*whole.rest, np.zeros((size, size)))
         laws, sums = controller_parts(
             states, name=f"{name}_rest", inputs=motions, outputs=shared, motion="", analog=True
         )

@@ -48,9 +48,9 @@ def states_of_plant(system: control.LTI, name: str) -> PlantStates | None:
     raises ModelError: a mode that they do not show is on the axis, in numbers that are no decimals,
         or does not decay in a matrix of transfer functions, which does not say what drives it
     """
-    import control
+    from ..base.python_control import TransferFunction
 
-    if isinstance(system, control.TransferFunction) and system.ninputs > 1:
+    if isinstance(system, TransferFunction) and system.ninputs > 1:
         _refuse_cancelled(system, name)
         return None
     a, b, c = _exact_matrices(system)
@@ -87,9 +87,9 @@ def _drop_unreached(a: _Matrix, b: _Matrix, c: _Matrix) -> tuple[_Matrix, _Matri
 
 def _exact_matrices(system: control.LTI) -> tuple[_Matrix, _Matrix, _Matrix]:
     """A, B, C in exact numbers; of a transfer function in its controllable form."""
-    import control
+    from ..base.python_control import StateSpace
 
-    if isinstance(system, control.StateSpace):
+    if isinstance(system, StateSpace):
         plain = (system.A, system.B, system.C)
         matrices = ([[exact_decimal(x) for x in row] for row in m] for m in plain)
         a, b, c = (_exact(rows, (len(rows), len(rows[0]))) for rows in matrices)

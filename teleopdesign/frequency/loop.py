@@ -106,7 +106,7 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
         )
     gain = -sp.sympify(round_trip(diagram, part)).subs(symbol_values(linear))
     kept = {c.name: c for c in diagram.controls if c.name in linear.held}
-    periods = [g.values["period"] for c in kept.values() for g in _stages(c) if g.law.shift]
+    periods = [g.values["period"] for c in kept.values() for g in _stages(c) if g.law.in_z]
     fastest = np.pi / max(periods) if periods else float("inf")
     growing = _count_growing_poles(linear.blocks[controller])
     sampled = sampled_loop(diagram, part, linear) if linear.held else None

@@ -25,7 +25,7 @@ import numpy as np
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..controllers import Controller, exact_decimal, sides_of
+from ..controllers import Controller, exact_decimal, is_of_matrices, sides_of
 from ..derive.all_states import all_states
 from ..derive.polynomials import is_free_of_growth
 from ..diagrams import Control, Diagram
@@ -144,8 +144,8 @@ def sampled_loop(diagram: Diagram, part: Control, linear: LinearBlocks) -> Sampl
     law = part.controller
     if linear.held != (part.name,) or not isinstance(law, Controller):
         return None
-    if any(stage.law.shift is None for stage in law.stages):
-        return None
+    if any(stage.law.in_z is None or not is_of_matrices(stage.law) for stage in law.stages):
+        return None  # only matrices say how many states there are
     periods = {exact_decimal(stage.values["period"]) for stage in law.stages}
     if len(periods) != 1 or 0 in periods:
         return None

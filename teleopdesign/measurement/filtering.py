@@ -15,6 +15,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 #: s by which a record is continued (point symmetric) at each end, if the record is long enough
 CONTINUED = 0.6
+#: periods of the bandwidth after which the low-pass has forgotten its input: its slowest pole, with
+#: a time constant of 2.6 / (2 pi bandwidth), has decayed to exp(-7) in both directions
+FORGOTTEN = 3.0
 
 
 class Spectrum:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.errors import ModelError
-from ..base.sentences import round_down, round_up
+from ..base.sentences import round_down, round_near, round_up
 from ..controllers import CONTROLLERS, Controller, Stage, controller
 from ..diagrams import haptic_interface
 from ..simulate import Sampling
@@ -107,7 +107,7 @@ def _search_claim(
         lengths = [device.lowest.estimate / device.presliding.estimate]
     if compensator.stage.value_of("bristle_stiffness") is not None:
         lengths.append(compensator.level / compensator.second)
-    stroke = 100 * max(lengths)
+    stroke = round_near(100 * max(lengths), digits=3)
     try:
         claim = search_counterexample(
             haptic_interface(device.body, cancellation=compensator.controller),
@@ -155,6 +155,8 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     They hold for all values in the 95 % intervals, and the first one at the estimates. Empty or
     shorter where no limit is known.
     """
+    if device.basis is not None and device.basis.is_open:
+        return []  # friction may be less than any model of the records says
     force, stiff = device.force_unit, device.stiffness_unit
     alone = f", for friction without {', '.join(device.set_aside)}" if device.set_aside else ""
     limits = [
@@ -171,6 +173,10 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
         )
     ]
     presliding = device.presliding
+    if device.basis is not None and not device.basis.is_adequate:
+        # what is unexplained is in no estimate, nor in the damping
+        text = "largest compensator level f_D for passivity in the covered cells"
+        return [Margin(text + alone, _round_limit(device.lowest.low), force)]
     if presliding is None:
         text = "largest compensator level f_D that drives no motion, with viscous damping"
         return [*limits, Margin(text + alone, _round_limit(device.least_resistance.low), force)]

@@ -9,7 +9,6 @@ from ..blocks import Body, Value
 from ..controllers import Controller, Stage
 from ..diagrams import Control, Diagram, Moving
 from .claims.claim import Claim, Unknown
-from .declarations import keeps_its_bound
 from .identified import IdentifiedDevice, identify_device, restate_for_device
 from .shares import drives_alone
 from .theorems import Question, TopicClaim, settle
@@ -61,7 +60,7 @@ class FrictionPair:
 
 
 def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
-    """A pair for each body with friction whose cancellation, if any, has a known bound.
+    """A pair for each body with friction whose cancellation, if any, acts on it alone.
 
     A cancellation is a controller whose input is the motion of the body, and whose force acts
     unchanged on this body and on nothing else. A body whose friction level may be zero has no pair.
@@ -73,7 +72,7 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
         if part.body.level() == 0:
             continue
         along = [c for c in diagram.controls if c.input == c.motion == part.motion]
-        if len(along) > 1 or not all(_is_bounded(c, part, diagram) for c in along):
+        if len(along) > 1 or not all(_acts_alone(c, part, diagram) for c in along):
             continue
         try:
             device = identify_device(_exact(part.body))
@@ -83,12 +82,12 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
     return pairs
 
 
-def _is_bounded(control: Control, part: Moving, diagram: Diagram) -> bool:
+def _acts_alone(control: Control, part: Moving, diagram: Diagram) -> bool:
     law = control.controller
     if not isinstance(law, Controller) or len(law.stages) != 1:
         return False
     acts = not any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
-    return acts and keeps_its_bound(law.stages[0]) and drives_alone(diagram, control.output, part)
+    return acts and drives_alone(diagram, control.output, part)
 
 
 def _exact(body: Body) -> Body:
@@ -111,5 +110,7 @@ def pair_claims(pair: FrictionPair, *, simulated: bool = True) -> list[TopicClai
         return [replace(one, topic=topic) for one in claims]
     law = f"{pair.cancellation.name} ({pair.stage.law.name})"
     statement = f"friction of {pair.body.name} with {law} is passive"
-    why = "no limit is known for such a law on a contact that gives before it slides"
+    why = pair.question.law.missing or (
+        "no limit is known for such a law on a contact that gives before it slides"
+    )
     return [TopicClaim(topic, restate_for_device(pair.device, Claim(statement, Unknown(why))))]

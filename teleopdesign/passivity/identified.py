@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from ..base.errors import ModelError
+from ..base.frozen import Frozen
 from ..base.units import unit_of
 from ..blocks import NINETY_FIVE, Body
-from ..effects import EFFECTS, Effect
+from ..effects import Effect
 from ..realise.acting_bound import largest_acting_force
 from ..realise.damping_interval import damping_interval
+from ..realise.friction_cells import FrictionCells
 from ..realise.friction_interval import (
     SPEED,
     FrictionInterval,
@@ -26,15 +28,60 @@ from ..realise.reach import ANY_MOTION, Reach
 from ..realise.simulated import without_absent
 from .claims.axis_units import use_units_of
 from .claims.claim import Claim, Unknown
-from .declarations import unchecked_energy
+from .declarations import is_shipped, underived_energy
 
-_PRESLIDING = EFFECTS["presliding"]
 #: digits of a measured number in a claim. A standard error is rarely known to more than two digits,
 #: and an estimate to more than three or four. Rounding outward to four digits costs a thousandth of
 #: a level at most
 DIGITS = 4
 #: roles of effects that change the friction level: the interval of the level covers them
 _LEVEL = ("friction_level", "friction_factor", "friction_speed")
+
+
+@dataclass(frozen=True)
+class Basis:
+    """What limits of an identified device rest on: the diagnosis that it comes from.
+
+    verdict: of the diagnosis;  left: what its model leaves, in noise floors
+    is_adequate: whether this counts as noise
+    cells: friction that model and residual show together; None: the answer does not say it
+    """
+
+    verdict: str
+    left: float
+    is_adequate: bool
+    cells: FrictionCells | None = None
+
+    @property
+    def bound(self) -> float | None:
+        """Least friction that the residual leaves, N or N m; None: it sets, or shows, no bound."""
+        if self.is_adequate or self.cells is None or not self.cells.covered:
+            return None
+        return self.cells.least
+
+    @property
+    def is_open(self) -> bool:
+        """Whether more than noise is left, and nothing bounds the friction with it."""
+        return not self.is_adequate and self.bound is None
+
+    def sentence(self, axis: str) -> str:
+        """What the limits rest on, in words."""
+        left = f"{self.left:.3g} noise floors left"
+        if self.is_adequate:
+            return f"the limits rest on a model whose error is noise ({left})"
+        answer = {"undecided": "an undecided answer"}.get(self.verdict, "an incomplete model")
+        start = f"the limits rest on {answer} with unexplained force ({left})"
+        if self.cells is None:
+            return f"{start}, which says nothing of the friction by place: none is certain"
+        covered, count = len(self.cells.covered), len(self.cells.cells)
+        if not covered:
+            return f"{start}, with too few samples in all {count} cells: none is certain"
+        open_ = self.cells.left_open(unit_of("position", axis))
+        rest = f"; not covered: {open_}" if open_ else ""
+        return (
+            f"{start}: on the friction with it in {covered} of {count} cells of position and "
+            f"direction{rest}"
+        )
 
 
 @dataclass(frozen=True)
@@ -46,8 +93,10 @@ class IdentifiedDevice:
     least_resistance: least force of friction level and viscous damping together at any speed, N
     damping: damping that is present at every speed, N s/m; 0 where the model has none
     bristle_damping: damping of friction before it slides, N s/m; 0 where the model has none
-    set_aside: names of effects that may supply energy, or that no theorem covers
+    left_open: effects that may supply energy, or that no theorem covers -> what could not be
+        derived of them, "" where they declare nothing
     unknown: names of parameters without a standard error
+    basis: the diagnosis that the bounds rest on; None: the values are taken as they are
     """
 
     body: Body
@@ -56,8 +105,14 @@ class IdentifiedDevice:
     least_resistance: Interval
     damping: Interval
     bristle_damping: Interval
-    set_aside: tuple[str, ...]
+    left_open: Mapping[str, str]
     unknown: tuple[str, ...]
+    basis: Basis | None = None
+
+    @property
+    def set_aside(self) -> tuple[str, ...]:
+        """Names of effects that may supply energy, or that no theorem covers."""
+        return tuple(self.left_open)
 
     @property
     def lowest(self) -> Interval:
@@ -97,10 +152,14 @@ class IdentifiedDevice:
         return unit_of("stiffness", self.body.axis)
 
 
-def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
+def identify_device(
+    body: Body, reach: Reach | None = None, basis: Basis | None = None
+) -> IdentifiedDevice:
     """Bounds of friction level, presliding stiffness and damping of a body, in 95 % intervals.
 
     reach: range of the motions in the claims; None: every motion
+    basis: the diagnosis of the body. Where its model leaves more than noise, the lowest level is at
+        most the friction that the residual shows too, and holds in the cells that it covers
     raises ModelError: a body without friction, or with a friction level that may be zero, or with
         friction that deflects before it slides and a level without an upper bound
     """
@@ -108,6 +167,8 @@ def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
     friction = friction_interval(body, reach, errors=NINETY_FIVE)
     if friction is None:
         raise ModelError("passivity: the device has no friction to compensate")
+    if basis is not None and basis.bound is not None:
+        friction = _in_cells(friction, basis.bound)
     if friction.lowest.low <= 0:
         raise ModelError(
             f"passivity: the friction level may be as low as {friction.lowest.low:.3g} "
@@ -125,6 +186,11 @@ def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
     if bristle is not None:
         bristles = value_interval(bristle, errors=NINETY_FIVE)
     resistance = _resistance(body, damping.least, reach)
+    left_open = dict(effects_left_open(body, reach, errors=NINETY_FIVE))
+    if basis is not None and not basis.is_adequate:
+        resistance = replace(resistance, low=min(resistance.low, friction.lowest.low))
+        if basis.is_open or friction.presliding is not None:
+            left_open["what the diagnosis leaves unexplained"] = ""
     return IdentifiedDevice(
         body,
         reach,
@@ -132,7 +198,7 @@ def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
         resistance.round_outward(digits=DIGITS),
         damping.least.round_outward(digits=DIGITS),
         bristles.round_outward(digits=DIGITS),
-        effects_left_open(body, reach, errors=NINETY_FIVE),
+        left_open,
         tuple(
             n
             for n, v in body.parameters.items()
@@ -140,7 +206,15 @@ def identify_device(body: Body, reach: Reach | None = None) -> IdentifiedDevice:
             and math.isnan(v.stderr)
             and not (v.value == 0 and body.parameter(n).optional)  # one that is not there
         ),
+        basis,
     )
+
+
+def _in_cells(friction: FrictionInterval, bound: float) -> FrictionInterval:
+    """The levels, the lowest at most a bound (N) in the cells of a residual."""
+    lowest = Interval(*(min(x, bound) for x in vars(friction.lowest).values()))
+    over = "" if friction.over == ANY_MOTION else f"{friction.over}, "
+    return replace(friction, lowest=lowest, over=f"{over}the cells that the residual covers")
 
 
 def _round_friction(friction: FrictionInterval) -> FrictionInterval:
@@ -163,32 +237,30 @@ def _resistance(body: Body, damping: Interval, reach: Reach | None) -> Interval:
     return Interval(at_estimate.estimate, at_low.low, at_estimate.high)
 
 
-def effects_left_open(body: Body, reach: Reach | None = None, *, errors: float) -> tuple[str, ...]:
-    """Names of effects that may supply energy, or that no theorem on friction covers.
+def effects_left_open(
+    body: Body, reach: Reach | None = None, *, errors: float
+) -> Mapping[str, str]:
+    """Effects that may supply energy, or that no theorem on friction covers -> why, or "".
 
-    They include a user's effects that declare to supply no energy, if nothing has checked this.
+    They include a user's effects that declare to supply no energy, where this could not be derived.
 
     reach: range of the motions in the claims; None: every motion
     errors: standard errors of the parameters to either side
     """
     body = without_absent(body, surely=True)
     supplying = damping_interval(body, reach, errors=errors).supplying
-    unchecked = unchecked_energy(body, reach, errors=errors)
-    left = (*(e.name for e in body.effects if _is_open(e)), *supplying, *unchecked)
-    return tuple(dict.fromkeys(left))
+    left = (*(e.name for e in body.effects if _is_open(e)), *supplying)
+    return Frozen(dict.fromkeys(left, "") | underived_energy(body, reach, errors=errors))
 
 
-def extend_to_device(
-    claim: Claim, *, over: str, left: Sequence[str], declared: Sequence[str] = ()
-) -> Claim:
+def extend_to_device(claim: Claim, *, over: str, left: Mapping[str, str]) -> Claim:
     """A claim about friction, restated for the whole device.
 
     If the device has an effect that may supply energy, a claim that holds for friction alone
     becomes unknown.
 
     over: reach of the motions, `FrictionInterval.over`
-    left: names of effects that the claim does not cover
-    declared: names of effects that declare to supply no energy
+    left: effects that the claim does not cover -> what could not be derived of them, or ""
     """
     if over != ANY_MOTION:
         claim = replace(claim, statement=f"{claim.statement} (levels over {over})")
@@ -196,8 +268,8 @@ def extend_to_device(
         return claim
     why = f"holds for friction alone, {claim.verdict}; but {', '.join(left)} may supply energy, or "
     why += "are in no theorem"
-    if stated := [n for n in left if n in declared]:
-        why += f"; as declared by {', '.join(stated)} it takes energy, which nothing has checked"
+    for name, step in left.items():
+        why += f"; {name} declares to supply none, which does not follow: {step}" if step else ""
     return Claim(claim.statement, Unknown(why))
 
 
@@ -208,21 +280,15 @@ def restate_for_device(
 
     besides: names of further effects that the theorem of this claim covers
     """
-    left = [name for name in device.set_aside if name not in besides]
+    left = {name: why for name, why in device.left_open.items() if name not in besides}
     claim = use_units_of(device.body.axis, claim)
-    declared = [e.name for e in device.body.effects if e.energy != "supplies"]
-    return extend_to_device(claim, over=device.friction.over, left=left, declared=declared)
+    return extend_to_device(claim, over=device.friction.over, left=left)
 
 
 def _is_open(effect: Effect) -> bool:
     """Whether no theorem covers an effect; `damping_interval` judges forces."""
     if effect.role == "friction_shape":
-        dahl = _PRESLIDING.without("bristle_damping")
-        return not any(_is_same(effect, shape) for shape in (_PRESLIDING, dahl))
+        return effect.name != "presliding" or not is_shipped(effect)
     if effect.role in (*_LEVEL, "force"):
         return False
     return effect.energy == "supplies"
-
-
-def _is_same(one: Effect, other: Effect) -> bool:
-    return one.expression() == other.expression() and one.rates() == other.rates()

@@ -8,9 +8,14 @@ rounding is the only error.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from fractions import Fraction
+from typing import ClassVar, Protocol
+
+import numpy as np
+import sympy as sp
 
 from ..base.arguments import check_types
 from ..base.errors import ModelError
@@ -163,8 +168,39 @@ def _quadratic_remainder(y: float) -> float:
     return total
 
 
+class AbstractMotion(ABC):
+    """A motion that releases energy, in closed formulas; a frozen dataclass of plain values."""
+
+    kind: ClassVar[str]
+
+    @abstractmethod
+    def replay(self) -> float:
+        """Energy released, J, computed anew."""
+
+    @property
+    def energy(self) -> float:
+        """Energy released, J."""
+        return self.replay()
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain data, to be written as JSON: elements by name and values, exact numbers as text.
+
+        Samples of the motion are left out: `replay` computes them anew.
+        """
+        values = {n: _plain(x) for n, x in vars(self).items() if not isinstance(x, np.ndarray)}
+        return {"kind": self.kind, **values, "energy": self.energy}
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, Coulomb | Dahl | Spring | DahlBehindSpring):
+        return [type(value).__name__.lower(), *vars(value).values()]
+    if isinstance(value, sp.Basic | Fraction):
+        return str(value)
+    return [_plain(x) for x in value] if isinstance(value, tuple) else value
+
+
 @dataclass(frozen=True)
-class Cycle:
+class Cycle(AbstractMotion):
     """A closed path through turning points that releases energy in each round, without end.
 
     The motion starts with zero forces at the last turning point. All rounds are travelled, and the
@@ -179,11 +215,7 @@ class Cycle:
     friction: tuple[Element, ...]
     turning_points: tuple[float, ...]
     rounds: int = 200
-
-    @property
-    def energy(self) -> float:
-        """Energy released in the last round, J."""
-        return self.replay()
+    kind = "cycle"
 
     def replay(self) -> float:
         """Energy released in the last round, J, computed anew along the path."""
@@ -205,21 +237,6 @@ class Cycle:
             for f, b, e in zip(forces, before, elements, strict=True)
         )
         return out if out <= 0 or fed <= _FED * out else min(out, total)
-
-    def as_dict(self) -> dict[str, object]:
-        """Plain data, to be written as JSON."""
-        return {
-            "kind": "cycle",
-            "compensator": _list_entries(self.compensator),
-            "friction": [_list_entries(e) for e in self.friction],
-            "turning_points": list(self.turning_points),
-            "rounds": self.rounds,
-            "energy": self.energy,
-        }
-
-
-def _list_entries(element: Element) -> list[object]:
-    return [type(element).__name__.lower(), *vars(element).values()]
 
 
 def symmetric_cycle(compensator: Dahl, friction: Sequence[Element], amplitude: float) -> Cycle:

@@ -21,7 +21,8 @@ from ..base.finding import Graph, Series
 from ..base.frozen import ByValue
 from .linear.impedance import exact
 from .linear.positive_real import is_positive_real
-from .theorems.sampled_data import Z, travel_operator
+from .search.sampled_wave import Z
+from .theorems.sampled_data import travel_operator
 
 WALL_STIFFNESS = sp.Symbol("K")
 WALL_DAMPING = sp.Symbol("B")

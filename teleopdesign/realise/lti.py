@@ -81,7 +81,7 @@ def linear_blocks(
                 along[part.name] = forms[1]
             if not forms:
                 left_out.append(part.name)
-            elif any(stage.law.shift is not None for stage in _stages(part)):
+            elif any(stage.law.in_z is not None for stage in _stages(part)):
                 sampled.append(part.name)
             continue
         if isinstance(part, Linked):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.sentences import unit_at_axis, with_standard_error
+from ..base.sentences import round_down, unit_at_axis, with_standard_error
 from ..base.shown import html_table
 from ..base.units import unit_after_number
 from ..blocks import NINETY_FIVE
@@ -53,7 +53,8 @@ def interval_claim_text(claim: IntervalClaim) -> str:
     if not np.isnan(claim.margin):
         lines.append(f"    worst margin {claim.margin:.4g}{unit} at {where or 'its values'}")
     if not np.isnan(claim.proved_margin):
-        lines.append(f"    proved to be at least {claim.proved_margin:.4g}{unit}")
+        least = round_down(claim.proved_margin, digits=4)
+        lines.append(f"    proved to be at least {least:g}{unit}")
     return "\n".join(lines)
 
 

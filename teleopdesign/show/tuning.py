@@ -47,7 +47,7 @@ def limit_text(limit: TuningLimit) -> str:
 @shows("text")
 def checked_limit_text(checked: CheckedLimit) -> str:
     """Whether the limit is kept, its value, and the method that shows the value."""
-    state = "active" if checked.active else "kept" if checked.holds else "missed"
+    state = "missed" if not checked.holds else "active" if checked.active else "kept"
     if np.isnan(checked.value):
         return f"{state}: {checked.limit}; {checked.how}"
     at = ", ".join(f"{n} = {v:.4g}" for n, v in checked.worst.items())

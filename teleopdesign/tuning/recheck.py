@@ -27,7 +27,7 @@ class CheckedLimit(Shown, ByValue):
 
     value: the worst within the intervals of the limit;  worst: values at which it occurs
     how: method that shows the value
-    active: whether the limit holds the search back: its value is near the bound
+    active: whether the limit is kept and holds the search back: its value is near the bound
     """
 
     limit: TuningLimit
@@ -51,10 +51,16 @@ def _check(problem: Problem, trial: TrialPoint, k: int) -> CheckedLimit:
     if one.name in CLAIMS and one.measure is None:
         claim = claim_over_intervals(diagram, one.over, claim=one.name)
         proved = claim.status == "proved" and (one.bound <= 0 or claim.proved_margin >= one.bound)
-        holds = bool(claim.holds) and (np.isnan(claim.margin) or one.excess(claim.margin) >= 0)
+        unmeasured = np.isnan(claim.margin)  # a claim without a margin shows that it is at least 0
+        holds = bool(claim.holds) and (
+            one.bound <= 0 if unmeasured else one.excess(claim.margin) >= 0
+        )
         how = claim.known if one.over or not proved else f"proved at this point{claim.limited}"
-        if holds and not proved:
+        if unmeasured and not proved:
+            how = f"without a margin: {claim.how}"
+        elif holds and not proved:
             how = f"checked numerically at {claim.points} points, worst found there"
+        active = active and holds
         return CheckedLimit(one, claim.margin, claim.unit, holds, how, claim.worst, active)
     box = box_over(one)
 
@@ -71,6 +77,7 @@ def _check(problem: Problem, trial: TrialPoint, k: int) -> CheckedLimit:
     how = f"checked numerically at {worst.points} points, worst found there"
     how = how if one.over else "computed at this point"
     holds = one.excess(value) >= 0
+    active = active and holds
     return CheckedLimit(one, value, unit, holds, how, box.named(worst.point), active)
 
 

@@ -16,14 +16,11 @@ from ..base.finding import Graph, Series
 from ..base.sentences import readable_unit
 from ..base.units import unit_of
 from ..diagnose.solve import BLOCK
-from ..measurement.filtering import Array
+from ..measurement.filtering import FORGOTTEN, Array
 from .curve import BAND, BINS, Curve
 from .rows import Rows
 from .shapes import Shape
 
-#: periods of the bandwidth after which the low-pass has forgotten its input: its slowest pole, with
-#: a time constant of 2.6 / (2 pi bandwidth), has decayed to exp(-7) in both directions
-FORGOTTEN = 3.0
 #: lags that are looked at
 LAGS = 12
 

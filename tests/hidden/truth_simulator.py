@@ -33,7 +33,7 @@ NAMES = (
     "resolution", "grid_offset", "kp", "kd", "derivative_weight", "command_step",
     "gravity", "gravity_phase", "thinning", "thinning_power",
     "tip_level", "tip_bristle", "slip_k1", "slip_k2", "slip_k3", "slip_k4", "slip_w2", "slip_w3",
-    "slip_w4",
+    "slip_w4", "rub", "rub_place", "rub_width",
 )  # fmt: skip
 INDEX = {n: i for i, n in enumerate(NAMES)}
 DEFAULTS = dict(
@@ -47,13 +47,14 @@ DEFAULTS = dict(
     gain=1.0,
     limit=math.inf,
     contact_power=1.0,
+    rub_width=1.0,
     derivative_weight=0.5,
 )
 (
     M, B, BD, D, FC, HD, FS, VS, SIG, SIG1, MU, DRF, DRT, MEM, EW, EP, EF, BIAS, K, K3, CA, CP, CF,
     TIP, TM, TK, TB, GAP, DEL, LAG, LIM, GAIN, RA, RP, RF, HAND, HM, GK, GB, AK, AB,
     ENV, EK, EX, EB, EN, HUM, HUF, HUP, PD, SLO, SLF, RES, OFF, KP, KD, DW, UQ,
-    GR, GRP, TH, THN, TFC, TSIG, SK1, SK2, SK3, SK4, SW2, SW3, SW4,
+    GR, GRP, TH, THN, TFC, TSIG, SK1, SK2, SK3, SK4, SW2, SW3, SW4, RUB, RUX, RUW,
 ) = range(len(NAMES))  # fmt: skip
 TWO_PI = 2.0 * math.pi
 COLUMNS = ("x", "v", "friction", "acting", "interaction", "x_tip", "v_tip", "z", "contact")
@@ -76,6 +77,8 @@ def _level(p, x, t, acting, w, s):
     if p[DRF] != 0.0:
         level *= 1.0 - p[DRF] * (1.0 - math.exp(-t / p[DRT]))
     level += p[HD] * s + p[MU] * abs(acting)
+    if p[RUB] != 0.0:  # a zone that rubs more, or less
+        level += p[RUB] * math.exp(-(((x - p[RUX]) / p[RUW]) ** 2))
     if p[FS] != 0.0:
         level += p[FS] * math.exp(-((w / p[VS]) ** 2))
     return max(level, 0.0)

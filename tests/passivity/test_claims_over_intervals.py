@@ -283,4 +283,4 @@ def test_an_effect_that_is_absent_in_the_middle_alone_is_not_left_out(name):
 def test_an_interval_may_be_of_fractions():
     box = {"Z_M.inertia": (Fraction(1, 3), Fraction(1, 2))}
     claim = claim_over_intervals(haptic_interface(body(0.3, viscous__damping=2.0)), box)
-    assert claim.status == "proved" and "0.333333 to 0.5" in claim.statement
+    assert claim.status == "proved" and "0.3333333333333333 to 0.5" in claim.statement

@@ -286,8 +286,7 @@ def test_a_changing_level_asks_for_its_lowest_and_its_highest(top, status):
 
 def test_the_storage_function_is_the_one_in_the_documentation():
     """V >= 0, and 0 only at rest: both bristles relaxed."""
-    from teleopdesign.passivity.theorems._dahl_certificates import d, p, sigma_D, sigma_p
-
+    d, p, sigma_D, sigma_p = sp.symbols("d p sigma_D sigma_p")
     claim = compensated(0.9, 1e3, presliding_stiffness=2e3)
     storage = sp.sympify(
         claim.certificates[0].content["storage"],

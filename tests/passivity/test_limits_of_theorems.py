@@ -3,22 +3,24 @@
 from types import SimpleNamespace
 
 import pytest
+from devices import body
 
-from teleopdesign.passivity.theorems.bounded_compensation import (
-    _compare_at_every_speed,
-    _compare_level,
-)
+from teleopdesign.controllers import controller
+from teleopdesign.effects import EFFECTS
+from teleopdesign.passivity.identified import identify_device
+from teleopdesign.passivity.theorems import THEOREMS, Question
 from teleopdesign.passivity.theorems.sampled_data import _claims
 
 
-@pytest.mark.parametrize(("acting", "margin"), [(0.9, 0.1), (1.0, 0.0), (1.1, -0.1)])
-def test_a_law_is_covered_by_what_resists_at_every_speed_up_to_that_force(acting, margin):
-    least = SimpleNamespace(low=1.0)
-    device = SimpleNamespace(least_resistance=least, lowest=least, force_unit="N")
-    verdict = _compare_at_every_speed(device, acting).verdict
-    assert verdict.holds == (margin >= 0.0)
-    assert verdict.margin == pytest.approx(margin) and verdict.unit == "N"
-    assert _compare_level(device, acting).status == ("proved" if margin >= 0.0 else "refuted")
+@pytest.mark.parametrize("level", [0.9, 1.0, 1.1])
+def test_a_law_is_covered_by_what_resists_at_every_speed_up_to_that_force(level):
+    device = identify_device(body(0.1).with_effect(EFFECTS["coulomb"], {"level": 1.0}))
+    law = controller("dahl", {"level": level, "stiffness": 1e4}).stages[0]
+    beside, damped = THEOREMS["bounded_compensation"].claims(Question(device, law))
+    verdict = damped.claim.verdict
+    assert verdict.holds == (level <= 1.0)
+    assert verdict.margin == pytest.approx(1.0 - level) and verdict.unit == "N"
+    assert beside.claim.status == ("proved" if level <= 1.0 else "refuted")
 
 
 @pytest.mark.parametrize(("late", "least"), [(0, 0.5), (1, 1.5)])

@@ -90,6 +90,62 @@ def test_the_estimate_may_be_passive_where_the_interval_is_not(answer, tmp_path)
     assert claims["95 % interval"]["replayed"]["energy"] > 0
 
 
+def without_presliding(content, left, verdict="undecided"):
+    content["ladder"], content["missing"] = content["ladder"][:1], []
+    content["candidates"] = content["candidates"][1:]
+    return content | {"verdict": verdict, "left_over_noise_floors": left}
+
+
+def cell(low, way, samples, least):
+    ends = {"low": low, "high": low + 0.01, "direction": way}
+    return ends | {"samples": samples, "least": least}
+
+
+CELLS = [cell(0.0, 1, 40.0, 0.41), cell(0.0, -1, 25.0, 0.44), cell(0.01, 1, 30.0, 0.30),
+         cell(0.01, -1, 4.0, None)]  # fmt: skip
+
+
+def text_of(path, content, capsys, *options):
+    path.write_text(json.dumps(content))
+    code = main(["passivity", str(path), *options])
+    return code, capsys.readouterr()
+
+
+def test_the_limit_of_an_undecided_answer_is_that_of_its_cells_and_says_so(
+    answer, tmp_path, capsys
+):
+    content = without_presliding(json.loads(answer.read_text()), 12.8)
+    out = tmp_path / "claims.json"
+    cells = {"friction_cells": {"device": CELLS}}
+    options = ["--dahl", "0.35", "1.5e4", "--json", str(out)]
+    code, text = text_of(answer, content | cells, capsys, *options)
+    first = text.out.splitlines()[0]
+    assert code == 0
+    for word in ("undecided", "unexplained force", "12.8 noise floors", "3 of 4 cells"):
+        assert word in first
+    assert first.endswith("not covered: backward 0.01 to 0.02 m")
+    assert "covered cells: 0.3 N" in text.out and "at the estimates" not in text.out
+    assert json.loads(out.read_text())["margins"][0]["value"] == 0.3
+    # 0.35 N is below the level of the model, 0.48 N, and above the friction that was seen
+    assert claims_of(out)["95 % interval"]["status"] == "refuted"
+
+
+@pytest.mark.parametrize("cells", [None, [cell(0.0, 1, 3.0, None)]])
+def test_an_undecided_answer_without_covered_cells_has_no_limit(answer, capsys, cells):
+    content = without_presliding(json.loads(answer.read_text()), 12.8)
+    content |= {"friction_cells": {"device": cells}} if cells else {}
+    code, text = text_of(answer, content, capsys, "--dahl", "0.35", "1.5e4")
+    assert code == 0 and "none is certain" in text.out.splitlines()[0]
+    assert "largest compensator level" not in text.out and "proved" not in text.out
+
+
+def test_an_adequate_answer_rests_on_its_model(answer, capsys):
+    content = without_presliding(json.loads(answer.read_text()), 1.1, "model_adequate")
+    _, text = text_of(answer, content | {"friction_cells": {"device": CELLS}}, capsys)
+    assert "1.1 noise floors" in text.out.splitlines()[0]
+    assert "at every level in the interval: 0.4804 N" in text.out
+
+
 def test_a_sampled_wall_and_the_z_width_need_a_period(answer, tmp_path, capsys):
     assert main(["passivity", str(answer), "--wall", "1000", "0"]) == 2
     assert "need --period" in capsys.readouterr().err

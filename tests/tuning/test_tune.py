@@ -174,3 +174,33 @@ def test_what_cannot_be_tuned_is_refused_in_one_line(arguments, words):
     whole = {"parameters": {"H.gain.gain": (0.1, 1.0)}, "objective": gain, **arguments}
     with pytest.raises(ModelError, match=words):
         td.tune(LOOP, **whole)
+
+
+def test_a_limit_that_is_missed_is_not_called_active():
+    """No gain of the interval is passive: the nearest point lies at the bound and misses it."""
+    limit = most_gain(0.15, 4.0, 20.0)
+    low = 1.001 * limit
+    tuned = td.tune(LOOP, {"H.gain.gain": (low, 50 * low)}, less_gain, subject_to=["passive"],
+                    evaluations=40)  # fmt: skip
+    (passive,) = tuned.limits
+    assert not tuned.keeps_limits and not passive.holds
+    assert not passive.active and tuned.active == () and repr(passive).startswith("missed")
+
+
+def test_a_limit_on_a_claim_without_a_margin_says_so():
+    """Friction of which the compensator cancels a part: proved, and no margin is computed."""
+    rod = body(0.15, viscous__damping=4.0, coulomb__level=0.5)
+    law = td.controller("dahl", {"level": 0.2, "stiffness": 1e4})
+    diagram = td.haptic_interface(rod, cancellation=law)
+    levels = {"C.dahl.level": (0.1, 0.4)}
+
+    def most_level(made):
+        return -made.values["C.dahl.level"]
+
+    for least, held in ((0.0, True), (0.5, False)):
+        limits = [td.limit("passive", least=least)]
+        tuned = td.tune(diagram, levels, most_level, subject_to=limits, evaluations=10)
+        (passive,) = tuned.limits
+        assert passive.holds is held
+        if np.isnan(passive.value):
+            assert "checked numerically" not in passive.how

@@ -13,6 +13,7 @@ from ...diagrams import Diagram
 from ...diagrams.units import first_axis, unit_of_value
 from ..claims.axis_units import use_rotary_units
 from ..holders import without_holders
+from ..linear.impedance import decimal, exact
 from ..ports import drop_absent_effects, ports
 from .at_points import judge_at_points
 from .box import ValueBox, box_of, nonlinear_within
@@ -85,7 +86,8 @@ def _finish(
     """The result with all values of the call, in the units of the axis."""
     starts = {n: float(a) for n, (a, _) in intervals.items()}
     worst = {n: made["worst"].get(n, v) for n, v in starts.items()}
-    within = ", ".join(f"{n} {float(a):g} to {float(b):g}" for n, (a, b) in intervals.items())
+    texts = {n: [decimal(exact(float(x))) for x in ends] for n, ends in intervals.items()}
+    within = ", ".join(f"{n} {low} to {high}" for n, (low, high) in texts.items())
     axis = first_axis(diagram)
     turned = use_rotary_units if axis == "revolute" else str
     unit = turned(f"1 {made['unit']}")[2:]

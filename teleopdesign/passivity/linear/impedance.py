@@ -8,6 +8,7 @@ read as a float, with about sixteen digits.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 from typing import Any, Literal
 
@@ -23,6 +24,8 @@ from .gaussian import value_at
 
 MotionKind = Literal["velocity", "position"]
 _LONGEST = 9  # most characters of a fraction that a text contains as a fraction
+_DIGITS = 60  # most digits of a decimal in a text
+_SMALLEST = sp.Rational(1, 10**300)  # smallest size of a number that is also written as a float
 #: highest degree in s: exact tests of numbers of 16 digits then take some 10 s, and the time grows
 #: with the fourth power of the degree
 _HIGHEST = 40
@@ -67,30 +70,40 @@ def _impedance_of_domains(p: tuple[sp.Expr, str], q: tuple[sp.Expr, str]) -> Imp
 
 
 def decimal(number: sp.Expr) -> str:
-    """An exact number as text: a short fraction as a fraction, else a decimal of up to 12 digits.
+    """An exact number as the shortest text that reads back as it: a decimal, else a fraction.
 
-    Measured numbers in claims are rounded before (`identified.DIGITS`), so the text is exact there.
+    So two claims about different numbers never have the same words. Measured numbers in claims are
+    rounded before (`identified.DIGITS`).
     """
-    text = f"{float(number):.12g}"
-    is_short = isinstance(number, sp.Rational) and len(str(number)) <= _LONGEST
-    return str(number) if is_short and sp.Rational(text) != number else text
+    if number == 0 or _SMALLEST <= abs(number) <= 1 / _SMALLEST:
+        for text in (f"{float(number):.12g}", repr(float(number))):
+            if sp.Rational(text) == number:
+                return text
+    number = sp.Rational(number)
+    with localcontext(Context(prec=_DIGITS)):  # a decimal of more digits than a float has
+        text = f"{Decimal(number.p) / Decimal(number.q):f}"
+    return text if sp.Rational(text) == number else str(number)
 
 
 def readable(expression: sp.Expr) -> str:
-    """An expression as text for people: fractions of many digits become decimals of six digits.
+    """An expression as text for people: exact; decimals where a fraction of it is long.
 
     The denominator of such an expression begins with the coefficient 1, as that of `Impedance`.
     """
-    if not _long_fractions(expression):
-        return str(expression)
-    above, below = sp.fraction(expression)
-    first = sp.expand(below).as_ordered_terms()[0].as_coeff_Mul()[0]
-    expression = sp.expand(above / first) / sp.expand(below / first)
-    return str(expression.xreplace({x: sp.Float(x, 6) for x in _long_fractions(expression)}))
+    if any(_is_long(x) for x in expression.atoms(sp.Rational)):
+        above, below = sp.fraction(expression)
+        first = sp.expand(below).as_ordered_terms()[0].as_coeff_Mul()[0]
+        expression = sp.expand(above / first) / sp.expand(below / first)
+        numbers = {x for x in expression.atoms(sp.Rational) if _is_long(x) or not x.is_Integer}
+        texts = {x: decimal(x) for x in numbers}
+        decimals = {x: text for x, text in texts.items() if "/" not in text}
+        digits = {x: sum(map(str.isdigit, t.partition("e")[0])) for x, t in decimals.items()}
+        expression = expression.xreplace({x: sp.Float(t, digits[x]) for x, t in decimals.items()})
+    return str(expression)
 
 
-def _long_fractions(expression: sp.Expr) -> set[sp.Rational]:
-    return {x for x in expression.atoms(sp.Rational) if len(str(x)) > _LONGEST}
+def _is_long(number: sp.Rational) -> bool:
+    return len(str(number)) > _LONGEST
 
 
 def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:

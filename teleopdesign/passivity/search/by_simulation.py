@@ -19,6 +19,7 @@ from ...diagrams import Diagram
 from ...diagrams.units import first_axis
 from ...simulate import Sampling, simulate
 from ..claims.claim import Claim, Evidence, Refutation, Unknown
+from ..linear.impedance import decimal, exact
 from .stroke_motion import Strokes, families
 
 Computer = Sampling | Literal["continuous"]
@@ -210,7 +211,7 @@ def search_counterexample(
     length, rate = (unit_of(q, first_axis(diagram)) for q in ("position", "velocity"))
     statement = (
         f"the port {port[0]}, {port[1]} of the {diagram.name} releases no energy over any motion "
-        f"that returns, within {stroke:.3g} {length} and {speed:.3g} {rate}"
+        f"that returns, within {decimal(exact(stroke))} {length} and {decimal(exact(speed))} {rate}"
     )
     on_the_way = [(0.0, 0.0)]
 

@@ -193,6 +193,19 @@ def _compile_in_doubles(z: sp.ImmutableMatrix) -> Callable[[np.complex128], list
     )
 
 
+def first_wave(
+    z: sp.ImmutableMatrix, points: Iterable[tuple[Fraction, Fraction]]
+) -> GrowingWave | None:
+    """The wave at the first of these points (rate, frequency) at which one releases energy."""
+    waves = (wave_of(z, rate, frequency) for rate, frequency in points)
+    return next((wave for wave in waves if wave is not None), None)
+
+
+def rates_at(frequency: Fraction, number: int) -> Iterable[tuple[Fraction, Fraction]]:
+    """Rates of growth, halved so many times, at a frequency."""
+    return ((rate, frequency) for rate in halvings(frequency, number))
+
+
 def growing_wave(z: Impedance) -> GrowingWave | None:
     """A wave that takes energy out of an impedance, with Re Z < 0 at its s verified exactly.
 

@@ -4,23 +4,35 @@
     def sampled_passivity(controller, *, damping, sample_time): ...
 
 A number outside of the hypotheses is refused in one line, because the theorem does not hold for it.
+A theorem receives its numbers exactly, as rationals, and states them for a prismatic axis; with
+`axis="revolute"` the claim is in the units of that axis.
 """
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import wraps
-from typing import Any, TypeVar
+from typing import Any
 
 import sympy as sp
 
-from ...base.errors import ModelError
+from ...base.errors import ModelError, did_you_mean
+from ...base.units import AXES
+from ..claims.axis_units import use_units_of
+from ..claims.claim import Claim
 from ..linear.impedance import exact
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+Claiming = Callable[..., Claim]
+#: most samples or paths: each costs time, and a thousand late samples already take a second
+_MOST = 10_000
+#: smallest and largest size of a number that is not 0, SI: no machine is near these ends, and
+#: products of five such numbers, and their squares, still fit into double precision, in which
+#: motions are searched and replayed
+_SMALLEST, _LARGEST = Fraction(1, 10**30), Fraction(10**30)
+_NO_NUMBER = (float("nan"), float("inf"), True, 1e-300, 1e300)
 
 
 @dataclass(frozen=True)
@@ -29,54 +41,46 @@ class Hypothesis:
 
     text: for messages, such as "a number > 0";  holds: whether a value meets the condition
     outside: values that violate the condition, for tests
+    received: the value as the theorem receives it
     """
 
     text: str
     holds: Callable[[Any], bool]
     outside: tuple[Any, ...]
+    received: Callable[[Any], Any] = lambda value: value
 
     def or_none(self) -> Hypothesis:
         """The same condition, with None allowed as well."""
-        return Hypothesis(
-            f"{self.text} or None", lambda x: x is None or self.holds(x), self.outside
+        return replace(
+            self,
+            text=f"{self.text} or None",
+            holds=lambda x: x is None or self.holds(x),
+            received=lambda x: None if x is None else self.received(x),
         )
-
-
-def _is_whole(value: Any) -> bool:
-    number = exact(value)
-    return bool(0 <= number <= _MOST and number == sp.floor(number))
-
-
-#: most samples or paths: each costs time, and a thousand late samples already take a second
-_MOST = 10_000
-#: smallest and largest size of a number that is not 0, SI: no machine is near these ends, and
-#: products of five such numbers, and their squares, still fit into double precision, in which
-#: motions are searched and replayed
-_SMALLEST, _LARGEST = Fraction(1, 10**30), Fraction(10**30)
-_SIZES = "of a size from 1e-30 to 1e30"
-_NO_NUMBER = (float("nan"), float("inf"), True, 1e-300, 1e300)
 
 
 def _is_of_size(number: sp.Rational) -> bool:
     return bool(number == 0 or _SMALLEST <= abs(number) <= _LARGEST)
 
 
-def _real(text: str, holds: Callable[[sp.Rational], bool], *outside: Any) -> Hypothesis:
+def _real(text: str, holds: Callable[[sp.Rational], Any], *outside: Any) -> Hypothesis:
     """A condition on a number: 0 or of a size from 1e-30 to 1e30, and `holds`."""
     return Hypothesis(
         text,
-        lambda x: _is_of_size(exact(x)) and holds(exact(x)),
+        lambda x: _is_of_size(exact(x)) and bool(holds(exact(x))),
         (*outside, *_NO_NUMBER),
+        exact,
     )
 
 
-POSITIVE = _real("a number > 0", lambda x: bool(x > 0), 0, -1, Fraction(-1, 10**9))
-NOT_NEGATIVE = _real("a number >= 0", lambda x: bool(x >= 0), -1, Fraction(-1, 10**9))
+POSITIVE = _real("a number > 0", lambda x: x > 0, 0, -1, Fraction(-1, 10**9))
+NOT_NEGATIVE = _real("a number >= 0", lambda x: x >= 0, -1, Fraction(-1, 10**9))
 REAL = _real("a finite number", lambda x: True)
 WHOLE = Hypothesis(
     f"a whole number >= 0, at most {_MOST}",
-    _is_whole,
+    lambda x: bool(0 <= exact(x) <= _MOST and exact(x) == sp.floor(exact(x))),
     (-1, 0.5, Fraction(3, 2), _MOST + 1, *_NO_NUMBER),
+    int,
 )
 #: no condition: the function itself checks the argument
 FREE = Hypothesis("anything", lambda x: True, ())
@@ -88,41 +92,49 @@ def one_of(*values: Any) -> Hypothesis:
     return Hypothesis(text, lambda x: x in values, (max(values) + 1, min(values) - 1, 0.5))
 
 
-def require_hypotheses(**hypotheses: Hypothesis) -> Callable[[Function], Function]:
+def require_hypotheses(**hypotheses: Hypothesis) -> Callable[[Claiming], Claiming]:
     """Decorator of a theorem on numbers: checks a hypothesis for each argument at every call.
+
+    The theorem has one more argument, `axis`: "prismatic" or "revolute".
 
     raises ModelError: at a call, an argument that violates its hypothesis; at the definition, an
         argument without a hypothesis
     """
 
-    def with_hypotheses(function: Function) -> Function:
+    def with_hypotheses(function: Claiming) -> Claiming:
         signature = inspect.signature(function)
-        if set(signature.parameters) != set(hypotheses):
-            odd = sorted(set(signature.parameters) ^ set(hypotheses))
+        if odd := sorted(set(signature.parameters) ^ set(hypotheses)):
             raise ModelError(f"{function.__name__}: without hypothesis, or no argument: {odd}")
 
         @wraps(function)
-        def call(*arguments: Any, **named: Any) -> Any:
+        def call(*arguments: Any, axis: str = "prismatic", **named: Any) -> Claim:
+            if axis not in AXES:
+                raise ModelError(
+                    f'{function.__name__}: axis: found "{axis}", expected {" or ".join(AXES)}'
+                    f"{did_you_mean(str(axis), AXES)}"
+                )
             bound = signature.bind(*arguments, **named)
             bound.apply_defaults()
             for name, value in bound.arguments.items():
-                needs = hypotheses[name]
-                try:
-                    holds = needs.holds(value)
-                except ModelError as error:
-                    raise ModelError(f"{function.__name__}: {name}: {error}") from None
-                if not holds:
-                    off = isinstance(value, int | float) and not _is_of_size(exact(value))
-                    sizes = f" {_SIZES}" if off else ""
-                    raise ModelError(
-                        f"{function.__name__}: {name}: expected {needs.text}{sizes}, found {value}"
-                    )
-            return function(*arguments, **named)
+                bound.arguments[name] = _receive(function.__name__, name, value, hypotheses[name])
+            return use_units_of(axis, function(*bound.args, **bound.kwargs))
 
         call.hypotheses = hypotheses  # type: ignore[attr-defined]
-        return call  # type: ignore[return-value]
+        return call
 
     return with_hypotheses
+
+
+def _receive(function: str, name: str, value: Any, needs: Hypothesis) -> Any:
+    """The value as the theorem receives it; raises ModelError: it violates its hypothesis."""
+    try:
+        if needs.holds(value):
+            return needs.received(value)
+        off = isinstance(value, int | float) and not _is_of_size(exact(value))
+    except ModelError as error:
+        raise ModelError(f"{function}: {name}: {error}") from None
+    sizes = " of a size from 1e-30 to 1e30" if off else ""
+    raise ModelError(f"{function}: {name}: expected {needs.text}{sizes}, found {value}")
 
 
 def hypotheses_of(function: Callable[..., Any]) -> Mapping[str, Hypothesis]:

@@ -8,15 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from ...base.frozen import ByValue
 from ...controllers import Stage
 from ...simulate import Sampling
-from ..claims.claim import Claim, Counterexample
+from ..claims.claim import Claim, Counterexample, Proof, Refutation, Unknown
 from ..identified import IdentifiedDevice
+from ..law_facts import ANY_TIME, LawFacts, law_facts
 from ..search.by_simulation import SimulatedMotion
 from ._hypotheses import hypotheses_of
+
+Time = Literal["continuous", "sampled", "any"]
 
 
 @dataclass(frozen=True)
@@ -47,19 +50,24 @@ class Question:
     estimates: bool = True
 
     @property
-    def bound(self) -> float | None:
-        """Largest force that the cancellation commands, N; None where it declares no bound."""
-        return self.cancellation.value_of("bound") if self.cancellation else None
+    def law(self) -> LawFacts:
+        """What follows from the equations of the cancellation, in the time of the question."""
+        if self.cancellation is None:
+            return LawFacts()
+        period = self.computer.period if self.computer else 0.0
+        return law_facts(self.cancellation, (period, period))
 
     @property
-    def bristle_stiffness(self) -> float | None:
-        """Bristle stiffness of a cancellation that is a Dahl bristle, N/m; None for other laws."""
-        return self.cancellation.value_of("bristle_stiffness") if self.cancellation else None
+    def time_of_bound(self) -> Time:
+        """In which time the bound of the cancellation holds: "any", or that of the question."""
+        if self.cancellation is None or law_facts(self.cancellation, ANY_TIME).bound is not None:
+            return "any"
+        return "sampled" if self.computer else "continuous"
 
     @property
     def bristle(self) -> tuple[float, float] | None:
         """(level, stiffness) of a cancellation that is a Dahl bristle, N and N/m; else None."""
-        level, stiffness = self.bound, self.bristle_stiffness
+        level, stiffness = self.law.bound, self.law.bristle_stiffness
         return None if level is None or stiffness is None else (level, stiffness)
 
     @property
@@ -73,9 +81,6 @@ class Question:
         samples = self.computer.delay / self.computer.period
         # 1e-9: a delay written as a multiple of the period, rounded
         return round(samples) if abs(samples - round(samples)) <= 1e-9 * max(samples, 1) else None
-
-
-Time = Literal["continuous", "sampled", "any"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,26 +108,6 @@ class TopicClaim(ByValue):
         return f"{self.claim.heading}{' (in continuous time)' * limited}"
 
 
-def simulate_nothing(counterexample: Counterexample) -> SimulatedMotion | None:
-    """Default of `Theorem.simulate`: no simulation, equations alone replay a refuting motion."""
-    return None
-
-
-def cover_nothing(question: Question) -> Sequence[str]:
-    """Default of `Theorem.covers`: no effect besides those of friction."""
-    return ()
-
-
-def ask_nothing(question: Question) -> bool:
-    """Default of `Theorem.applies`: no question, the theorem is about numbers alone."""
-    return False
-
-
-def claim_nothing(question: Question) -> Sequence[TopicClaim]:
-    """Default of `Theorem.claims`: no claim."""
-    return ()
-
-
 @dataclass(frozen=True)
 class Theorem:
     """A theorem: its functions of numbers, and the questions about devices that it answers.
@@ -138,11 +123,42 @@ class Theorem:
 
     mathematics: tuple[Callable[..., Claim], ...]
     order: int
-    applies: Callable[[Question], bool] = ask_nothing
-    claims: Callable[[Question], Sequence[TopicClaim]] = claim_nothing
-    covers: Callable[[Question], Sequence[str]] = cover_nothing
-    simulate: Callable[[Counterexample], SimulatedMotion | None] = simulate_nothing
+    applies: Callable[[Question], bool] = lambda question: False
+    claims: Callable[[Question], Sequence[TopicClaim]] = lambda question: ()
+    covers: Callable[[Question], Sequence[str]] = lambda question: ()
+    simulate: Callable[[Counterexample], SimulatedMotion | None] = lambda motion: None
 
     def __post_init__(self) -> None:
         for function in self.mathematics:
             hypotheses_of(function)
+
+
+def decide(
+    statement: str,
+    holds: bool,
+    *,
+    proof: Callable[[], Proof],
+    motion: Callable[[], Any],
+    how: str | Callable[[Any], str],
+    why_open: str = "",
+) -> Claim:
+    """The claim of a theorem: proved where its condition holds, else as `refute` says."""
+    return Claim(statement, proof()) if holds else refute(statement, motion(), how, why_open)
+
+
+def refute(
+    statement: str, record: Any, how: str | Callable[[Any], str], why_open: str = ""
+) -> Claim:
+    """A claim that a motion refutes, or that is unknown.
+
+    record: a motion that releases energy, or None where the search has none
+    how: of the refutation, in words;  why_open: what an unknown claim says
+    """
+    if record is None:
+        return Claim(statement, Unknown(why_open))
+    return Claim(statement, Refutation(how if isinstance(how, str) else how(record), record))
+
+
+def leave_open(topic: str, statement: str, why: str, **more: Any) -> TopicClaim:
+    """A claim that no theorem answers."""
+    return TopicClaim(topic, Claim(statement, Unknown(why)), **more)

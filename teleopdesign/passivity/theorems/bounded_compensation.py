@@ -14,15 +14,17 @@ from typing import Any
 
 import sympy as sp
 
-from ...base.errors import ModelError
-from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown
+from ..claims.claim import Claim, Evidence, Proof, Unknown
 from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal, exact
-from ..rate_independent import Coulomb, Dahl, symmetric_cycle
-from . import _dahl_certificates as shown
+from ..rate_independent import Coulomb, Cycle, Dahl, symmetric_cycle
+from ._certificates import certificate
 from ._cycle_simulation import simulate_cycle
 from ._hypotheses import POSITIVE, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim
+from ._theorem import Question, Theorem, TopicClaim, decide
+
+#: N/m for each N of level: a bristle so stiff that its length does not matter to a hand
+_STIFFEST = 1e3
 
 
 @require_hypotheses(coulomb_level=POSITIVE, bound=POSITIVE)
@@ -36,31 +38,32 @@ def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
     returns: proved if and only if f_D <= f_C; else refuted by a Dahl compensator in a cycle
     raises ModelError: an argument that is not > 0
     """
-    f_c, f_d = positive_numbers(coulomb_level=coulomb_level, bound=bound)
-    statement = (
-        f"Coulomb friction {decimal(f_c)} N with any compensator within {decimal(f_d)} N is passive"
+    f_c, f_d = coulomb_level, bound
+    return decide(
+        f"Coulomb friction {decimal(f_c)} N with any compensator within {decimal(f_d)} N is "
+        "passive",
+        f_d <= f_c,
+        proof=lambda: proof_of_level(
+            "storage 0, abs(d) <= f_D <= f_C",
+            f_d,
+            f_c,
+            certificate("bounded_compensator", f_C=f_c, f_D=f_d),
+        ),
+        motion=lambda: cycle_beyond_onset(Dahl(float(f_d), _STIFFEST * float(f_d)), float(f_c)),
+        how="a Dahl compensator of that level in a cycle",
     )
-    if f_d <= f_c:
-        certificate = shown.bounded_compensator({"f_C": f_c, "f_D": f_d})
-        return Claim(
-            statement, proof_of_level("storage 0, abs(d) <= f_D <= f_C", f_d, f_c, certificate)
-        )
-    stiffest = Dahl(float(f_d), 1e3 * float(f_d))
-    cycle = symmetric_cycle(
-        stiffest, [Coulomb(float(f_c))], amplitude_beyond_onset(stiffest, float(f_c))
-    )
-    return Claim(statement, Refutation("a Dahl compensator of that level in a cycle", cycle))
 
 
-def amplitude_beyond_onset(helps: Dahl, f_c: float) -> float:
-    """An amplitude at which cycles release energy, m: twice the u with 1 - 1/u = f_C/f_D, about.
+def cycle_beyond_onset(helps: Dahl, f_c: float) -> Cycle:
+    """A cycle that releases energy: of twice the amplitude u with 1 - 1/u = f_C/f_D, about.
 
-    u is the amplitude in bristle lengths. Levels that are equal as floats count as one unit in the
-    last place apart. The energy of such a cycle is then lost in rounding, and refutes nothing.
+    u is in bristle lengths. Levels that are equal as floats count as one unit in the last place
+    apart. The energy of such a cycle is then lost in rounding, and refutes nothing.
     helps: the Dahl compensator;  f_c: Coulomb level, N
     """
     length = helps.level / helps.stiffness
-    return length + 2 * length / max(1 - f_c / helps.level, 2.0**-52)
+    amplitude = length + 2 * length / max(1 - f_c / helps.level, 2.0**-52)
+    return symmetric_cycle(helps, [Coulomb(f_c)], amplitude)
 
 
 def proof_of_level(
@@ -75,40 +78,14 @@ def proof_of_level(
     return Proof(method, tuple(certificates), float(f_c - f_d), "N of level", text)
 
 
-def positive_numbers(**values: Any) -> list[sp.Expr]:
-    """The values as exact numbers; raises ModelError for a value that is not > 0."""
-    numbers = []
-    for name, value in values.items():
-        number = exact(value)
-        if number <= 0:
-            raise ModelError(f"{name}: expected a number > 0, found {number}")
-        numbers.append(number)
-    return numbers
-
-
-def _applies(question: Question) -> bool:
-    """Whether the question is about a bounded law and ideal friction.
-
-    For friction that deflects before it slides, a bound of the force alone is not sufficient.
-    """
-    return question.bound is not None and question.device.presliding is None
-
-
 def _claims(question: Question) -> list[TopicClaim]:
-    device, bound = question.device, question.bound
+    device, bound = question.device, question.law.bound
     assert bound is not None
-    acting = device.acting_force(bound)
-    claims = [TopicClaim("any law within the level", _compare_level(device, acting), time="any")]
+    acting, time = device.acting_force(bound), question.time_of_bound
+    claims = [TopicClaim("any law within the level", _compare_level(device, acting), time=time)]
     if question.estimates:
         claims.append(TopicClaim("the same, with damping", _compare_at_every_speed(device, acting)))
     return claims
-
-
-def _covers(question: Question) -> Sequence[str]:
-    """Effects of the actuation, where the bound of the acting force is known."""
-    bound = question.bound
-    assert bound is not None
-    return () if math.isinf(question.device.acting_force(bound)) else question.device.actuation
 
 
 def _compare_level(device: IdentifiedDevice, acting: float) -> Claim:
@@ -122,20 +99,27 @@ def _compare_level(device: IdentifiedDevice, acting: float) -> Claim:
 def _compare_at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
     """The claim that level and damping together cover a law with a force within `acting`, N."""
     least, unit = device.least_resistance.low, device.force_unit.replace("*", " ")
-    margin = least - acting
     statement = (
         f"ideal friction of the device and its viscous damping resist with more than "
-        f"{acting:g} {unit} at every speed, so that no law within it drives a motion"
+        f"{decimal(exact(acting))} {unit} at every speed, so that no law within it drives a motion"
     )
     searched = (
         f"interval arithmetic: the resistance is at least {least:.4g} {unit} in the 95 % interval"
     )
-    return Claim(statement, Evidence(margin >= 0, searched, margin, unit))
+    return Claim(statement, Evidence(least >= acting, searched, least - acting, unit))
+
+
+def _covers(question: Question) -> Sequence[str]:
+    """Effects of the actuation, where the bound of the acting force is known."""
+    bound = question.law.bound
+    assert bound is not None
+    return () if math.isinf(question.device.acting_force(bound)) else question.device.actuation
 
 
 THEOREM = Theorem(
     mathematics=(bounded_compensation,),
-    applies=_applies,
+    # for friction that deflects before it slides, a bound of the force alone is not sufficient
+    applies=lambda q: q.device.presliding is None and q.law.bound is not None,
     claims=_claims,
     order=10,
     covers=_covers,

@@ -13,13 +13,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import sympy as sp
 
-from ..claims.certificate import Certificate, Term, storage_certificate
 from ..claims.claim import Claim, Evidence, Proof, Refutation
-from ..linear.impedance import decimal, exact
+from ..linear.impedance import decimal
 from ..rate_independent import Coulomb, Cycle, Dahl, Element, Spring, lost_share, symmetric_cycle
-from ._dahl_certificates import Values, d, f_D
+from ._certificates import certificate
 from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
 from ._theorem import Theorem
 from .dahl_compensation import dahl_compensation
@@ -57,32 +55,31 @@ def any_environment(
         the spring balanced by the environment
     raises ModelError: an argument outside of its hypothesis
     """
-    f_1, f_d = exact(motor_level), exact(compensator_level)
+    f_1, f_d = motor_level, compensator_level
     statement = (
         f"a joint with motor friction {decimal(f_1)} N, compensated there by {decimal(f_d)} N, is "
         "passive beside any environment"
     )
-    if f_d <= f_1:
-        values = {
-            "f_1": f_1,
-            "f_2": exact(link_level),
-            "k": exact(transmission_stiffness),
-            "c": exact(transmission_damping),
-            "m_1": exact(motor_inertia),
-            "m_2": exact(link_inertia),
-            "f_D": f_d,
-        }
-        certificate = _certificate(values)
-        equality = "while the motor slides" if f_d == f_1 else ""
-        method = "V = kinetic energies + k (x_1 - x_2)^2/2"
-        proof = Proof(method, (certificate,), float(f_1 - f_d), "N", equality)
-        return Claim(statement, proof)
-    clamped = dahl_compensation(
-        coulomb_level=motor_level,
-        compensator_level=compensator_level,
-        compensator_stiffness=compensator_stiffness,
+    if f_d > f_1:
+        clamped = dahl_compensation(
+            coulomb_level=f_1,
+            compensator_level=f_d,
+            compensator_stiffness=compensator_stiffness,
+        )
+        return Claim(statement, clamped.verdict)
+    made = certificate(
+        "motor_and_link",
+        f_1=f_1,
+        f_2=link_level,
+        k=transmission_stiffness,
+        c=transmission_damping,
+        m_1=motor_inertia,
+        m_2=link_inertia,
+        f_D=f_d,
     )
-    return Claim(statement, clamped.verdict)
+    equality = "while the motor slides" if f_d == f_1 else ""
+    method = "V = kinetic energies + k (x_1 - x_2)^2/2"
+    return Claim(statement, Proof(method, (made,), float(f_1 - f_d), "N", equality))
 
 
 @require_hypotheses(
@@ -118,19 +115,22 @@ def free_motion(
     returns: refuted by a closed path, or evidence, because the searched paths are not all motions
     raises ModelError: an argument outside of its hypothesis
     """
-    rng, helps = np.random.default_rng(rng), Dahl(compensator_level, compensator_stiffness)
-    against: list[Element] = [Coulomb(motor_level), Spring(link_level, transmission_stiffness)]
+    rng, levels = np.random.default_rng(rng), (motor_level, link_level, compensator_level)
+    f_1, f_2, f_d = map(float, levels)
+    k, sigma = float(transmission_stiffness), float(compensator_stiffness)
+    helps = Dahl(f_d, sigma)
+    against: list[Element] = [Coulomb(f_1), Spring(f_2, k)]
+    texts = [decimal(x) for x in (*levels, transmission_stiffness, compensator_stiffness)]
     statement = (
-        f"slow free motion of a joint (motor {motor_level:g} N, link {link_level:g} N behind "
-        f"{transmission_stiffness:g} N/m) with compensator ({compensator_level:g} N, "
-        f"{compensator_stiffness:g} N/m) releases no energy"
+        f"slow free motion of a joint (motor {texts[0]} N, link {texts[1]} N behind {texts[3]} "
+        f"N/m) with compensator ({texts[2]} N, {texts[4]} N/m) releases no energy"
     )
     margin = free_motion_margin(
-        motor_level=motor_level,
-        link_level=link_level,
-        transmission_stiffness=transmission_stiffness,
-        compensator_level=compensator_level,
-        compensator_stiffness=compensator_stiffness,
+        motor_level=f_1,
+        link_level=f_2,
+        transmission_stiffness=k,
+        compensator_level=f_d,
+        compensator_stiffness=sigma,
     )
     cycle = (
         _worst_cycle(helps, against) if margin < 0 else _search_cycle(helps, against, rng, paths)
@@ -208,63 +208,6 @@ def _add_steps(helps: Dahl, against: Sequence[Element], lengths: Sequence[float]
             if cycle.energy > (best.energy if best else 0.0):
                 best = cycle
     return best
-
-
-def _certificate(values: Values) -> Certificate:
-    """Certificate that motor and link with a compensator at the motor are passive at both ends.
-
-    Coulomb friction f_1 acts at the motor and f_2 at the link, with spring k and damper c between
-    them. The compensator has abs(d) <= f_D <= f_1. The forces are u on the motor and f_env on the
-    link.
-    values: f_1, f_2, k, c, m_1, m_2, f_D
-    """
-    v1, v2, stretch, u, f_env = sp.symbols("v1 v2 stretch u f_env", real=True)
-    sign_v1, sign_v2 = sp.symbols("sign_v1 sign_v2", real=True)
-    f_1, f_2, k, c, m_1, m_2 = sp.symbols("f_1 f_2 k c m_1 m_2", real=True)
-    between = k * stretch + c * (v1 - v2)
-    half = sp.Rational(1, 2)
-    forward: list[Term] = [
-        (1, {"abs_v1": 1, "enough": 1}, 1),
-        (1, {"abs_v2": 1, "f_2": 1}, 1),
-        (1, {"c": 1}, v1 - v2),
-    ]
-    by_sign = {
-        f"{a} {b}": [*forward, (1, {"abs_v1": 1, "below" if a > 0 else "above": 1}, 1)]
-        for a in (1, -1)
-        for b in (1, -1)
-    }
-    return storage_certificate(
-        "motor and link with a compliance between them, and a compensator at the motor with abs(d) "
-        "<= f_D <= f_1, are passive at both ends; V = kinetic energies + k (x_1 - x_2)^2/2",
-        supply=u * v1 + f_env * v2,
-        storage=m_1 * v1**2 / 2 + m_2 * v2**2 / 2 + k * stretch**2 / 2,
-        rates={
-            "v1": (u + d - f_1 * sign_v1 - between) / m_1,
-            "v2": (between - f_2 * sign_v2 + f_env) / m_2,
-            "stretch": v1 - v2,
-        },
-        constants=["k", "m_1", "m_2"],
-        positive={"m_1": m_1, "m_2": m_2, "k": k},
-        nonnegative={
-            "f_2": f_2,
-            "c": c,
-            "enough": f_1 - f_D,
-            "above": f_D + d,
-            "below": f_D - d,
-        },
-        signs=["v1", "v2"],
-        proofs={
-            "supply": by_sign,
-            "storage": {
-                "": [
-                    (half, {"m_1": 1}, v1),
-                    (half, {"m_2": 1}, v2),
-                    (half, {"k": 1}, stretch),
-                ]
-            },
-        },
-        example={**values, "d": 0, "v1": 1, "v2": 1},
-    )
 
 
 THEOREM = Theorem(mathematics=(any_environment, free_motion), order=76)

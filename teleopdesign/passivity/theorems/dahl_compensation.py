@@ -14,23 +14,15 @@ import numpy as np
 import sympy as sp
 
 from ...base.errors import ModelError
-from ..claims.claim import Claim, Proof, Refutation, Unknown
+from ..claims.claim import Claim, Proof
 from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal
-from ..rate_independent import (
-    Coulomb,
-    Cycle,
-    Dahl,
-    Element,
-    dahl_loss,
-    lost_share,
-    symmetric_cycle,
-)
-from . import _dahl_certificates as shown
+from ..rate_independent import Coulomb, Cycle, Dahl, dahl_loss, lost_share, symmetric_cycle
+from ._certificates import certificate
 from ._cycle_simulation import simulate_cycle
 from ._hypotheses import POSITIVE, require_hypotheses
-from ._theorem import Question, Theorem, Time, TopicClaim
-from .bounded_compensation import amplitude_beyond_onset, positive_numbers, proof_of_level
+from ._theorem import Question, Theorem, Time, TopicClaim, decide
+from .bounded_compensation import cycle_beyond_onset, proof_of_level
 from .lugre import add_bristle_damping
 
 
@@ -60,34 +52,39 @@ def dahl_compensation(
         unknown where the condition fails by too little for double precision
     raises ModelError: an argument outside of its hypothesis, or highest_level below coulomb_level
     """
-    f_c, f_d, stiffness = positive_numbers(
-        coulomb_level=coulomb_level,
-        compensator_level=compensator_level,
-        compensator_stiffness=compensator_stiffness,
-    )
-    top = f_c if highest_level is None else positive_numbers(highest_level=highest_level)[0]
+    f_c, f_d, stiffness = coulomb_level, compensator_level, compensator_stiffness
+    top = f_c if highest_level is None else highest_level
     if top < f_c:
         raise ModelError(
             f"highest_level: {decimal(top)} N is below coulomb_level, {decimal(f_c)} N"
         )
-    helps = Dahl(float(f_d), float(stiffness))
+    helps, values = Dahl(float(f_d), float(stiffness)), {"f_D": f_d, "sigma_D": stiffness}
+    compensator = f"a Dahl compensator ({decimal(f_d)} N, {decimal(stiffness)} N/m)"
     if presliding_stiffness is None:
-        return _ideal(f_c, f_d, stiffness, helps)
-    (presliding,) = positive_numbers(presliding_stiffness=presliding_stiffness)
+        return decide(
+            f"Coulomb friction {decimal(f_c)} N with {compensator} is passive",
+            f_d <= f_c,
+            proof=lambda: proof_of_level(
+                "storage 0, abs(d) <= f_D <= f_C",
+                f_d,
+                f_c,
+                certificate("dahl_bound", f_C=f_c, **values),
+                certificate("sampled_bound", f_D=f_d),
+            ),
+            motion=lambda: cycle_beyond_onset(helps, float(f_c)),
+            how="a cycle beyond the onset amplitude",
+        )
+    p = presliding_stiffness
     levels = f"{decimal(f_c)} N" if top == f_c else f"{decimal(f_c)} to {decimal(top)} N"
-    statement = (
-        f"Dahl friction ({levels}, {decimal(presliding)} N/m) with a Dahl compensator "
-        f"({decimal(f_d)} N, {decimal(stiffness)} N/m) is passive"
+    return decide(
+        f"Dahl friction ({levels}, {decimal(p)} N/m) with {compensator} is passive",
+        f_d <= f_c and stiffness**2 * top <= p**2 * f_d,
+        proof=lambda: _pair_proof(f_c, top, f_d, stiffness, p),
+        motion=lambda: _best_cycle(helps, Dahl(float(f_c if f_d > f_c else top), float(p))),
+        how="a cycle of "
+        + ("large motion: f_D > f_C" if f_d > f_c else "small motion: sigma_D^2/f_D too large"),
+        why_open="the condition fails, but by so little that no cycle shows it in double precision",
     )
-    if f_d <= f_c and stiffness**2 * top <= presliding**2 * f_d:
-        return Claim(statement, _pair_proof(f_c, top, f_d, stiffness, presliding))
-    against = Dahl(float(f_c if f_d > f_c else top), float(presliding))
-    cycle = _best_cycle(helps, against)
-    if cycle is None:
-        why = "the condition fails, but by so little that no cycle shows it in double precision"
-        return Claim(statement, Unknown(why))
-    reason = "large motion: f_D > f_C" if f_d > f_c else "small motion: sigma_D^2/f_D too large"
-    return Claim(statement, Refutation(f"a cycle of {reason}", cycle))
 
 
 def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: float) -> float:
@@ -102,22 +99,22 @@ def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: 
     """
     from scipy.optimize import brentq
 
-    if min(coulomb_level, stiffness, amplitude) <= 0:
-        raise ModelError(
-            "largest_passive_level: expected levels, stiffness and amplitude > 0, found "
-            f"{coulomb_level:g}, {stiffness:g}, {amplitude:g}"
-        )
+    _refuse_not_positive(
+        "largest_passive_level: expected levels, stiffness and amplitude > 0",
+        coulomb_level,
+        stiffness,
+        amplitude,
+    )
 
     def out(level: float) -> float:
         return dahl_loss(level, stiffness, amplitude) / (4 * amplitude) - coulomb_level
 
     # for a level without limit the compensator is a spring, which releases nothing
     levels = coulomb_level * np.geomspace(1.0, 1e6, 4001)
-    above = [f for f in levels if out(float(f)) > 0]
-    if not above:
+    k = next((k for k, level in enumerate(levels) if out(float(level)) > 0), None)
+    if k is None:
         return float("inf")
-    k = int(np.searchsorted(levels, above[0]))
-    return float(brentq(out, levels[max(k - 1, 0)], above[0], xtol=1e-12 * coulomb_level))
+    return float(brentq(out, levels[max(k - 1, 0)], levels[k], xtol=1e-12 * coulomb_level))
 
 
 def largest_ratio(u: float, *, motion: Literal["cycles", "closed paths"] = "cycles") -> float:
@@ -143,12 +140,15 @@ def largest_one_off_energy(*, level: float, stiffness: float, u: float) -> float
     level: f_D, N;  stiffness: sigma_D, N/m;  u: amplitude in bristle lengths, either way
     raises ModelError: an argument that is not > 0
     """
-    if min(level, stiffness, u) <= 0:
-        raise ModelError(
-            "largest_one_off_energy: expected level, stiffness and amplitude > 0, found "
-            f"{level:g}, {stiffness:g}, {u:g}"
-        )
+    _refuse_not_positive(
+        "largest_one_off_energy: expected level, stiffness and amplitude > 0", level, stiffness, u
+    )
     return (level * math.expm1(-2 * u)) ** 2 / (2 * stiffness)
+
+
+def _refuse_not_positive(expected: str, *values: float) -> None:
+    if min(values) <= 0:
+        raise ModelError(f"{expected}, found {', '.join(f'{x:g}' for x in values)}")
 
 
 def onset_amplitude(
@@ -191,32 +191,17 @@ def self_motion_speed(*, coulomb_level: float, compensator_level: float, damping
     return excess / damping
 
 
-def _ideal(f_c: sp.Expr, f_d: sp.Expr, stiffness: sp.Expr, helps: Dahl) -> Claim:
-    statement = (
-        f"Coulomb friction {decimal(f_c)} N with a Dahl compensator "
-        f"({decimal(f_d)} N, {decimal(stiffness)} N/m) is passive"
-    )
-    values = {"f_C": f_c, "f_D": f_d, "sigma_D": stiffness}
-    if f_d <= f_c:
-        certificates = shown.dahl_bound(values), shown.sampled_bound({"f_D": f_d})
-        return Claim(
-            statement, proof_of_level("storage 0, abs(d) <= f_D <= f_C", f_d, f_c, *certificates)
-        )
-    against: list[Element] = [Coulomb(float(f_c))]
-    cycle = symmetric_cycle(helps, against, amplitude_beyond_onset(helps, float(f_c)))
-    return Claim(statement, Refutation("a cycle beyond the onset amplitude", cycle))
-
-
 def _pair_proof(
     f_c: sp.Expr, top: sp.Expr, f_d: sp.Expr, stiffness: sp.Expr, presliding: sp.Expr
 ) -> Proof:
     equality = ["small motion"] if stiffness**2 * top == presliding**2 * f_d else []
+    values = {"f_D": f_d, "sigma_D": stiffness}
     if stiffness == presliding:  # then the conditions leave f_D = f_C = f_max
-        certificate = shown.identical_pair({"f_D": f_d, "sigma_D": stiffness})
-        return proof_of_level("V = f abs(p - d)/sigma", f_d, f_c, certificate, also=equality)
-    values = {"f_D": f_d, "sigma_D": stiffness, "sigma_p": presliding, "F_min": f_c, "F_max": top}
-    certificate = shown.presliding_pair(values)
-    return proof_of_level("a quadratic storage function", f_d, f_c, certificate, also=equality)
+        method, made = "V = f abs(p - d)/sigma", certificate("identical_pair", **values)
+    else:
+        method = "a quadratic storage function"
+        made = certificate("presliding_pair", **values, sigma_p=presliding, F_min=f_c, F_max=top)
+    return proof_of_level(method, f_d, f_c, made, also=equality)
 
 
 def _best_cycle(helps: Dahl, against: Dahl) -> Cycle | None:
@@ -227,17 +212,17 @@ def _best_cycle(helps: Dahl, against: Dahl) -> Cycle | None:
     lengths = [e.level / e.stiffness for e in (helps, against)]
     middle = math.sqrt(lengths[0] * lengths[1])
     amplitudes = np.geomspace(1e-2 * min(lengths), 1e12 * max(lengths), 600)
-    shares = np.array([_share(helps, against, float(a)) for a in amplitudes])
+
+    def share(amplitude: float) -> float:
+        gives, takes = (dahl_loss(e.level, e.stiffness, amplitude) for e in (helps, against))
+        return 1 - takes / gives
+
+    shares = np.array([share(float(a)) for a in amplitudes])
     if shares.max() < 1e-12:  # within rounding
         return None
     good = amplitudes[shares >= shares.max() / 2]
     best = good[np.argmin(np.abs(np.log(good / middle)))]
     return symmetric_cycle(helps, [against], float(best))
-
-
-def _share(helps: Dahl, against: Dahl, amplitude: float) -> float:
-    energy = dahl_loss(helps.level, helps.stiffness, amplitude)
-    return 1 - dahl_loss(against.level, against.stiffness, amplitude) / energy
 
 
 def dahl_claim(
@@ -255,9 +240,8 @@ def dahl_claim(
     if presliding is None:
         return dahl_compensation(**values)
     softest = presliding.low if certain else presliding.estimate
-    pair = dahl_compensation(**values, presliding_stiffness=softest, highest_level=high)
     return add_bristle_damping(
-        pair,
+        dahl_compensation(**values, presliding_stiffness=softest, highest_level=high),
         coulomb_level=low,
         highest_level=high,
         stiffness=softest,
@@ -270,12 +254,11 @@ def _claims(question: Question) -> list[TopicClaim]:
     """Claims at the estimates, and for all values within the intervals; in continuous time."""
     assert question.bristle is not None
     device, (level, stiffness) = question.device, question.bristle
-    sampled = question.computer is not None and device.presliding is not None
-    when = ", continuous time" if sampled else ""
-    # beside ideal friction it rests on the bound alone, which a computer keeps too
-    time: Time = "any" if device.presliding is None else "continuous"
-    topic = f"95 % interval{when}"
-    certain = TopicClaim(topic, dahl_claim(device, level, stiffness), time=time)
+    ideal = device.presliding is None
+    when = ", continuous time" if question.computer is not None and not ideal else ""
+    # beside ideal friction it rests on the bound alone, which a computer may keep too
+    time: Time = question.time_of_bound if ideal else "continuous"
+    certain = TopicClaim(f"95 % interval{when}", dahl_claim(device, level, stiffness), time=time)
     if not question.estimates:
         return [certain]
     estimate = dahl_claim(device, level, stiffness, certain=False)

@@ -11,6 +11,7 @@ releases energy for any delay with w tau < pi.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
@@ -19,13 +20,12 @@ import sympy as sp
 
 from ...frequency.closed_forms import dahl
 from ...realise.lti import S
-from ..claims.certificate import Certificate, storage_certificate
-from ..claims.claim import Claim, Proof, Refutation, Unknown
-from ..linear.impedance import decimal, exact
-from ..search.growing_wave import GrowingWave, halvings, wave_of
-from ._dahl_certificates import Values, sigma_D
+from ..claims.claim import Claim, Proof
+from ..linear.impedance import decimal
+from ..search.growing_wave import first_wave, rates_at
+from ._certificates import certificate
 from ._hypotheses import NOT_NEGATIVE, require_hypotheses
-from ._theorem import Theorem
+from ._theorem import Theorem, decide
 
 #: just above 0.2172336, which is minus the least value of sin(y)/y (at tan y = y, y = 4.4934)
 SINC_LEAST = sp.Rational(21724, 100000)
@@ -73,63 +73,32 @@ def delayed_small_motion(
     returns: proved, or refuted by a growing wave; unknown where the search has no wave
     raises ModelError: an argument outside of its hypothesis
     """
-    b, tau = exact(damping), exact(delay)
-    sigma_d, sigma_p = exact(compensator_stiffness), exact(presliding_stiffness)
-    statement = (
-        f"small motion with damping {decimal(b)} N s/m, presliding {decimal(sigma_p)} N/m and a "
-        f"compensator {decimal(sigma_d)} N/m that is {decimal(tau)} s late is passive"
-    )
-    if sigma_d <= sigma_p and b >= SINC_LEAST * sigma_d * tau:
-        certificate = _certificate({"B": b, "sigma_D": sigma_d, "tau": tau})
-        method = "Re Z >= 0 at every frequency, pole at 0 with residue sigma_p - sigma_D >= 0"
-        margin = float(b - SINC_LEAST * sigma_d * tau)
-        return Claim(statement, Proof(method, (certificate,), margin, "N s/m"))
+    b, tau, sigma_d, sigma_p = damping, delay, compensator_stiffness, presliding_stiffness
+    margin = b - SINC_LEAST * sigma_d * tau
     late = sp.exp(-S * tau) if tau else sp.S(1)
     z = sp.ImmutableMatrix([[b + (sigma_p - sigma_d * late) / S]])
-    wave = _wave(z, float(tau))
-    if wave is None:
-        return Claim(statement, Unknown("the condition fails, but no wave was found"))
-    f = float(wave.frequency) / (2 * np.pi)
-    return Claim(statement, Refutation(f"a growing wave at {f:.4g} Hz", wave))
-
-
-def _wave(z: sp.ImmutableMatrix, tau: float) -> GrowingWave | None:
-    """A growing wave near the first minimum of sin(w tau)/(w tau), or an exponential."""
-    for y in (4.4934, 4.0, 5.0, 3.5, 5.5):
-        if tau:
-            w = Fraction(y / tau)
-            for rate in halvings(w, 24):
-                wave = wave_of(z, rate, w)
-                if wave is not None:
-                    return wave
-    for k in range(40, -41, -1):
-        wave = wave_of(z, Fraction(2) ** k, Fraction(0))
-        if wave is not None:
-            return wave
-    return None
-
-
-def _certificate(values: Values) -> Certificate:
-    """Certificate that Re Z = B + sigma_D tau q >= 0 for q = sin(y)/y.
-
-    values: B, sigma_D, tau
-    """
-    b, tau, q = sp.symbols("B tau q", real=True)
-    return storage_certificate(
-        "Re Z = B + sigma_D tau q >= 0 for q >= -21724/100000 where B >= 21724/100000 sigma_D tau",
-        supply=b + sigma_D * tau * q,
-        nonnegative={
-            "enough": b - SINC_LEAST * sigma_D * tau,
-            "q": q + SINC_LEAST,
-            "sigma_D": sigma_D,
-            "tau": tau,
-        },
-        proofs={
-            "supply": {"": [(1, {"enough": 1}, 1), (1, {"sigma_D": 1, "tau": 1, "q": 1}, 1)]},
-            "storage": {"": ()},
-        },
-        example={**values, "q": 1},
+    return decide(
+        f"small motion with damping {decimal(b)} N s/m, presliding {decimal(sigma_p)} N/m and a "
+        f"compensator {decimal(sigma_d)} N/m that is {decimal(tau)} s late is passive",
+        sigma_d <= sigma_p and margin >= 0,
+        proof=lambda: Proof(
+            "Re Z >= 0 at every frequency, pole at 0 with residue sigma_p - sigma_D >= 0",
+            (certificate("late_negative_spring", B=b, sigma_D=sigma_d, tau=tau),),
+            float(margin),
+            "N s/m",
+        ),
+        motion=lambda: first_wave(z, _where(float(tau))),
+        how=lambda wave: f"a growing wave at {float(wave.frequency) / (2 * np.pi):.4g} Hz",
+        why_open="the condition fails, but no wave was found",
     )
+
+
+def _where(tau: float) -> Iterator[tuple[Fraction, Fraction]]:
+    """Rates and frequencies about the first minimum of sin(w tau)/(w tau), then exponentials."""
+    for y in (4.4934, 4.0, 5.0, 3.5, 5.5) if tau else ():
+        yield from rates_at(Fraction(y / tau), 24)
+    for k in range(40, -41, -1):
+        yield Fraction(2) ** k, Fraction(0)
 
 
 THEOREM = Theorem(mathematics=(delayed_small_motion,), order=72)

@@ -13,14 +13,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import sympy as sp
-
-from ..claims.certificate import Certificate, storage_certificate
+from ...realise.lti import S
 from ..claims.claim import Claim, Proof
-from ..linear.impedance import decimal, exact
+from ..linear.impedance import decimal
 from ..two_port.claims import absolutely_stable
 from ..two_port.two_port import teleoperator_two_port
-from ._dahl_certificates import Values
+from ._certificates import certificate
 from ._hypotheses import NOT_NEGATIVE, REAL, require_hypotheses
 from ._theorem import Theorem
 
@@ -50,43 +48,25 @@ def delayed_spring(
         wave with a passive termination at one port
     raises ModelError: an argument outside of its hypothesis
     """
-    b_m, b_s, k, late = map(exact, (master_damping, slave_damping, stiffness, delay))
-    master, slave = (
-        exact(m) * sp.Symbol("s") + b for m, b in ((master_inertia, b_m), (slave_inertia, b_s))
-    )
+    b_m, b_s, k, late = master_damping, slave_damping, stiffness, delay
     statement = (
         f"the teleoperator with dampings {decimal(b_m)}, {decimal(b_s)} N s/m, spring "
         f"{decimal(k)} N/m and delay {decimal(late)} s each way is absolutely stable"
     )
-    if min(b_m, b_s) >= 0 and b_m * b_s >= (k * late) ** 2:
-        method = (
-            "Llewellyn's criterion with the exact delay, b_m b_s >= (P T)^2, and residues at s = 0 "
-            "that meet it with equality"
+    margin = b_m * b_s - (k * late) ** 2
+    if min(b_m, b_s) < 0 or margin < 0:
+        master, slave = master_inertia * S + b_m, slave_inertia * S + b_s
+        coupled = teleoperator_two_port(
+            master=master, slave=slave, stiffness=k, damping=0, delay=late
         )
-        margin = float(b_m * b_s - (k * late) ** 2)
-        equality = "for w -> 0" if margin == 0 else ""
-        certificate = _certificate({"b_m": b_m, "b_s": b_s, "P": k, "T": late})
-        return Claim(statement, Proof(method, (certificate,), margin, "(N s/m)^2", equality))
-    general = absolutely_stable(
-        teleoperator_two_port(master=master, slave=slave, stiffness=k, damping=0, delay=late)
+        return Claim(statement, absolutely_stable(coupled).verdict)
+    method = (
+        "Llewellyn's criterion with the exact delay, b_m b_s >= (P T)^2, and residues at s = 0 "
+        "that meet it with equality"
     )
-    return Claim(statement, general.verdict)
-
-
-def _certificate(values: Values) -> Certificate:
-    """Certificate of Llewellyn's inequality for this coupling; values: b_m, b_s, P, T."""
-    b_m, b_s, k, late, q = sp.symbols("b_m b_s P T q", real=True)
-    enough = b_m * b_s - (k * late) ** 2
-    return storage_certificate(
-        "b_m b_s - (P T)^2 q >= 0 for 0 <= q <= 1: Llewellyn's inequality at every frequency",
-        supply=b_m * b_s - (k * late) ** 2 * q,
-        nonnegative={"enough": enough, "below_one": 1 - q, "q": q},
-        proofs={
-            "supply": {"": [(1, {"enough": 1}, 1), (1, {"below_one": 1}, k * late)]},
-            "storage": {"": ()},
-        },
-        example={**values, "q": 1},
-    )
+    made = certificate("late_coupling", b_m=b_m, b_s=b_s, P=k, T=late)
+    equality = "for w -> 0" if margin == 0 else ""
+    return Claim(statement, Proof(method, (made,), float(margin), "(N s/m)^2", equality))
 
 
 THEOREM = Theorem(mathematics=(delayed_spring,), order=70)

@@ -22,13 +22,13 @@ import sympy as sp
 
 from ...base.errors import ModelError
 from ...realise.lti import S
-from ..claims.certificate import Certificate, storage_certificate
-from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown
-from ..linear.impedance import decimal, exact
+from ..claims.claim import Claim, Evidence, Proof, Unknown
+from ..linear.impedance import decimal
 from ..linear.positive_real import positive_real
-from ..search.growing_wave import GrowingWave, halvings, wave_of
+from ..search.growing_wave import first_wave, rates_at
+from ._certificates import certificate
 from ._hypotheses import NOT_NEGATIVE, one_of, require_hypotheses
-from ._theorem import Theorem
+from ._theorem import Theorem, refute
 
 Order = Literal[1, 2]
 #: longest delay, in time constants, for which the maximum of g is searched: 2.5 million samples
@@ -59,7 +59,10 @@ def largest_passive_inertia(
     damping: B, N s/m;  delay: tau, s;  time_constant: T of the low-pass, s; 0: no low-pass
     order: r of the low-pass;  raises ModelError: a negative argument, or another order
     """
-    _check(damping, 0.0, delay, time_constant, order)
+    if min(damping, delay, time_constant) < 0:
+        raise ModelError("largest_passive_inertia: no value may be negative")
+    if order not in (1, 2):
+        raise ModelError(f"largest_passive_inertia: order of the low-pass is 1 or 2, found {order}")
     if time_constant == 0:
         return 0.0 if delay else float("inf")
     if order == 1:
@@ -96,8 +99,7 @@ def cancelled_inertia(
         more than 10000 time constants
     raises ModelError: an argument outside of its hypothesis
     """
-    m, b, c = exact(inertia), exact(damping), exact(cancelled)
-    tau, t = exact(delay), exact(time_constant)
+    m, b, c, tau, t = inertia, damping, cancelled, delay, time_constant
     filtered = f", low-passed of order {order} with {decimal(t)} s" if t else ""
     statement = (
         f"a device of {decimal(m)} kg and {decimal(b)} N s/m with {decimal(c)} kg cancelled "
@@ -107,12 +109,10 @@ def cancelled_inertia(
     z = m * S + b - c * S * late / (t * S + 1) ** order
     if t and c <= order * b * t:
         method = "Re Z >= B - mhat/(r T) >= 0 at every frequency, for any delay"
-        certificate = _certificate(order, {"B": b, "T": t, "m": c})
-        return Claim(statement, Proof(method, (certificate,), float(b - c / (order * t)), "N s/m"))
-    if not tau:
-        return Claim(statement, positive_real(z).verdict)
-    if not c:
-        return Claim(statement, positive_real(m * S + b).verdict)
+        made = certificate(f"cancelled_inertia_{order}", B=b, T=t, m=c)
+        return Claim(statement, Proof(method, (made,), float(b - c / (order * t)), "N s/m"))
+    if not tau or not c:
+        return Claim(statement, positive_real(z if c else m * S + b).verdict)
     if t and order == 2 and tau > _LATEST * t:
         why = (
             f"a delay of more than {_LATEST} time constants: its turns are too many to be searched"
@@ -127,18 +127,13 @@ def cancelled_inertia(
         where = [w]
     else:  # the phase of jw at the peaks; far enough up for a margin of 1e-3
         where = [(2 * np.pi * n + np.pi / 2 * (not t)) / float(tau) for n in 2 ** np.arange(0, 14)]
-    wave = _wave(sp.ImmutableMatrix([[z]]), where)
-    if wave is None:
-        return Claim(statement, Unknown("the condition fails, but no wave was found"))
-    f = float(wave.frequency) / (2 * np.pi)
-    return Claim(statement, Refutation(f"a growing wave at {f:.4g} Hz", wave))
-
-
-def _check(damping: Any, cancelled: Any, delay: Any, time_constant: Any, order: int) -> None:
-    if min(damping, cancelled, delay, time_constant) < 0:
-        raise ModelError("largest_passive_inertia: no value may be negative")
-    if order not in (1, 2):
-        raise ModelError(f"largest_passive_inertia: order of the low-pass is 1 or 2, found {order}")
+    points = (point for w in where for point in rates_at(Fraction(w), 30))
+    return refute(
+        statement,
+        first_wave(sp.ImmutableMatrix([[z]]), points),
+        lambda wave: f"a growing wave at {float(wave.frequency) / (2 * np.pi):.4g} Hz",
+        "the condition fails, but no wave was found",
+    )
 
 
 def _maximum(delay: float, time_constant: float) -> tuple[float, float]:
@@ -164,34 +159,6 @@ def _maximum(delay: float, time_constant: float) -> tuple[float, float]:
         lambda w: -float(g(w)[0]), bounds=near, method="bounded", options={"xatol": 1e-9 * near[1]}
     )
     return float(maximum.x), -float(maximum.fun)
-
-
-def _wave(z: sp.ImmutableMatrix, where: list[float]) -> GrowingWave | None:
-    for w in where:
-        frequency = Fraction(w)
-        for rate in halvings(frequency, 30):
-            wave = wave_of(z, rate, frequency)
-            if wave is not None:
-                return wave
-    return None
-
-
-def _certificate(order: int, values: dict[str, sp.Expr]) -> Certificate:
-    """Certificate that r T Re Z = r T (B - m g) >= 0 where g <= 1/(r T) and m <= r B T.
-
-    values: B, T, and m, the cancelled inertia
-    """
-    b, t, m, g = sp.symbols("B T m g", real=True)
-    return storage_certificate(
-        f"r T Re Z = r T (B - m g) >= 0 for g <= 1/(r T) where m <= r B T, r = {order}",
-        supply=order * t * (b - m * g),
-        nonnegative={"enough": order * b * t - m, "bounded": 1 - order * t * g, "m": m},
-        proofs={
-            "supply": {"": [(1, {"enough": 1}, 1), (1, {"m": 1, "bounded": 1}, 1)]},
-            "storage": {"": ()},
-        },
-        example={**values, "g": 0},
-    )
 
 
 THEOREM = Theorem(mathematics=(cancelled_inertia,), order=74)

@@ -12,11 +12,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import sympy as sp
-
-from ..claims.certificate import storage_certificate
 from ..claims.claim import Claim, Proof
-from ..linear.impedance import decimal, exact
+from ..linear.impedance import decimal
+from ._certificates import certificate
 from ._hypotheses import NOT_NEGATIVE, POSITIVE, require_hypotheses
 from ._theorem import Theorem
 
@@ -31,39 +29,15 @@ def energy_tank(*, reserve: Any, travel: Any) -> Claim:
         held
     raises ModelError: an argument outside of its hypothesis
     """
-    reserve, travel = exact(reserve), exact(travel)
     statement = (
         f"two ends with energy tanks of {decimal(reserve)} J give their bodies at most "
         f"{decimal(2 * reserve)} J more than they take from them, as long as no sample's travel "
         f"exceeds {decimal(travel)} m, positions are exact and commands act from their sample on"
     )
-    tank, size, force, way, most = sp.symbols("W F f x d", real=True)
-    half = sp.Rational(1, 2)
-    certificate = storage_certificate(
-        "a force f within F = W/d leaves W - f x >= 0 after a travel x within d",
-        supply=tank - force * way,
-        constants=("d",),
-        nonnegative={
-            "enough": tank - size * most,
-            "force_above": size - force,
-            "force_below": size + force,
-            "travel_above": most - way,
-            "travel_below": most + way,
-        },
-        proofs={
-            "supply": {
-                "": [
-                    (1, {"enough": 1}, 1),
-                    (half, {"force_above": 1, "travel_below": 1}, 1),
-                    (half, {"force_below": 1, "travel_above": 1}, 1),
-                ]
-            },
-            "storage": {"": ()},
-        },
-        example={"W": reserve, "F": reserve / travel, "f": reserve / travel, "x": 0, "d": travel},
-    )
     method = "what a held force gives over the largest travel, and counts that only grow"
-    return Claim(statement, Proof(method, (certificate,), equality="at the largest travel"))
+    force = reserve / travel
+    made = certificate("energy_tank", W=reserve, F=force, f=force, d=travel)
+    return Claim(statement, Proof(method, (made,), equality="at the largest travel"))
 
 
 THEOREM = Theorem(mathematics=(energy_tank,), order=73)

@@ -20,14 +20,13 @@ import sympy as sp
 from ...base.errors import ModelError
 from ...base.sentences import round_near
 from ...effects import EFFECTS, SIGNALS
-from ..claims.certificate import Certificate, Term, storage_certificate
-from ..claims.claim import Claim, Proof, Refutation, Unknown
+from ..claims.claim import Claim, Proof, Unknown
 from ..identified import DIGITS
 from ..linear.impedance import decimal, exact
-from ..rate_independent import Dahl
-from ._dahl_certificates import Values, abs_v, dahl_rate, v
+from ..rate_independent import AbstractMotion, Dahl
+from ._certificates import certificate
 from ._hypotheses import NOT_NEGATIVE, POSITIVE, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim
+from ._theorem import Question, Theorem, TopicClaim, decide
 
 _STRIBECK = EFFECTS["stribeck"]
 #: extra friction level (N) of the effect `stribeck`, a function of velocity, F_S - F_C, v_S
@@ -42,7 +41,7 @@ _EXTRA = sp.lambdify(
 
 
 @dataclass(frozen=True)
-class Jumps:
+class Jumps(AbstractMotion):
     """A closed path in legs of constant speed that takes energy out of LuGre friction.
 
     levels: F_C, F_S, N;  stiffness: sigma_0, N/m;  dampings: s1, s2, N s/m
@@ -56,16 +55,12 @@ class Jumps:
     stribeck_velocity: float
     legs: tuple[tuple[float, float], ...]
     rounds: int = 4
+    kind = "jumps"
 
     def level(self, velocity: float) -> float:
         """Friction level g at a constant velocity (m/s), N."""
         low, high = self.levels
         return low + float(_EXTRA(velocity, high - low, self.stribeck_velocity))
-
-    @property
-    def energy(self) -> float:
-        """Energy released in the last round, J."""
-        return self.replay()
 
     def replay(self) -> float:
         """Energy released in the last round, J, with an exact solution for each leg."""
@@ -79,10 +74,6 @@ class Jumps:
                 work += s1 * velocity * (after - y) / self.stiffness + s2 * abs(velocity) * travel
                 y, out = after, out - work
         return out
-
-    def as_dict(self) -> dict[str, object]:
-        """Plain data, to be written as JSON."""
-        return {"kind": "jumps", **vars(self), "energy": self.energy}
 
 
 @require_hypotheses(
@@ -109,26 +100,27 @@ def lugre_passivity(
     returns: proved, equality included; else refuted by jumps of velocity, or unknown
     raises ModelError: F_S below F_C, or an argument outside of its hypothesis
     """
-    f_c, f_s, sigma = exact(coulomb_level), exact(static_level), exact(stiffness)
-    s1, s2, v_s = exact(bristle_damping), exact(viscous_damping), exact(stribeck_velocity)
-    if not (0 < f_c <= f_s and sigma > 0 and s1 >= 0 and s2 >= 0 and v_s > 0):
+    f_c, f_s, sigma = coulomb_level, static_level, stiffness
+    s1, s2, v_s = bristle_damping, viscous_damping, stribeck_velocity
+    if f_c > f_s:
         raise ModelError(
-            "lugre_passivity: expected 0 < F_C <= F_S, stiffness and Stribeck velocity > 0, "
-            f"dampings >= 0, found {f_c}, {f_s}, {sigma}, {v_s}, {s1}, {s2}"
+            f"lugre_passivity: expected F_C <= F_S, found {decimal(f_c)} and {decimal(f_s)}"
         )
-    statement = (
-        f"LuGre friction (F_C {decimal(f_c)}, F_S {decimal(f_s)} N, "
-        f"s1 {decimal(s1)}, s2 {decimal(s2)} N s/m) is passive"
-    )
     margin = s2 - s1 * (f_s / f_c - 1)
-    if margin >= 0:
-        values = {"sigma_0": sigma, "s1": s1, "s2": s2, "F_C": f_c, "F_S": f_s}
-        proof = Proof("V = y^2/(2 sigma_0)", (_certificate(values),), float(margin), "N s/m")
-        return Claim(statement, proof)
-    jumps = _recoil((float(f_c), float(f_s)), float(sigma), (float(s1), float(s2)), float(v_s))
-    if jumps is None:
-        return Claim(statement, Unknown("the condition fails, but no motion on the grid shows it"))
-    return Claim(statement, Refutation("slow motion, then a jump to high speed, to and fro", jumps))
+    values = {"sigma_0": sigma, "s1": s1, "s2": s2, "F_C": f_c, "F_S": f_s}
+    return decide(
+        f"LuGre friction (F_C {decimal(f_c)}, F_S {decimal(f_s)} N, "
+        f"s1 {decimal(s1)}, s2 {decimal(s2)} N s/m) is passive",
+        margin >= 0,
+        proof=lambda: Proof(
+            "V = y^2/(2 sigma_0)", (certificate("lugre", **values),), float(margin), "N s/m"
+        ),
+        motion=lambda: _recoil(
+            (float(f_c), float(f_s)), float(sigma), (float(s1), float(s2)), float(v_s)
+        ),
+        how="slow motion, then a jump to high speed, to and fro",
+        why_open="the condition fails, but no motion on the grid shows it",
+    )
 
 
 def add_bristle_damping(
@@ -166,7 +158,7 @@ def add_bristle_damping(
         )
         return Claim(statement, Unknown(why))
     values = {"sigma_0": sigma, "s1": s1, "s2": s2, "F_C": low, "F_S": high}
-    certificates = (*pair.verdict.certificates, _damping_certificate(values))
+    certificates = (*pair.verdict.certificates, certificate("bristle_damping", **values))
     return Claim(statement, replace(pair.verdict, certificates=certificates))
 
 
@@ -186,74 +178,6 @@ def _recoil(
         if best is not None:
             return best
     return None
-
-
-def _certificate(values: Values) -> Certificate:
-    """Certificate of LuGre friction with a level g within F_C..F_S: V = y^2/(2 sigma_0).
-
-    values: sigma_0, s1 (bristle damping), s2 (viscous damping), F_C, F_S
-    """
-    return _level_within(
-        "LuGre friction, level within F_C..F_S, is passive where s2 F_C >= s1 (F_S - F_C), from "
-        "any start with abs(y) <= F_S",
-        values,
-        spring=True,
-    )
-
-
-def _damping_certificate(values: Values) -> Certificate:
-    """Certificate that bristle and viscous damping together take energy at every instant."""
-    return _level_within(
-        "bristle and viscous damping of LuGre friction, level within F_C..F_S, take energy at "
-        "every instant where s2 F_C >= s1 (F_S - F_C), from any start with abs(y) <= F_S",
-        values,
-        spring=False,
-    )
-
-
-def _level_within(claim: str, values: Values, *, spring: bool) -> Certificate:
-    """Certificate of the dampings of LuGre friction; spring: the bristle's force y included."""
-    y, g, sigma_0, s1, s2 = sp.symbols("y g sigma_0 s1 s2", real=True)
-    low, high = sp.symbols("F_C F_S", real=True)
-    rate = dahl_rate(y, g, sigma_0)
-    decay = sigma_0 * abs_v / g
-    lost: list[Term] = [(1, {"abs_v": 1, "g": -1}, y)] if spring else []
-    lost += [
-        (1, {"g": -1, "dampings": 1, "above_low": 1}, v),
-        (1, {"g": -1, "enough": 1}, v),
-    ]
-    towards: list[Term] = [(1, {"abs_v": 1, "sigma_0": 1, "g": -1, "below_high": 1}, 1)]
-    away: list[Term] = [
-        (1, {"abs_v": 1, "sigma_0": 1}, 1),
-        (1, {"abs_v": 1, "sigma_0": 1, "F_S": 1, "g": -1}, 1),
-    ]
-    return storage_certificate(
-        claim,
-        supply=((y if spring else 0) + s1 * rate / sigma_0 + s2 * v) * v,
-        storage=y**2 / (2 * sigma_0) if spring else 0,
-        rates={"y": rate},
-        constants=["sigma_0", "F_S"],
-        positive={"g": g, "sigma_0": sigma_0, "F_S": high},
-        nonnegative={
-            "s1": s1,
-            "dampings": s1 + s2,
-            "enough": s2 * low - s1 * (high - low),
-            "above_low": g - low,
-            "below_high": high - g,
-        },
-        invariant={"below": (high - y, decay), "above": (high + y, decay)},
-        signs=["v"],
-        proofs={
-            "supply": {
-                "1": [*lost, (1, {"g": -1, "s1": 1, "below": 1}, v)],
-                "-1": [*lost, (1, {"g": -1, "s1": 1, "above": 1}, v)],
-            },
-            "storage": {"": [(sp.Rational(1, 2), {"sigma_0": -1}, y)] if spring else ()},
-            "below": {"1": towards, "-1": away},
-            "above": {"1": away, "-1": towards},
-        },
-        example={**values, "g": values["F_S"], "v": 1},
-    )
 
 
 def _applies(question: Question) -> bool:

@@ -18,17 +18,17 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import sympy as sp
 
-from ..claims.certificate import Certificate, Term, storage_certificate
-from ..claims.claim import Claim, Proof, Refutation, Unknown
-from ..linear.impedance import decimal, exact
+from ..claims.claim import Claim, Proof
+from ..linear.impedance import decimal
+from ..rate_independent import AbstractMotion
+from ._certificates import certificate
 from ._hypotheses import NOT_NEGATIVE, POSITIVE, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim
+from ._theorem import Question, Theorem, TopicClaim, decide
 
 
 @dataclass(frozen=True)
-class Flip:
+class Flip(AbstractMotion):
     """A motion that alternates between the positions step/2 + distance and step/2 - distance.
 
     stiffness: K, N/m;  step: Delta, m;  sample_time: T, s;  damping: b, N s/m
@@ -42,11 +42,7 @@ class Flip:
     damping: float
     friction: float
     distance: float
-
-    @property
-    def energy(self) -> float:
-        """Energy released in two samples, J."""
-        return self.replay()
+    kind = "flip"
 
     def replay(self) -> float:
         """Energy released in two samples, J, each with constant speed."""
@@ -60,10 +56,6 @@ class Flip:
         if self.step == 0:
             return self.stiffness * position
         return self.stiffness * self.step * math.floor(position / self.step + 0.5)
-
-    def as_dict(self) -> dict[str, object]:
-        """Plain data, to be written as JSON."""
-        return {"kind": "flip", **vars(self), "energy": self.energy}
 
 
 @require_hypotheses(
@@ -92,31 +84,34 @@ def quantised_spring(
         condition fails by too little for the search
     raises ModelError: an argument outside of its hypothesis
     """
-    k, b, late = exact(stiffness), exact(damping), exact(sample_time)
-    delta, f_c, f_d = exact(step), exact(coulomb_level), exact(compensator_level)
-    statement = (
+    k, b, late, delta = stiffness, damping, sample_time, step
+    f_c, f_d = coulomb_level, compensator_level
+    values = {"K": k, "b": b, "T": late, "h": delta / 2, "f_C": f_c, "f_D": f_d}
+    made = [float(x) for x in (k, delta, late, b, f_c - f_d)]
+    return decide(
         f"a virtual spring {decimal(k)} N/m at steps of {decimal(delta)} m and {decimal(late)} s, "
         f"damping {decimal(b)} N s/m, "
-        f"friction {decimal(f_c)} N of which {decimal(f_d)} N is cancelled, is passive"
+        f"friction {decimal(f_c)} N of which {decimal(f_d)} N is cancelled, is passive",
+        min(2 * b / late - k, 2 * (f_c - f_d) - k * delta) >= 0,
+        proof=lambda: Proof(
+            "V = K x^2/2 at the samples", (certificate("quantised_spring", **values),)
+        ),
+        motion=lambda: _flip(made, float(delta) or 1e-3),
+        how="two positions in turn",
+        why_open="the condition fails, but by less than the search resolves",
     )
-    spare = 2 * b / late - k, 2 * (f_c - f_d) - k * delta
-    if min(spare) >= 0:
-        proof = Proof("V = K x^2/2 at the samples", (_certificate(k, b, late, delta, f_c, f_d),))
-        return Claim(statement, proof)
-    left = float(f_c - f_d)
-    scale = float(delta) or 1e-3
-    flips = [
-        Flip(float(k), float(delta), float(late), float(b), left, float(a))
-        for a in scale * np.geomspace(1e-9, 1e9, 400)
-    ]
+
+
+def _flip(values: list[float], scale: float) -> Flip | None:
+    """The motion that releases most, no further apart than a thousand steps where that is enough.
+
+    values: those of `Flip` but for the distance;  scale: of the distances, m
+    """
+    k, delta, late, b, left = values
+    flips = [Flip(k, delta, late, b, left, float(a)) for a in scale * np.geomspace(1e-9, 1e9, 400)]
     giving = [f for f in flips if f.energy > 0]
-    if not giving:
-        why = "the condition fails, but by less than the search resolves"
-        return Claim(statement, Unknown(why))
-    # no further apart than a thousand steps, where such a motion is enough
     near = [f for f in giving if f.distance <= 1e3 * scale] or giving[:1]
-    best = max(near, key=lambda f: f.energy)
-    return Claim(statement, Refutation("two positions in turn", best))
+    return max(near, key=lambda f: f.energy, default=None)
 
 
 def stiffest_spring(
@@ -133,61 +128,6 @@ def stiffest_spring(
     """
     by_steps = 2 * (coulomb_level - compensator_level) / step if step else math.inf
     return max(min(2 * damping / sample_time, by_steps), 0.0)
-
-
-def _certificate(
-    k: sp.Expr, b: sp.Expr, late: sp.Expr, delta: sp.Expr, f_c: sp.Expr, f_d: sp.Expr
-) -> Certificate:
-    names = "K b T h f_C f_D x d q c abs_d sign_d"
-    stiff, damp, time, h, friction, level, x, d, q, c, abs_d, _ = sp.symbols(names, real=True)
-    work = stiff * (x + q) * d + damp / time * d**2 + friction * abs_d - c * d
-    rest: list[Term] = [
-        (1, {"damped": 1, "T": -1}, d),
-        (1, {"rubbed": 1, "abs_d": 1}, 1),
-    ]
-    return storage_certificate(
-        "spring, damping and friction less a compensating force c within f_D take in at least the "
-        "change of K x^2/2 over each sample of travel d",
-        supply=work - stiff * ((x + d) ** 2 - x**2) / 2,
-        positive={"T": time},
-        nonnegative={
-            "K": stiff,
-            "damped": damp - stiff * time / 2,
-            "rubbed": friction - level - stiff * h,
-            "q_above": h + q,
-            "q_below": h - q,
-            "c_above": level + c,
-            "c_below": level - c,
-        },
-        signs=["d"],
-        proofs={
-            "supply": {
-                "1": [
-                    *rest,
-                    (1, {"abs_d": 1, "K": 1, "q_above": 1}, 1),
-                    (1, {"abs_d": 1, "c_below": 1}, 1),
-                ],
-                "-1": [
-                    *rest,
-                    (1, {"abs_d": 1, "K": 1, "q_below": 1}, 1),
-                    (1, {"abs_d": 1, "c_above": 1}, 1),
-                ],
-            },
-            "storage": {"": ()},
-        },
-        example={
-            "K": k,
-            "b": b,
-            "T": late,
-            "h": delta / 2,
-            "f_C": f_c,
-            "f_D": f_d,
-            "x": 0,
-            "d": 1,
-            "q": 0,
-            "c": 0,
-        },
-    )
 
 
 def _applies(question: Question) -> bool:

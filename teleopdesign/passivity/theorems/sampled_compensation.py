@@ -21,13 +21,13 @@ from typing import Any
 
 import numpy as np
 
-from ..claims.claim import Claim, Refutation, Unknown
-from ..linear.impedance import decimal, exact
-from ..rate_independent import Dahl
+from ..claims.claim import Claim
+from ..linear.impedance import decimal
+from ..rate_independent import AbstractMotion, Dahl
 from ..search.stroke_motion import Strokes
 from ._cycle_simulation import simulate_cycle
 from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim
+from ._theorem import Question, Theorem, TopicClaim, leave_open, refute
 from .bounded_compensation import bounded_compensation
 
 #: most samples, one way, of a motion that refutes a claim
@@ -35,7 +35,7 @@ LONGEST = 10_000_000
 
 
 @dataclass(frozen=True)
-class Trembling:
+class Trembling(AbstractMotion):
     """A trembling motion: in each sample a stroke forth and a shorter stroke back.
 
     The motion drifts forth for a number of samples, and then in the same way back to its start.
@@ -54,11 +54,7 @@ class Trembling:
     back: float
     samples: int
     late: int = 0
-
-    @property
-    def energy(self) -> float:
-        """Energy released, J, from rest without preload back to the start."""
-        return self.replay()
+    kind = "trembling"
 
     @property
     def power(self) -> float:
@@ -71,7 +67,10 @@ class Trembling:
         return self.forth + self.back
 
     def replay(self) -> float:
-        """Energy released, J, with exact formulas for each stroke, summed over all samples."""
+        """Energy released, J, from rest without preload back to the start.
+
+        With exact formulas for each stroke, summed over all samples.
+        """
         force, read, out = 0.0, [0.0] * (self.late + 1), 0.0
         for _ in range(2):  # the way back is the way there with all signs turned
             steady, forgets, by_force = self._steady_sample()[1:]
@@ -94,11 +93,6 @@ class Trembling:
         points = np.concatenate([there, there[-1] - there])[:-1]
         speed = math.pi * self.path / (2 * self.sample_time)
         return Strokes(tuple(map(float, points)), speed, rounds=1)
-
-    def as_dict(self) -> dict[str, object]:
-        """Plain data, to be written as JSON."""
-        pair = {n: ["dahl", *vars(getattr(self, n)).values()] for n in ("compensator", "friction")}
-        return {"kind": "trembling", **vars(self), **pair, "energy": self.energy}
 
     def _steady_sample(self) -> tuple[float, float, float, float]:
         """Properties of a sample after the transient.
@@ -156,25 +150,20 @@ def sampled_compensation(
     """
     if presliding_stiffness is None:
         return bounded_compensation(coulomb_level=coulomb_level, bound=compensator_level)
-    numbers = (coulomb_level, compensator_level, compensator_stiffness, sample_time)
-    f_c, f_d, stiffness, period, presliding, b = map(
-        exact, (*numbers, presliding_stiffness, viscous_damping)
-    )
-    statement = (
+    f_c, f_d, stiffness = coulomb_level, compensator_level, compensator_stiffness
+    period, presliding, b = sample_time, presliding_stiffness, viscous_damping
+    helps, against = Dahl(float(f_d), float(stiffness)), Dahl(float(f_c), float(presliding))
+    return refute(
         f"Dahl friction {decimal(f_c)} N, {decimal(presliding)} N/m and damping {decimal(b)} N s/m "
         f"with a Dahl compensator ({decimal(f_d)} N, {decimal(stiffness)} N/m) in a computer, "
-        f"every {decimal(period)} s, is passive"
+        f"every {decimal(period)} s, is passive",
+        _find_best(helps, against, float(b), float(period), late),
+        lambda motion: (
+            f"trembling {motion.path:.3g} m a sample, {motion.power:.3g} W: friction relaxes, and "
+            "readings do not show it"
+        ),
+        f"a motion releases energy, but one of more than {LONGEST:g} samples",
     )
-    helps, against = Dahl(float(f_d), float(stiffness)), Dahl(float(f_c), float(presliding))
-    motion = _find_best(helps, against, float(b), float(period), late)
-    if motion is None:
-        why = f"a motion releases energy, but one of more than {LONGEST:g} samples"
-        return Claim(statement, Unknown(why))
-    how = (
-        f"trembling {motion.path:.3g} m a sample, {motion.power:.3g} W: friction relaxes, and "
-        "readings do not show it"
-    )
-    return Claim(statement, Refutation(how, motion))
 
 
 def _find_best(
@@ -215,7 +204,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     if device.bristle_damping.high > 0:
         why = "no theorem covers bristle damping beside a compensator in a computer"
         statement = "the device's friction with its sampled compensator is passive"
-        return [TopicClaim("any motion, sampled", Claim(statement, Unknown(why)))]
+        return [leave_open("any motion, sampled", statement, why)]
     claim = sampled_compensation(
         coulomb_level=device.highest.estimate,
         compensator_level=level,

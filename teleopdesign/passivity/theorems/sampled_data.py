@@ -17,8 +17,7 @@ positive-real test of a rational function, which is exact; equality is passive t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from fractions import Fraction
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -26,25 +25,16 @@ import sympy as sp
 
 from ...base.arguments import describe_value
 from ...base.errors import ModelError
-from ...base.frozen import ByValue
 from ...realise.lti import S
 from ..claims.certificate import positive_real_certificate
-from ..claims.claim import Claim, Refutation, Unknown, prove_by_certificate
+from ..claims.claim import Claim, prove_by_certificate
 from ..linear.impedance import Impedance, decimal, exact, impedance, readable
 from ..linear.positive_real import NO_WAVE, damping_excess, is_positive_real
-from ..search.growing_wave import ROUNDING, growing_wave
+from ..search.growing_wave import growing_wave
+from ..search.sampled_wave import Z, sampled_wave
 from ._discrete_system import discrete_transfer_function
 from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, REAL, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim
-
-#: z, the forward shift by one sample
-Z = sp.Symbol("z")
-#: most samples of a replayed motion, a second of computing; a longer wave is cut off, and then does
-#: not start at rest
-_SAMPLES = 1_000_000
-_LONGEST_WAIT = (
-    4096  # most samples between two steps: a controller that grows by 1 % a sample needs 1000
-)
+from ._theorem import Question, Theorem, TopicClaim, refute
 
 
 @require_hypotheses(controller=FREE, damping=NOT_NEGATIVE, sample_time=POSITIVE, stiffness=REAL)
@@ -60,13 +50,13 @@ def sampled_passivity(
     returns: proved, refuted by a motion at the samples, or unknown
     raises ModelError: not rational in z, or an argument outside of its hypothesis
     """
-    late = _positive(sample_time)
+    late, b, k = sample_time, damping, stiffness
     law = _law(discrete_transfer_function(controller, sample_time=float(late), z=Z))
-    b, k = exact(damping), exact(stiffness)
     operator = travel_operator(law, b, late, k)
+    spring = f", a spring {decimal(k)} N/m" if k else ""
     statement = (
-        f"a body with damping {decimal(b)} N s/m and the sampled force -({readable(law)}) x, "
-        f"held for {decimal(late)} s, is passive"
+        f"a body with damping {decimal(b)} N s/m{spring} and the sampled force -({readable(law)}) "
+        f"x, held for {decimal(late)} s, is passive"
     )
     if is_positive_real(operator):
         text = f"{statement}: G((1 + s)/(1 - s)) is positive real"
@@ -80,12 +70,16 @@ def sampled_passivity(
         )
         return Claim(statement, verdict)
     wave = growing_wave(operator)
-    if wave is None:
-        return Claim(statement, Unknown(NO_WAVE))
-    motion = sampled_wave(law, b, late, k, wave.rate, wave.frequency)
-    z = motion.factor
-    method = f"travel that grows by {abs(z):.6g} a sample and turns by {np.angle(z):.4g} rad"
-    return Claim(statement, Refutation(method, motion))
+    motion = wave and sampled_wave(law, b, late, k, wave.rate, wave.frequency)
+    return refute(
+        statement,
+        motion,
+        lambda motion: (
+            f"travel that grows by {abs(motion.factor):.6g} a sample and turns by "
+            f"{np.angle(motion.factor):.4g} rad"
+        ),
+        NO_WAVE,
+    )
 
 
 def required_damping(controller: Any, *, sample_time: Any, stiffness: Any = 0) -> float:
@@ -113,7 +107,7 @@ def sampled_coupling(
     coupling: H(z), N/m, as in `sampled_passivity`
     master_damping, slave_damping: b_m, b_s, N s/m;  sample_time: s
     """
-    b_m, b_s = exact(master_damping), exact(slave_damping)
+    b_m, b_s = master_damping, slave_damping
     both = b_m * b_s / (b_m + b_s) if b_m + b_s else sp.S(0)
     return sampled_passivity(coupling, damping=both, sample_time=sample_time)
 
@@ -152,124 +146,6 @@ def _law(controller: Any) -> sp.Expr:
     if above.degree() > below.degree():
         raise ModelError(f"controller: needs samples of the future: {e}")
     return e
-
-
-@dataclass(frozen=True, eq=False)
-class SampledWave(ByValue):
-    """A motion at the samples that takes energy out: the travel grows as Re(V z^k), k <= 0.
-
-    law: H(z);  damping, sample_time, stiffness: as in `sampled_passivity`
-    rate, frequency: s = rate + j frequency with z = (1 + s)/(1 - s)
-    travel: over each sample, m, (n,), from (almost) rest
-    """
-
-    law: sp.Expr
-    damping: sp.Expr
-    sample_time: sp.Expr
-    stiffness: sp.Expr
-    rate: Fraction
-    frequency: Fraction
-    travel: np.ndarray = field(repr=False, compare=False)
-
-    @property
-    def factor(self) -> complex:
-        """z, the factor of the travel from one sample to the next; abs(z) > 1."""
-        return _factor(self.rate, self.frequency)
-
-    @property
-    def energy(self) -> float:
-        """Energy released by the whole motion, J."""
-        return self.replay()
-
-    def replay(self) -> float:
-        """Energy released, J, computed from rest with the controller's difference equation."""
-        system = self.law, self.damping, self.sample_time, self.stiffness
-        return float(_released_energy(self.travel, *system))
-
-    def as_dict(self) -> dict[str, object]:
-        """Plain data, to be written as JSON."""
-        return {
-            "kind": "sampled wave",
-            "law": str(self.law),
-            "damping": str(self.damping),
-            "sample_time": str(self.sample_time),
-            "stiffness": str(self.stiffness),
-            "rate": str(self.rate),
-            "frequency": str(self.frequency),
-            "energy": self.energy,
-        }
-
-
-def sampled_wave(
-    law: sp.Expr,
-    damping: sp.Expr,
-    sample_time: sp.Expr,
-    stiffness: sp.Expr,
-    rate: Fraction,
-    frequency: Fraction,
-) -> SampledWave:
-    """The motion with growing travel at s = rate + j frequency, in the phase that releases most.
-
-    Where the controller itself grows faster than this travel, the motion is a step, and a second
-    step along the force that the first one has caused.
-    """
-    system = law, damping, sample_time, stiffness
-    z = _factor(rate, frequency)
-    growth = np.log(abs(z))
-    number = int(min(np.ceil(16 / growth), _SAMPLES)) if growth > 0 else _SAMPLES
-    wave = z ** np.arange(-number, 1)
-    out, best = _largest(wave.real, wave.imag, system)
-    waited = 1
-    while out <= 0 and waited <= _LONGEST_WAIT:
-        waited *= 2
-        steps = np.eye(2, waited, k=0), np.eye(2, waited, k=waited - 2)
-        out, best = _largest(steps[0][0], steps[1][1], system)
-    return SampledWave(*system, rate, frequency, best)
-
-
-def _largest(
-    one: np.ndarray, other: np.ndarray, system: tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr]
-) -> tuple[float, np.ndarray]:
-    """Of all mixtures of two travels (n,), the one that releases most: its energy, J, and travel.
-
-    The energy is a quadratic form of the mixture. The best mixture is its largest eigenvector.
-    """
-    out = _released_energy(np.array([one, other, one + other]), *system)
-    if not np.isfinite(out).all():
-        return -np.inf, one  # a controller that leaves double precision on the way
-    mixed = (out[2] - out[0] - out[1]) / 2
-    share = np.linalg.eigh(np.array([[out[0], mixed], [mixed, out[1]]]))[1][:, -1]
-    travel = share[0] * one + share[1] * other
-    return float(_released_energy(travel, *system)), travel
-
-
-def _factor(rate: Fraction, frequency: Fraction) -> complex:
-    s = complex(float(rate), float(frequency))
-    return (1 + s) / (1 - s) if s != 1 else complex(1e12)  # a single travel
-
-
-def _released_energy(
-    travel: np.ndarray, law: sp.Expr, damping: sp.Expr, sample_time: sp.Expr, stiffness: sp.Expr
-) -> np.ndarray:
-    """Energy released, J, by each of the motions, travel (..., n).
-
-    0 where it may be rounding; not finite where the controller leaves double precision
-    """
-    from scipy.signal import lfilter
-
-    position = np.cumsum(travel, axis=-1)
-    before = np.concatenate([np.zeros_like(position[..., :1]), position[..., :-1]], axis=-1)
-    above, below = (sp.Poly(part, Z) for part in sp.fraction(sp.cancel(law)))
-    a = [float(c) for c in below.all_coeffs()]
-    b = [float(c) for c in above.all_coeffs()]  # of a law that does nothing: [0]
-    b = [0.0] * (len(a) - len(b)) + b
-    with np.errstate(over="ignore", invalid="ignore"):  # what grows leaves double precision
-        work = lfilter(b, a, before) * travel
-        lost = float(damping) / float(sample_time) * (travel**2).sum(axis=-1)
-        stored = float(stiffness) * position[..., -1] ** 2 / 2
-        out = -(work.sum(axis=-1) + lost + stored)
-        size = np.abs(work).sum(axis=-1) + np.abs(lost) + np.abs(stored)
-        return np.where(np.abs(out) > ROUNDING * size, out, np.where(np.isfinite(out), 0.0, out))
 
 
 def _claims(question: Question) -> list[TopicClaim]:

@@ -31,12 +31,12 @@ from typing import Any
 import sympy as sp
 
 from ...controllers import laws_that_declare
-from ..claims.claim import Claim, Proof, Refutation, Unknown
-from ..linear.impedance import decimal, exact
-from ..rate_independent import Coulomb, Dahl
+from ..claims.claim import Claim, Proof
+from ..linear.impedance import decimal
+from ..rate_independent import AbstractMotion, Coulomb, Dahl
+from ._certificates import certificate
 from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
-from ._theorem import Question, Theorem, Time, TopicClaim
-from ._velocity_certificates import held_command, ideal_contact, yielding_contact
+from ._theorem import Question, Theorem, Time, TopicClaim, decide, leave_open
 
 _SYMBOLS = sp.symbols("velocity level smoothing", real=True)
 
@@ -54,7 +54,7 @@ _COMMAND = _law()
 
 
 @dataclass(frozen=True)
-class SteadyStrokes:
+class SteadyStrokes(AbstractMotion):
     """Strokes back and forth at one speed, from rest, over which a law of velocity releases energy.
 
     level, smoothing: f_D, N, and a, m/s, of the law (a = 0: f_D sgn v);  damping: B, N s/m
@@ -72,14 +72,10 @@ class SteadyStrokes:
     sample_time: float = 0.0
     late: int = 0
     strokes: int = 8
-
-    @property
-    def energy(self) -> float:
-        """Energy released, J, from rest without preload."""
-        return self.replay()
+    kind = "steady strokes"
 
     def replay(self) -> float:
-        """Energy released, J, with an exact formula for each stroke.
+        """Energy released, J, from rest without preload, with an exact formula for each stroke.
 
         With a sampled law, the velocity of the stroke before still drives the first samples.
         """
@@ -92,16 +88,6 @@ class SteadyStrokes:
             out += command * helped - work - self.damping * self.speed * self.travel
             way = -way
         return out
-
-    def as_dict(self) -> dict[str, object]:
-        """Plain data, to be written as JSON."""
-        friction = [type(self.friction).__name__.lower(), *vars(self.friction).values()]
-        return {
-            "kind": "steady strokes",
-            **vars(self),
-            "friction": friction,
-            "energy": self.energy,
-        }
 
 
 @require_hypotheses(
@@ -137,26 +123,24 @@ def velocity_compensation(
         speed; unknown where the condition fails by too little for double precision
     raises ModelError: an argument outside of its hypothesis
     """
-    f_c, f_d = exact(coulomb_level), exact(compensator_level)
-    a, b = exact(smoothing_velocity), exact(viscous_damping)
-    presliding = None if presliding_stiffness is None else exact(presliding_stiffness)
-    period = sp.S(0) if sample_time is None else exact(sample_time)
+    f_c, f_d, presliding = coulomb_level, compensator_level, presliding_stiffness
+    a, b, period = smoothing_velocity, viscous_damping, sample_time or sp.S(0)
     contact = "ideal" if presliding is None else f"presliding ({decimal(presliding)} N/m)"
     computer = f", sampled every {decimal(period)} s, {late} late," if period else ""
-    statement = (
-        f"{contact} friction {decimal(f_c)} N and damping {decimal(b)} N s/m with a compensator of "
-        f"velocity ({decimal(f_d)} N, a = {decimal(a)} m/s){computer} is passive"
-    )
     least = f_c if presliding is None else sp.S(0)
     gap = f_d - least - a * b
-    if gap <= 0 or gap**2 <= 4 * least * a * b:
-        return Claim(statement, _proof(least, f_d, a, b, presliding, sampled=period > 0))
     friction = Coulomb(float(f_c)) if presliding is None else Dahl(float(f_c), float(presliding))
-    strokes = _strokes((float(f_d), float(a)), friction, float(b), float(period), late)
-    if strokes is None:
-        why = "the condition fails, but by so little that no stroke shows it in double precision"
-        return Claim(statement, Unknown(why))
-    return Claim(statement, Refutation(f"strokes at {strokes.speed:.4g} m/s", strokes))
+    law = float(f_d), float(a)
+    return decide(
+        f"{contact} friction {decimal(f_c)} N and damping {decimal(b)} N s/m with a compensator of "
+        f"velocity ({decimal(f_d)} N, a = {decimal(a)} m/s){computer} is passive",
+        gap <= 0 or gap**2 <= 4 * least * a * b,
+        proof=lambda: _proof(least, f_d, a, b, presliding, sampled=period > 0),
+        motion=lambda: _strokes(law, friction, float(b), float(period), late),
+        how=lambda strokes: f"strokes at {strokes.speed:.4g} m/s",
+        why_open="the condition fails, but by so little that no stroke shows it in double "
+        "precision",
+    )
 
 
 def _proof(
@@ -168,12 +152,16 @@ def _proof(
     *,
     sampled: bool,
 ) -> Proof:
-    if presliding is None:
-        certificates = [ideal_contact(f_c=least, f_d=f_d, smoothing=a, b=b)]
+    values = {"f_D": f_d, "a": a, "B": b}
+    if presliding is not None:
+        certificates = [certificate("yielding_contact", **values, sigma_p=presliding)]
+    elif a == 0:  # then c = f_D sgn v, and f_D <= f_C
+        certificates = [certificate("ideal_contact_unsmoothed", f_C=least, f_D=f_d, B=b)]
     else:
-        certificates = [yielding_contact(f_d=f_d, smoothing=a, b=b, stiffness=presliding)]
+        beyond = "" if f_d <= least + a * b else "_beyond"
+        certificates = [certificate(f"ideal_contact{beyond}", f_C=least, **values)]
     if sampled:
-        certificates.append(held_command(least=least, b=b))
+        certificates.append(certificate("held_command", f_0=least, B=b))
     tight = (f_d - least - a * b) ** 2 == 4 * least * a * b and f_d >= least + a * b
     margin = 0.0 if tight else (math.sqrt(least) + math.sqrt(a * b)) ** 2 - float(f_d)
     equality = "at one speed" if tight else ""
@@ -231,28 +219,26 @@ def _applies(question: Question) -> bool:
 
     In a computer its velocity must be the plain difference of readings without steps.
     """
-    computer, law = question.computer, question.cancellation
-    if law is None or law.value_of("smoothing") is None or question.bound is None:
-        return False
-    if computer is None:
-        return True
+    computer = question.computer
+    if computer is None or question.law.smoothing is None:
+        return question.law.smoothing is not None
     plain = computer.velocity != "observer" and math.isinf(computer.velocity_bandwidth)
     return plain and not computer.encoder_step and question.late is not None
 
 
 def _claims(question: Question) -> list[TopicClaim]:
     """The claim for all values within the intervals, with the damping present at every speed."""
-    device, law, computer = question.device, question.cancellation, question.computer
-    assert law is not None and question.late is not None
+    device, law, computer = question.device, question.law, question.computer
+    assert question.late is not None
     topic = "law of velocity, with damping"
     if device.bristle_damping.high > 0:
         why = "no theorem covers bristle damping beside a law of velocity"
         statement = "the device's friction beside its compensator of velocity is passive"
-        return [TopicClaim(topic, Claim(statement, Unknown(why)), spends_damping=True)]
+        return [leave_open(topic, statement, why, spends_damping=True)]
     claim = velocity_compensation(
         coulomb_level=device.lowest.low,
-        compensator_level=question.bound,
-        smoothing_velocity=law.value_of("smoothing"),
+        compensator_level=law.bound,
+        smoothing_velocity=law.smoothing,
         viscous_damping=device.damping.low,
         presliding_stiffness=device.presliding and device.presliding.low,
         sample_time=computer and computer.period,

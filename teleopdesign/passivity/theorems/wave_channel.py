@@ -25,7 +25,6 @@ import sympy as sp
 from ...base.errors import ModelError
 from ...diagrams import Diagram, Moving, wave_variables
 from ...realise.lti import S, linear_blocks
-from ..claims.certificate import Certificate, storage_certificate
 from ..claims.claim import Claim, Proof, Unknown
 from ..declarations import falsely_linear, is_shipped
 from ..holders import without_holders
@@ -33,6 +32,7 @@ from ..linear.impedance import decimal, exact
 from ..linear.positive_real import positive_real
 from ..linear.unseen import unseen_within
 from ..ports import drop_absent_effects
+from ._certificates import certificate
 from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, require_hypotheses
 from ._theorem import Theorem
 
@@ -46,7 +46,7 @@ def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) 
     returns: proved where f^2 <= 1 - d; else unknown, because no refuting motion is searched
     raises ModelError: an argument outside of its hypothesis
     """
-    b, f, d = map(exact, (wave_impedance, scale, delay_growth))
+    b, f, d = wave_impedance, scale, delay_growth
     grows = f"grow by {decimal(d)} s a second at most" if d else "are constant or fall"
     statement = (
         f"a channel of waves of {decimal(b)} N s/m, scaled by {decimal(f)}, with delays that "
@@ -55,36 +55,9 @@ def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) 
     if f**2 > 1 - d:
         return Claim(statement, Unknown("scale^2 is above 1 - delay_growth"))
     method = "the energy of the waves on their way, whose rate is at most the power that comes in"
-    certificate = _certificate({"b": b, "f": f, "d": d})
+    made = certificate("wave_channel", b=b, f=f, d=d)
     equality = "for constant delays: it is lossless" if f == 1 else ""
-    return Claim(statement, Proof(method, (certificate,), float(1 - d - f**2), "", equality))
-
-
-def _certificate(values: dict[str, sp.Expr]) -> Certificate:
-    """Certificate that the power at both ends is at least the rate of the energy on its way.
-
-    values: b, f, d;  late_1, late_2: W_1(t - T_1) and W_2(t - T_2);  g_1, g_2: dT_1/dt, dT_2/dt
-    """
-    b, f, d, g1, g2 = sp.symbols("b f d g_1 g_2", real=True)
-    w1, w2, late1, late2 = sp.symbols("W_1 W_2 late_1 late_2", real=True)
-    v_m, f_c = (w1 + f * late2) / (2 * b), (w1 - f * late2) / 2
-    v_d, f_p = (f * late1 + w2) / (2 * b), (f * late1 - w2) / 2
-    stored = (w1**2 - (1 - g1) * late1**2 + w2**2 - (1 - g2) * late2**2) / (4 * b)
-    quarter = sp.Rational(1, 4)
-    terms = [
-        (quarter, {factor: 1, "b": -1}, late)
-        for late, grows in ((late1, "slow_1"), (late2, "slow_2"))
-        for factor in (grows, "enough")
-    ]
-    return storage_certificate(
-        "F_c v_m - F_P v_d is not below the rate of 1/(4 b) times what is on its way",
-        supply=f_c * v_m - f_p * v_d - stored,
-        constants=("b", "d", "f"),
-        positive={"b": b},
-        nonnegative={"enough": 1 - d - f**2, "slow_1": d - g1, "slow_2": d - g2},
-        proofs={"supply": {"": terms}, "storage": {"": ()}},
-        example={**values, "g_1": 0, "g_2": 0, "W_1": 1, "W_2": 1, "late_1": 1, "late_2": 1},
-    )
+    return Claim(statement, Proof(method, (made,), float(1 - d - f**2), "", equality))
 
 
 @require_hypotheses(master=FREE, slave=FREE, coupling=FREE, wave_impedance=POSITIVE)
@@ -102,7 +75,7 @@ def wave_teleoperator(*, master: Any, slave: Any, coupling: Any, wave_impedance:
     """
     channel = wave_channel(wave_impedance=wave_impedance)
     statement = (
-        f"the teleoperator of waves of {decimal(exact(wave_impedance))} N s/m is passive at both "
+        f"the teleoperator of waves of {decimal(wave_impedance)} N s/m is passive at both "
         "ports together, for all constant delays of its channel, in continuous time"
     )
     certificates = list(channel.certificates)
