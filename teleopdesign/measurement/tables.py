@@ -13,9 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError, did_you_mean, quote
-from .doors._in_turn import machines_apart
 from .doors._log import Log, bare_column, join_names, refuse_odd_names
-from .doors._two_part_time import with_whole_time
 from .doors.arrays import open_arrays
 from .doors.bag import is_bag, open_bag
 from .doors.folder import open_folder
@@ -23,6 +21,7 @@ from .doors.hdf5 import open_hdf5
 from .doors.json_records import open_json
 from .doors.matlab import open_matlab
 from .doors.parquet import open_parquet
+from .doors.shapes import with_best_shape
 from .doors.text import open_text
 from .doors.workbook import open_workbook
 from .numbers_in_cells import numbers_of
@@ -59,8 +58,6 @@ DOORS: Mapping[str, Callable[[Path, str], Log]] = {
     ".mcap": open_bag,
     ".db3": open_bag,
 }
-#: readers of rows that may belong to several machines; `open_text` looks for such rows itself
-OF_RECORDS = (open_json, open_parquet, open_workbook)
 #: first bytes of a file -> the function that reads such a file
 BEGINNINGS: Mapping[bytes, Callable[[Path, str], Log]] = {
     b"\x89HDF\r\n\x1a\n": open_hdf5,
@@ -118,13 +115,9 @@ def open_log(path: Path, file: str) -> Log:
         more = ", or a folder of tables" if path.is_dir() else ""
         raise ExperimentError(f"{file}: found {kind}, expected {', '.join(DOORS)}{more}")
     door = opened
-    log = _read_with_errors(lambda: door(path, file), file)
-    refuse_odd_names(log, file)
-    if door in OF_RECORDS:
-        whole = log
-        log = _read_with_errors(lambda: machines_apart(whole), file)
-        apart = log
-        log = _read_with_errors(lambda: with_whole_time(apart, file), file)
+    whole = _read_with_errors(lambda: door(path, file), file)
+    refuse_odd_names(whole, file)
+    log = _read_with_errors(lambda: with_best_shape(whole), file)
     return replace(log, read=lambda wanted: _read_with_errors(lambda: log.read(wanted), file))
 
 

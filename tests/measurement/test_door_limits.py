@@ -152,7 +152,7 @@ def test_a_cell_that_is_no_number_is_named_by_its_row_in_the_whole_table(tmp_pat
     path.write_text(TABLES["empty cells"].replace("\n30,2,-30", "\n30,two,-30"))
     monkeypatch.setattr(text, "_ROWS", 7)
     with pytest.raises(ExperimentError, match='column "u", row 31: found "two"'):
-        columns_of(path)
+        read_columns(path, "r.csv", {"u": "channels.position"})
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ import pytest
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors import text
-from teleopdesign.measurement.doors._dialect import Dialect, cells_of, dialect_of, first_lines
+from teleopdesign.measurement.doors._dialect import dialect_of
 from teleopdesign.measurement.doors._header import (
     bare_unit,
     is_row_of_units,
@@ -15,7 +15,6 @@ from teleopdesign.measurement.doors._header import (
     names_and_units,
     names_of_labelled_rows,
 )
-from teleopdesign.measurement.doors._pairs import log_of_pairs, names_in_lines, pairs_of
 
 
 def dialect(whole):
@@ -139,58 +138,33 @@ def test_a_title_is_that_of_its_group_up_to_the_next():
 # rows and messages
 
 
-@pytest.mark.parametrize(
-    ("line", "is_text"),
-    [("t;x;F", True), ("started ; again", True), ("0;x;F", False), ("x;1;F", False),
-     ("-;n/a;", False), ("7 wells;a;b", False), (".5 a;b;c", False), ("2026-01-02;a;b", False),
-     ("word;2026-01-02;b", False), ("word;n/a;b", False)],
-)  # fmt: skip
-def test_a_line_without_any_number_or_empty_cell_is_a_message(line, is_text):
-    assert text._is_text(line, Dialect("utf-8", ";", False, ("a", "b", "c"), (), 0)) == is_text
+def rows_of(tmp_path, lines):
+    """What is read of a table: its first column, and what is said of other lines."""
+    log = opened(tmp_path / "log.csv", "".join(lines))
+    return log.read({"t": ""})["t"].tolist(), log.left_out()
 
 
-def rows_of(lines, header=("t", "x"), separator=";", first=0):
-    strays = []
-    known = Dialect("utf-8", separator, False, header, (), first)
-    return list(text._lines(lines, known, "log.csv", strays)), strays
-
-
-def test_messages_repeated_headers_and_comments_are_left_out():
+def test_messages_repeated_headers_and_comments_are_left_out(tmp_path):
     lines = ["t;x\n", "0;1\n", "\n", "# note;a\n", "t;x\n", "1;2\n", "stop\n", "2;3\n"]
-    kept, strays = rows_of(lines, first=1)
-    assert kept == ["0;1\n", "1;2\n", "2;3\n"] and strays == [2, 3]
-    kept, strays = rows_of([*lines, "3"], first=1)
-    assert kept == ["0;1\n", "1;2\n", "2;3\n"] and strays == [2, 3], "a last row was cut off"
+    said = ("2 lines that are no rows, the first one before row 2: left out",)
+    assert rows_of(tmp_path, lines) == ([0.0, 1.0, 2.0], said)
+    assert rows_of(tmp_path, [*lines, "3"]) == ([0.0, 1.0, 2.0], said), "a last row was cut off"
 
 
-def test_one_separator_at_the_end_of_a_row_is_no_cell():
-    assert rows_of(["0;1;\n", "2;3;\r\n", "4;5"])[0] == ["0;1\n", "2;3\n", "4;5"]
-    for wrong in ("0;1;;\n", "0;1;2\n"):
-        with pytest.raises(ExperimentError, match=r"row 2: found \d cells, expected 2"):
-            rows_of(["0;1\n", wrong])
-    assert rows_of(["0 1 2\n"], separator=" ")[0] == ["0 1 2\n"]
-    assert rows_of(['"0;5";1;2\n'])[0] == ['"0;5";1;2\n'], "cells in quotes are counted later"
+@pytest.mark.parametrize("wrong", ["0;1;;\n", "0;1;2\n"])
+def test_a_row_of_more_cells_than_the_header_is_refused_with_its_place(tmp_path, wrong):
+    table = ["t;x\n", *["0;1\n"] * 4, wrong, *["0;1\n"] * 4]
+    with pytest.raises(ExperimentError, match=r"row 5: found \d cells, expected 2"):
+        rows_of(tmp_path, table)
 
 
 @pytest.mark.parametrize(("rows", "most"), [(20, text.FEW_STRAYS), (5000, 50)])
-def test_as_many_messages_are_left_out_as_are_few(rows, most):
-    """Ten, or a hundredth of the rows before."""
-    assert text.FEW_STRAYS == 10 and text.MOST_STRAYS == 0.01
-    table = ["0;1\n"] * rows
-    assert len(rows_of([*table, *["stop\n"] * most, "0;1\n"])[1]) == most
+def test_as_many_messages_are_left_out_as_are_few(tmp_path, rows, most):
+    table = ["t;x\n", *["0;1\n"] * rows]
+    after = ["0;1\n"] * 60
+    assert f"{most} lines" in rows_of(tmp_path, [*table, *["stop\n"] * most, *after])[1][0]
     with pytest.raises(ExperimentError, match=f"row {rows + 1}: found 1 cells"):
-        rows_of([*table, *["stop\n"] * (most + 1), "0;1\n"])
-
-
-def test_the_size_of_a_table_is_looked_at_each_100_000_rows(monkeypatch):
-    monkeypatch.setattr(text, "MOST_BYTES", 2 * 100_000 - 1)
-    known = Dialect("utf-8", ";", False, ("t",), (), 0)
-    lines = text._lines(["7\n"] * 100_000, known, "log.csv", [])
-    read = 0
-    with pytest.raises(ExperimentError, match="found over 2e[+]05 bytes of text"):
-        for _ in lines:
-            read += 1
-    assert read == 99_999
+        rows_of(tmp_path, [*table, *["stop\n"] * (most + 1), *after])
 
 
 def test_only_a_plain_table_with_separators_may_end_in_a_row_that_was_cut_off(tmp_path):
@@ -215,45 +189,15 @@ def test_a_decimal_comma_and_no_header_are_noted(tmp_path):
     assert np.array_equal(values["column 2"], [1.5, 2.5, 3.5])
 
 
-def test_the_last_of_the_first_lines_may_be_incomplete(tmp_path, monkeypatch):
-    from teleopdesign.measurement.doors import _dialect
-
-    path = tmp_path / "a.csv"
-    path.write_bytes(b"t,x\r\n0,1\r1,2\n2,3")
-    assert first_lines(path, "a")[1] == ["t,x", "0,1", "1,2", "2,3"]
-    monkeypatch.setattr(_dialect, "LOOKED_AT", 16)
-    assert first_lines(path, "a")[1] == ["t,x", "0,1", "1,2"]
-    monkeypatch.setattr(_dialect, "LOOKED_AT", 17)
-    assert first_lines(path, "a")[1] == ["t,x", "0,1", "1,2", "2,3"]
-    assert cells_of('"a;b"; c ;', ";") == ["a;b", "c", ""]
-
-
 # names and values in each line
 
 
-def test_two_pairs_make_a_line_and_four_fifths_of_three_lines_a_file():
-    assert pairs_of("t=1") == [] and pairs_of("t=1 x:2mm") == [("t", "1", ""), ("x", "2", "mm")]
-    assert pairs_of("t=1 x=2 stop") == []
+def test_four_fifths_of_the_lines_are_pairs_of_the_same_names(tmp_path):
     row = "t=1 x=2mm"
-    assert names_in_lines([row] * 2) == {} and names_in_lines([row] * 3) == {"t": "", "x": "mm"}
-    assert names_in_lines([row] * 4 + ["stop"]) == {"t": "", "x": "mm"}
-    assert names_in_lines([row] * 7 + ["stop"] * 2) == {}
-    assert names_in_lines(["x=2mm y=1", row, row]) == {"t": "", "x": "mm"}
-    assert names_in_lines(["t=1 t=2"] * 3) == {}
-
-
-@pytest.mark.parametrize(("rows", "most"), [(30, 10), (70, 14)])
-def test_as_many_lines_of_another_form_are_left_out_as_are_few(tmp_path, rows, most):
-    def log(strays):
-        lines = ["t=1 x=2mm"] * rows + ["stop"] * strays + ["", "t=3 x=4mm"]
-        path = tmp_path / "a.txt"
-        path.write_text("\n".join(lines))
-        return log_of_pairs(path, "a.txt", "utf-8", {"t": "", "x": "mm"})
-
-    whole = log(most)
-    assert whole.read({"x": ""})["x"].tolist() == [2.0] * rows + [4.0]
-    assert whole.left_out() == (f"{most} lines of another form: left out",)
-    assert whole.units == {"x": "mm"} and whole.notes == ("names and values in each line",)
-    with pytest.raises(ExperimentError, match=f"row {rows + 1}: found other names than t, x"):
-        log(most + 1).read({"x": ""})
-    assert log(0).left_out() == ()
+    for lines in ([row] * 4 + ["stop"], ["x=2mm", row, row, row, row]):
+        log = opened(tmp_path / "a.txt", "\n".join(lines))
+        assert log.names == ("t", "x") and log.units == {"x": "mm"}
+        assert log.read({"x": ""})["x"].tolist() == [2.0] * 4
+    for lines in ([row] * 7 + ["stop"] * 2, ["t=1 t=2"] * 3, [row] * 2):
+        with pytest.raises(ExperimentError):
+            opened(tmp_path / "a.txt", "\n".join(lines))

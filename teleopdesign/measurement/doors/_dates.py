@@ -12,7 +12,11 @@ from numpy.typing import NDArray
 from ._log import Array
 
 _ZONE = re.compile(r"\s*(?:(Z|UTC|GMT)|([-+])(\d{2}):?(\d{2})?)$")
-_CLOCK = re.compile(r"(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,]\d+)?))?(?:\s*([AaPp])\.?[Mm]\.?)?$")
+#: a time of day; before it, a duration may have days
+_CLOCK = re.compile(
+    r"(?:(\d{1,6}) days? \+?)?(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,]\d+)?))?"
+    r"(?:\s*([AaPp])\.?[Mm]\.?)?$"
+)
 _YEAR_FIRST = re.compile(r"(\d{4})[-/.](\d{1,2})[-/.](\d{1,2})$")
 _YEAR_LAST = re.compile(r"(\d{1,2})([-/.])(\d{1,2})\2(\d{4})$")
 _MONTH_NAMED = re.compile(r"(\d{1,2})[- ]([A-Za-z]{3})[a-z]*[- ](\d{4})$")
@@ -64,10 +68,10 @@ def _seconds_of_day(text: str) -> float | None:
     match = _CLOCK.match(text)
     if match is None:
         return None
-    hour, minute = int(match[1]), int(match[2])
-    if match[4]:
-        hour = hour % 12 + 12 * (match[4] in "Pp")
-    return 3600.0 * hour + 60.0 * minute + float((match[3] or "0").replace(",", "."))
+    hour, minute = 24 * int(match[1] or 0) + int(match[2]), int(match[3])
+    if match[5]:
+        hour = hour % 12 + 12 * (match[5] in "Pp")
+    return 3600.0 * hour + 60.0 * minute + float((match[4] or "0").replace(",", "."))
 
 
 def _dates_of(days: Sequence[str]) -> NDArray[np.datetime64] | None:

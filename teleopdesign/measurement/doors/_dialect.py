@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import gzip
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, cast
@@ -32,6 +32,8 @@ COMMENTS = ("#", "%", "//")
 SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
 #: bytes from which the dialect is read
 LOOKED_AT = 65_536
+#: lines of which there are few in so many bytes, and most bytes of a file that is then read whole
+FEW_LINES, MOST_OF_FEW_LINES = 128, 20_000_000
 #: rows of numbers that follow each other in a table: a header of blocks has two ("X0", "Delta_X")
 IN_A_ROW = 3
 #: lines above a table that are kept, for what they say of constants
@@ -47,7 +49,6 @@ class Dialect:
     named: the file has a header;  dates: columns of dates or times of day
     remarks: lines above the first row of numbers
     labels: texts with which they begin, as does each header that repeats in the table
-    edit: function from the lines of the file to those of the table, as with stamps of a monitor
     """
 
     encoding: str
@@ -60,14 +61,19 @@ class Dialect:
     dates: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
     labels: frozenset[str] = frozenset()
-    edit: Callable[[Iterable[str]], Iterable[str]] = iter
 
 
-def first_lines(path: Path, file: str) -> tuple[str, list[str]]:
-    """The encoding of a file and its first lines; raises ExperimentError: the file has no text."""
+def first_lines(path: Path, file: str) -> tuple[str, list[str], bool]:
+    """The encoding of a file, its first lines, and whether these are all.
+
+    A file of few and long lines is read on: each of them may be a signal.
+    raises ExperimentError: the file has no text
+    """
     with open_bytes(path) as stream:
         raw = stream.read(LOOKED_AT)
-        whole = len(raw) < LOOKED_AT
+        if len(raw) == LOOKED_AT and raw.count(b"\n") + raw.count(b"\r") < FEW_LINES:
+            raw += stream.read(MOST_OF_FEW_LINES)
+        whole = not stream.read(1)
     encoding = encoding_of(raw, file, whole=whole)
     text = raw.decode(encoding, errors="ignore").replace("\r\n", "\n").replace("\r", "\n")
     lines = text.split("\n")
@@ -77,7 +83,7 @@ def first_lines(path: Path, file: str) -> tuple[str, list[str]]:
         raise ExperimentError(
             f"{file}: found no header, expected a first row that names the columns"
         )
-    return encoding, lines
+    return encoding, lines, whole
 
 
 def dialect_of(lines: Sequence[str], encoding: str, file: str) -> Dialect:
@@ -199,9 +205,9 @@ def is_value(cell: str, comma: bool) -> bool:
 
 
 def _is_data(cells: Sequence[str], comma: bool) -> bool:
-    """Whether a row holds numbers and dates; a broken cell among many does not make it a header."""
+    """Whether half of a row's cells are numbers or dates: a signal may be named beside them."""
     filled = [c for c in cells if c]
-    return bool(filled) and sum(is_value(c, comma) for c in filled) > 0.5 * len(filled)
+    return bool(filled) and sum(is_value(c, comma) for c in filled) >= 0.5 * len(filled)
 
 
 def _header(

@@ -39,6 +39,7 @@ class Log:
     clocks: column -> column with its time stamps, where a log has several clocks (topics of a bag)
     remarks: lines of text above the table, names and units among them
     left_out: function, called after `read`: rows that were left out ("3 lines that are no rows")
+    sample: column -> its first cells, where the file is a table of rows that may have any shape
     """
 
     names: tuple[str, ...]
@@ -48,6 +49,7 @@ class Log:
     clocks: Mapping[str, str] = field(default_factory=dict)
     left_out: Callable[[], tuple[str, ...]] = tuple
     remarks: tuple[str, ...] = ()
+    sample: Mapping[str, Any] | None = None
 
 
 def optional(module: str, file: str, extra: str = "io") -> ModuleType:

@@ -15,8 +15,12 @@ from typing import Any
 import numpy as np
 
 from ...base.errors import ExperimentError
+from ...base.units import measures, si_factor
+from ..column_names import likeness, unit_in_name
+from ..numbers_in_cells import numbers_of
+from ..stamp_unit import unit_of_steps
+from ..wrapped_stamps import unwrap_stamps
 from ._log import Array, Log, join_names
-from ._seconds import seconds_of
 
 #: all tables must overlap in time for at least this part of the shortest one
 SHARED = 0.5
@@ -45,7 +49,7 @@ def open_folder(
         _refuse_same_columns(logs, folder, [t.name for t in tables])
         name_of = _topic_name
     time_of = {name: _time_column(log, f"{file}/{name}") for name, log in logs.items()}
-    seconds = {n: seconds_of(log, time_of[n], f"{file}/{n}") for n, log in logs.items()}
+    seconds = {n: _seconds_of(log, time_of[n], f"{file}/{n}") for n, log in logs.items()}
     _require_shared_time(seconds, file)
     origin = min(float(np.nanmin(s)) for s in seconds.values())
     columns = {name_of(n, c): (n, c) for n, log in logs.items() for c in log.names}
@@ -95,8 +99,6 @@ def are_quantities(tables: Sequence[str], headers: Sequence[tuple[str, ...]]) ->
 
 def _name_both(names: Iterable[str]) -> bool:
     """Whether some of the names are that of a position, and others that of a force."""
-    from ..column_names import likeness
-
     kinds = (("position",), ("actuator_force", "interaction_force"))
     of_names = [{k for k in kinds if any(likeness(n, q) > 0 for q in k)} for n in names]
     return all({k} in of_names for k in kinds)
@@ -108,8 +110,6 @@ def _topic_name(table: str, column: str) -> str:
 
 def _field_name(table: str, column: str) -> str:
     """The name of a joint's quantity, as a field of a struct: "joint_2.torque"; of its clock."""
-    from ..column_names import likeness
-
     return _topic_name(table, column) if likeness(column, "time") else f"{column}.{table}"
 
 
@@ -171,14 +171,10 @@ def _refuse_same_columns(logs: Mapping[str, Log], folder: Path, files: Sequence[
 
 
 def _names_time(log: Log) -> bool:
-    from ..column_names import likeness
-
     return any(likeness(name, "time") > 0 for name in log.names)
 
 
 def _time_column(log: Log, file: str) -> str:
-    from ..column_names import likeness
-
     best = max(log.names, key=lambda name: likeness(name, "time"))
     if likeness(best, "time") == 0.0:
         raise ExperimentError(
@@ -198,3 +194,19 @@ def _require_shared_time(seconds: Mapping[str, Array], file: str) -> None:
             f"{file}: found tables that do not run at the same time ({spans}), expected one clock "
             "for all; shift the time of one, or log a common time"
         )
+
+
+def _seconds_of(log: Log, column: str, file: str) -> Array:
+    """The time stamps of a table in s, from the same instant for all tables of one logger."""
+    values = np.asarray(log.read({column: "channels.time"})[column])
+    if values.dtype.kind == "M":
+        return np.asarray((values - np.datetime64(0, "s")) / np.timedelta64(1, "ns") * 1e-9)
+    stamps = (
+        values.reshape(-1).astype(np.float64)
+        if values.dtype.kind in "iu"  # as floats, nanoseconds since 1970 are exact to 256 ns
+        else numbers_of(values, column, file)
+    )
+    unit = log.units.get(column) or unit_in_name(column, "time")
+    if unit is None or not measures(unit, "time"):
+        unit = unit_of_steps(stamps)[0]
+    return np.asarray(unwrap_stamps(stamps)[0] * si_factor(unit, quantity="time"))

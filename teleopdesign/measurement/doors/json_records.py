@@ -18,6 +18,7 @@ import numpy as np
 from ...base.errors import ExperimentError, quote
 from ._dialect import open_bytes
 from ._log import MOST_BYTES, Log, refuse_size
+from .shapes._table import MOST_ROWS
 
 #: deepest nesting of records that is read, and most numbers of one list that become columns
 DEPTH, MOST_FIELDS = 6, 200
@@ -57,7 +58,8 @@ def open_json(path: Path, file: str) -> Log:
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         return {name: np.array(columns[name], dtype=object) for name in wanted}
 
-    return Log(tuple(columns), read, notes=notes)
+    sample = {n: np.array(c[:MOST_ROWS], dtype=object) for n, c in columns.items()}
+    return Log(tuple(columns), read, notes=notes, sample=sample)
 
 
 def _records_of_lines(text: str, file: str) -> tuple[list[Any], int]:

@@ -1,174 +1,207 @@
 """Text tables: csv of any dialect. A well-formed table is read fast; errors name row and column.
 
-Separator, decimal sign, encoding, comments before the header and a row of units below it are judged
-from the first rows. A time may be written as a date or a time of day.
+The lines become plain rows (`_line_shapes`), the rows a table with a separator, a decimal sign and
+names (`_dialect`), and the table signals with times (`_shapes`).
 """
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...base.errors import ExperimentError, quote
-from ._cells import CellColumns, is_empty
-from ._clock_before_signal import clocks_before_signals, with_clocks_before
+from ._cells import column_of, is_empty, part_of_column, parts_thousands
 from ._dialect import (
     COMMENTS,
+    LOOKED_AT,
     SEPARATORS,
     Dialect,
     cells_of,
     dialect_of,
     first_lines,
     is_value,
+    open_bytes,
     without_end,
 )
-from ._frames import refuse_frames
-from ._in_turn import turns_of, with_machines_apart
-from ._lines_of_file import (
-    are_stamped,
-    edit_of,
-    is_cut_off,
-    last_lines,
-    open_lines,
-    with_stamps_as_cells,
-)
+from ._line_shapes import LINE_SHAPES, LineShape
 from ._log import MOST_BYTES, Array, Log, join_names, refuse_size
-from ._pairs import log_of_pairs, names_in_lines
-from ._reading_in_each_row import open_reading_in_each_row
-from ._signals_in_rows import open_signals_in_rows
-from ._signals_in_turn import has_signals_in_turn, log_of_signals_in_turn
-from ._sparse import groups_of, with_separate_clocks
-from ._two_part_time import with_whole_time
-from ._units_in_cells import UnitCells
+from .shapes import best_shape, table_of
+from .shapes._table import MOST_ROWS
 
 #: rows that are read in one block: 20 MB of text
 _ROWS = 200_000
 #: most lines that are no rows (messages of a logger that restarts, a garbled row), as a number and
 #: as a part of the rows, that are left out. More such lines mean that the table has another form
 FEW_STRAYS, MOST_STRAYS = 10, 0.01
+#: what stands for bytes that are no letter, as at the end of a file that was cut within a letter
+CUT_LETTER = "\ufffd"
 _BEGINS_A_NUMBER = (*'0123456789+-.,;|\t"',)
+
+
+@dataclass(frozen=True)
+class _Text:
+    """A text table: its file, how lines become rows, and how the rows are written."""
+
+    path: Path
+    file: str
+    shape: LineShape
+    dialect: Dialect
+
+    @contextmanager
+    def lines(self) -> Iterator[Iterable[str]]:
+        with (
+            open_bytes(self.path) as raw,
+            io.TextIOWrapper(raw, self.dialect.encoding, errors="replace") as stream,
+        ):
+            yield self.shape.edit(stream)
+
+    def last_lines(self) -> list[str]:
+        """The last lines with text, the first of them perhaps in part; none of a packed file."""
+        if self.path.name.lower().endswith(".gz"):
+            return []
+        with self.path.open("rb") as stream:
+            size = stream.seek(0, 2)
+            stream.seek(max(0, size - LOOKED_AT) & ~1)  # letters of UTF-16 have two bytes
+            encoding = self.dialect.encoding.removesuffix("-sig")
+            encoding = "utf-16-le" if encoding == "utf-16" and size > LOOKED_AT else encoding
+            tail = stream.read().decode(encoding, errors="replace")
+        lines = tail.replace("\r", "\n").split("\n")
+        return [*self.shape.edit(line for line in lines if line.strip())]
 
 
 def open_text(path: Path, file: str) -> Log:
     """Open a csv file, packed or not; raises ExperimentError: no text, no rows."""
-    if (turned := open_signals_in_rows(path, file)) is not None:
-        return turned
-    encoding, lines = first_lines(path, file)
-    refuse_frames(lines, file)
-    stamped = are_stamped(lines)
-    if pairs := names_in_lines([*with_stamps_as_cells(lines, "=")] if stamped else lines):
-        return log_of_pairs(path, file, encoding, pairs, stamped=stamped)
-    if has_signals_in_turn(lines):
-        return log_of_signals_in_turn(path, file, encoding)
-    if (log := open_reading_in_each_row(path, file, encoding, lines)) is not None:
-        return log
-    edit, notes = edit_of(lines)
-    lines = [*edit(lines)]
-    dialect = replace(dialect_of(lines, encoding, file), edit=edit)
-    strays: list[int] = []
+    encoding, lines, whole = first_lines(path, file)
+    best: tuple[float, _Text, Mapping[str, Any]] | None = None
+    problems: list[ExperimentError] = []
+    shapes = [s for shape in LINE_SHAPES if (s := shape(lines, file)) is not None]
+    for shape in shapes:
+        edited = [*shape.edit(lines)]
+        try:
+            dialect = dialect_of(edited, encoding, file)
+        except ExperimentError as problem:
+            problems.append(problem)
+            continue
+        text = _Text(path, file, shape, dialect)
+        some = edited[dialect.first :]
+        if not whole and shape == LineShape():  # the last lines too: a signal may begin late
+            some += text.last_lines()[1:]
+        sample = _sample(some, dialect)
+        points = best_shape(table_of(sample, {}))[1] if len(shapes) > 1 else 0.0
+        if best is None or points > best[0]:
+            above = edited[dialect.first - 1] if dialect.named else ""
+            best = points, text, _without_blank_columns(sample, above, dialect)
+    if best is None:
+        raise problems[0]
+    return _log_of(best[1], best[2])
 
-    def read(wanted: Mapping[str, str]) -> Mapping[str, Array]:
+
+def _log_of(text: _Text, sample: Mapping[str, Any]) -> Log:
+    dialect, strays = text.dialect, list[int]()
+
+    def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         strays.clear()
-        return _read(path, file, dialect, wanted, strays)
+        numeric = all(sample[name].dtype.kind == "f" for name in wanted)
+        return (_read if numeric else _read_cell_by_cell)(text, [*wanted], strays)
 
     def left_out() -> tuple[str, ...]:
         lines = f"{len(strays)} lines that are no rows" if strays[1:] else "a line that is no row"
         return (f"{lines}, the first one before row {strays[0]}: left out",) if strays else ()
 
-    if dialect.separator != "," or dialect.comma:
+    notes = [text.shape.note] if text.shape.note else []
+    plain = text.shape == LineShape()
+    if dialect.separator != "," and (plain or text.shape.units) or dialect.comma:
         comma = ", decimal comma" if dialect.comma else ""
         notes.append(f"{SEPARATORS[dialect.separator]} between columns{comma}")
     if dialect.encoding not in ("utf-8", "utf-8-sig"):
         notes.append(f"text in {dialect.encoding}")
-    if is_cut_off(path, dialect):
+    if _is_cut_off(text):
         notes.append("a last row that was cut off")
     if not dialect.named:
         notes.append("no header: columns are named by their number")
     elif dialect.header[-1].endswith(f"(:,{len(dialect.header) - 1})"):
         notes.append(f"one name for an array: {quote(dialect.header[1])} and so on")
     units = {n: u for n, u in zip(dialect.header, dialect.units, strict=False) if u}
-    units |= edit.units if isinstance(edit, UnitCells) else {}
+    units |= dict(text.shape.units)
     units |= dict.fromkeys(dialect.dates, "s")  # whatever the name says: "Timestamp [ms]"
-    # the last lines too: a signal may begin late; those of a short file are its first ones again
-    top, first = {*lines[: dialect.first]}, lines[dialect.first :]
-    some = [*first, *(line for line in last_lines(path, dialect)[1:] if line not in top)]
-    above = cells_of(lines[dialect.first - 1], dialect.separator) if dialect.named else []
-    names = _without_blank_columns(dialect.header, above, _rows_of(some, dialect))
-    log = Log(names, read, units, tuple(notes), left_out=left_out, remarks=dialect.remarks)
-    time, groups = groups_of(dialect.header, _rows_of(some, dialect))
-    if groups:
-        return with_separate_clocks(log, file, time, groups)
-    if not dialect.named:
-        whole = all(cell.isdigit() for row in _rows_of(first, dialect) for cell in row[:2])
-        return with_whole_time(log, file, named=False) if whole else log
-    if clock_of := clocks_before_signals(log.names, _rows_of(first, dialect), dialect.comma):
-        return with_clocks_before(log, file, clock_of)
-    turns = turns_of(log.names, _rows_of(first, dialect), dialect.comma)
-    if turns is not None:
-        return with_machines_apart(log, turns, lambda name: _texts(path, file, dialect, name))
-    return with_whole_time(log, file)
+    return Log(
+        (*sample,),
+        read,
+        units,
+        tuple(notes),
+        left_out=left_out,
+        remarks=dialect.remarks,
+        sample=sample,
+    )
 
 
-def _rows_of(lines: Iterable[str], dialect: Dialect) -> Iterator[list[str]]:
-    """The cells of each line, one after another: as lists they take ten times the text."""
-    return (cells_of(line, dialect.separator) for line in lines if line.strip())
+def _sample(lines: Sequence[str], dialect: Dialect) -> dict[str, NDArray[Any]]:
+    """The columns of some lines: the first rows, and where there are more, the last ones."""
+    some = [*lines[:MOST_ROWS], *lines[MOST_ROWS:][-MOST_ROWS:]]
+    cut = (cells_of(line, dialect.separator) for line in some if line.strip())
+    rows = [row for row in cut if len(row) == len(dialect.header)]
+    cells = zip(*rows, strict=True) if rows else ([] for _ in dialect.header)
+    columns = (
+        column_of([part_of_column(c, comma=dialect.comma)], comma=dialect.comma) for c in cells
+    )
+    return dict(zip(dialect.header, columns, strict=True))
 
 
 def _without_blank_columns(
-    header: tuple[str, ...], above: Sequence[str], rows: Iterable[Sequence[str]]
-) -> tuple[str, ...]:
-    """The names of the columns without those that spreadsheets write behind a table: all blank.
-
-    above: the line above the rows, which also leaves their names blank
-    """
-    if len(above) != len(header):
-        return header
-    blank = {i for i, cell in enumerate(above) if not cell}
-    for row in rows:
-        if not blank:
-            return header
-        if len(row) == len(header):
-            blank -= {i for i in blank if row[i]}
-    return tuple(name for i, name in enumerate(header) if i not in blank)
+    sample: Mapping[str, Any], above: str, dialect: Dialect
+) -> Mapping[str, Any]:
+    """The columns without the blank ones that spreadsheets write behind a table."""
+    cells = cells_of(above, dialect.separator) if above else []
+    if len(cells) != len(sample):
+        return sample
+    return {
+        name: column
+        for cell, (name, column) in zip(cells, sample.items(), strict=True)
+        if cell or column.dtype.kind != "f" or np.any(np.isfinite(column))
+    }
 
 
-def _texts(path: Path, file: str, dialect: Dialect, name: str) -> list[str]:
-    """The cells of a column as text, one for each row that is read."""
-    place = dialect.header.index(name)
-    with open_lines(path, dialect.encoding, dialect.edit) as stream:
-        lines = _lines(stream, dialect, file, [])
-        return [cells_of(line, dialect.separator)[place] for line in lines]
+def _is_cut_off(text: _Text) -> bool:
+    """Whether the last row has too few cells; False for packed files and for space as separator."""
+    lines = text.last_lines()
+    if lines and lines[-1][-1:] == CUT_LETTER:
+        return True
+    lines = [] if text.dialect.separator == " " else lines
+    cells = cells_of(lines[-1], text.dialect.separator) if len(lines) > 1 else []
+    return 0 < len(cells) < len(text.dialect.header)
 
 
-def _read(
-    path: Path, file: str, dialect: Dialect, wanted: Mapping[str, str], strays: list[int]
-) -> dict[str, Array]:
-    places = [_place(dialect.header, name, file) for name in wanted]
+def _read(text: _Text, names: Sequence[str], strays: list[int]) -> dict[str, Any]:
+    dialect = text.dialect
+    places = [dialect.header.index(name) for name in names]
     try:
-        with open_lines(path, dialect.encoding, dialect.edit) as stream:
-            lines = _lines(stream, dialect, file, strays)
+        with text.lines() as stream:
+            lines = _rows(stream, text, strays)
             if dialect.comma:
                 lines = _with_points(lines, dialect.separator, places)
-            parts = [*_parts(lines, dialect.separator, places)]
-        columns: dict[str, Array] = {}
-        for name in wanted:  # one column at a time, to free its parts
+            parts = [*_numbers(lines, dialect.separator, places)]
+        columns = {}
+        for name in names:  # one column at a time, to free its parts
             columns[name] = np.concatenate([part.pop(0) for part in parts])
         return columns
-    except UnicodeDecodeError as problem:
-        raise ExperimentError(
-            f"{file}: not {dialect.encoding.upper()} text (byte {problem.start})"
-        ) from None
     except ValueError:
         strays.clear()
-        return _read_cell_by_cell(path, file, dialect, wanted, places, strays)
+        return _read_cell_by_cell(text, names, strays)
 
 
-def _parts(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[list[Array]]:
-    """Columns of some rows at a time: a whole table beside its columns would double the memory."""
+def _numbers(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[list[Array]]:
+    """Columns of some rows at a time: a whole table beside its columns would double the memory.
+
+    raises ValueError: a cell that is no number
+    """
     yield [np.empty(0) for _ in places]  # for a table without rows
     while rows := list(islice(lines, _ROWS)):
         table = np.loadtxt(
@@ -182,21 +215,46 @@ def _parts(lines: Iterator[str], separator: str, places: Sequence[int]) -> Itera
         yield [np.ascontiguousarray(table[:, k]) for k in range(len(places))]
 
 
-def _place(header: Sequence[str], name: str, file: str) -> int:
-    if header.count(name) > 1:
-        raise ExperimentError(
-            f"{file}: found {header.count(name)} columns {quote(name)}, expected one"
-        )
-    return header.index(name)
+def _read_cell_by_cell(text: _Text, names: Sequence[str], strays: list[int]) -> dict[str, Any]:
+    """Read each cell separately, which is slow: empty cells are NaN, dates become seconds.
+
+    A column with any other text keeps it: its reader names the cell.
+    raises ExperimentError: points in numbers of which others have a decimal comma
+    """
+    separator, comma = text.dialect.separator, text.dialect.comma
+    places = [text.dialect.header.index(name) for name in names]
+    blocks: list[list[NDArray[Any]]] = [[] for _ in places]
+    with text.lines() as stream:
+        lines = _rows(stream, text, strays)
+        while block := list(islice(lines, _ROWS)):
+            plain = separator != " " and not any('"' in line for line in block)
+            rows = [line.split(separator) if plain else cells_of(line, separator) for line in block]
+            wide = min(map(len, rows)) > max(places, default=-1)
+            for column, place in zip(blocks, places, strict=True):
+                cells = [r[place] if wide or place < len(r) else "" for r in rows]
+                column.append(part_of_column(cells, comma=comma))
+    columns = {}
+    for name, column in zip(names, blocks, strict=True):
+        columns[name] = column_of(column, comma=comma)
+        if comma and (found := parts_thousands(columns[name])):
+            row, cell = found
+            raise ExperimentError(
+                f"{text.file}: column {quote(name)}, row {row}: found {quote(cell)}, expected a "
+                "number with a decimal comma, for that of other cells is one: is the point a "
+                "decimal sign, or does it part thousands? Write it without"
+            )
+        column.clear()
+    return columns
 
 
-def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]) -> Iterator[str]:
+def _rows(stream: Iterable[str], text: _Text, strays: list[int]) -> Iterator[str]:
     """The lines of the table that are rows of numbers.
 
     strays: gets the number of the row before which a line was left out; such a line has too few
         cells or no number in any cell
     raises ExperimentError: a row with too many cells; too many lines that are no rows
     """
+    dialect, file = text.dialect, text.file
     width, separator = len(dialect.header), dialect.separator
     count = bytes_read = again = 0
     cut = False  # whether the last line was left out: the last line of a file may be incomplete
@@ -204,6 +262,8 @@ def _lines(stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]
         bare = line.lstrip()
         if k < dialect.first or not bare or bare.startswith(COMMENTS):
             continue
+        if line[-1] == CUT_LETTER:  # without an end of line: the last one of the file
+            return
         bytes_read += len(line)
         if (count + again + 1) % 100_000 == 0:
             refuse_size(count + again + 1, file)
@@ -239,12 +299,12 @@ def _with_points(lines: Iterator[str], separator: str, places: Sequence[int]) ->
     raises ValueError: a point in a wanted cell, where it may separate thousands
     """
     for line in lines:
-        if "." in line and any("." in c for c in pick(cells_of(line, separator), places)):
+        if "." in line and any("." in c for c in _pick(cells_of(line, separator), places)):
             raise ValueError(line)
         yield line.replace(",", ".")
 
 
-def pick(cells: Sequence[str], places: Sequence[int]) -> list[str]:
+def _pick(cells: Sequence[str], places: Sequence[int]) -> list[str]:
     """The cells of a row at some places; "" where the row is shorter."""
     return [cells[k] if k < len(cells) else "" for k in places]
 
@@ -280,29 +340,3 @@ def _text_without_name(line: str, dialect: Dialect) -> str:
         return ""
     where = join_names([f"{quote(cells[k])} in cell {k + 1}" for k in texts], most=3)
     return f"; the header may leave out the name of a text ({where}): write it there"
-
-
-def _read_cell_by_cell(
-    path: Path,
-    file: str,
-    dialect: Dialect,
-    wanted: Mapping[str, str],
-    places: Sequence[int],
-    strays: list[int],
-) -> dict[str, Array]:
-    """Read each cell separately, which is slow: empty cells are NaN, dates become seconds.
-
-    raises ExperimentError: any other text, with its row and column
-    """
-    where = [
-        f"{file}: {channel + ': ' if channel else ''}column {quote(name)}"
-        for name, channel in wanted.items()
-    ]
-    columns = CellColumns(where, comma=dialect.comma)
-    with open_lines(path, dialect.encoding, dialect.edit) as stream:
-        lines = _lines(stream, dialect, file, strays)
-        while rows := [cells_of(line, dialect.separator) for line in islice(lines, _ROWS)]:
-            columns.add(
-                [list(column) for column in zip(*(pick(r, places) for r in rows), strict=True)]
-            )
-    return dict(zip(wanted, columns.values(), strict=True))

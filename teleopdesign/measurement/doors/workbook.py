@@ -1,4 +1,4 @@
-"""Workbooks (.xlsx): the first sheet with a table, its header and, if present, its row of units."""
+"""Workbooks (.xlsx): the first sheet with a table; others with one are said to be left out."""
 
 from __future__ import annotations
 
@@ -12,14 +12,12 @@ from typing import Any
 import numpy as np
 
 from ...base.errors import ExperimentError
-from ._clock_before_signal import clocks_before_signals, with_clocks_before
 from ._header import names_and_units
-from ._log import MOST_BYTES, Log, number_names, optional, refuse_damage, refuse_size
+from ._log import MOST_BYTES, Log, join_names, number_names, optional, refuse_damage, refuse_size
+from .shapes._table import MOST_ROWS
 
 #: rows above the first row of numbers that may be titles, names and units
 _TOP = 50
-#: rows that tell whether columns before signals are their clocks
-_ENOUGH = 1000
 
 
 def open_workbook(path: Path, file: str) -> Log:
@@ -35,17 +33,23 @@ def open_workbook(path: Path, file: str) -> Log:
         book = openpyxl.load_workbook(path, read_only=True, data_only=True)
         sheets = [(s.title, list(s.iter_rows(values_only=True))) for s in book.worksheets]
         book.close()
-    for title, rows in sheets:
-        first = next((k for k, row in enumerate(rows[:_TOP]) if _is_data(row)), None)
-        if first is None:
-            continue
-        refuse_size(len(rows), file)
-        notes = (f"sheet {title!r}",) if len(sheets) > 1 else ()
-        log = _log(rows, first, notes)
-        texts = [[_text(c) for c in row] for row in rows[first : first + _ENOUGH]]
-        clock_of = clocks_before_signals(log.names, texts, comma=False)
-        return with_clocks_before(log, file, clock_of) if clock_of else log
-    raise ExperimentError(f"{file}: found no sheet with a table of numbers below its header")
+    firsts = {title: _first_row(rows) for title, rows in sheets}
+    tables = {t: (rows, first) for t, rows in sheets if (first := firsts[t]) is not None}
+    if not tables:
+        raise ExperimentError(f"{file}: found no sheet with a table of numbers below its header")
+    title, *others = tables
+    notes = [f"sheet {title!r}"] if len(sheets) > 1 else []
+    if others:
+        sheet = "sheet" if len(others) == 1 else "sheets"
+        others = [repr(other) for other in others]
+        notes.append(f"{sheet} {join_names(others, 4)}: left out; save each as a file of its own")
+    refuse_size(len(tables[title][0]), file)
+    return _log(*tables[title], tuple(notes))
+
+
+def _first_row(rows: Sequence[Sequence[Any]]) -> int | None:
+    """The first row of numbers of a sheet; None: it holds no table."""
+    return next((k for k, row in enumerate(rows[:_TOP]) if _is_data(row)), None)
 
 
 def _is_data(row: Sequence[Any]) -> bool:
@@ -78,7 +82,8 @@ def _log(rows: Sequence[Sequence[Any]], first: int, notes: tuple[str, ...]) -> L
     begins = (_first_filled(cells_of(k)) for k in range(width))
     unit_of |= {n: "s" for n, c in zip(names, begins, strict=True) if isinstance(c, kinds)}
     remarks = tuple(" ".join(filter(None, row)) for row in above)
-    return Log(names, read, unit_of, notes, remarks=remarks)
+    sample = {n: _column(cells_of(k)[:MOST_ROWS]) for k, n in enumerate(names)}
+    return Log(names, read, unit_of, notes, remarks=remarks, sample=sample)
 
 
 def _text(cell: Any) -> str:

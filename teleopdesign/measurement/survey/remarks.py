@@ -37,7 +37,8 @@ _SAMPLE_RATE = re.compile(
     re.I,
 )
 _SAMPLE_TIME = re.compile(
-    r"(?:sampl(?:e|ing)[ _]?(?:interval|time|period)|delta[ _]?[xt]|t_?inc|abtastzeit)"
+    r"(?:sampl(?:e|ing)[ _]?(?:interval|time|period)|delta[ _]?[xt]|t_?inc|abtastzeit"
+    r"|(?<![a-z])(?:t_?s|dt)(?![a-z])|^[Th](?= = [\d.e-]+$))"
     rf"(?:\s*[(\[]([mun]?s)[)\]])?[^\w+-]{{1,12}}{_RATE_NUMBER}\s*([mun]?s|)(?![A-Za-z:/\d-])",
     re.I,
 )

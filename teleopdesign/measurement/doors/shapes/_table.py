@@ -1,0 +1,94 @@
+"""Tables of cells, and long tables: what a shape makes of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....base.units import measures
+from ...column_names import likeness, unit_in_name
+from .._log import Array
+
+#: rows of a table by which its shape is judged: batches of up to 200 rows of two machines come back
+MOST_ROWS = 1000
+#: fewest rows of a recording, and of each signal among the rows that are judged
+FEWEST, FEWEST_ROWS = 64, 10
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of cells.
+
+    columns: name -> numbers (n,), NaN where a cell is empty, or cells (n,) of which some are texts
+    units: column -> unit, where the file states one;  dated: columns of dates
+    """
+
+    columns: Mapping[str, NDArray[Any]]
+    units: Mapping[str, str] = field(default_factory=dict)
+    dated: frozenset[str] = frozenset()
+
+    @property
+    def names(self) -> list[str]:
+        return list(self.columns)
+
+    @property
+    def numeric(self) -> dict[str, Array]:
+        return {n: x for n, x in self.columns.items() if x.dtype.kind == "f"}
+
+    def unit_of_time(self, column: str) -> str | None:
+        unit = "s" if column in self.dated else self.units.get(column)
+        unit = unit or unit_in_name(column, "time")
+        return unit if unit and measures(unit, "time") else None
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One signal of a long table.
+
+    name: of the signal;  values, times: (n,);  unit: "" without one
+    clock: name of its times, "" without times;  time_unit: None where the file states none
+    """
+
+    name: str
+    values: NDArray[Any]
+    clock: str = ""
+    times: Array | None = None
+    unit: str = ""
+    time_unit: str | None = None
+
+
+@dataclass(frozen=True)
+class LongTable:
+    """All signals of a table.
+
+    labels: cells that only tell to which signal a row belongs;  note: on the shape, "" for columns
+    """
+
+    signals: tuple[Signal, ...]
+    labels: int = 0
+    note: str = ""
+
+
+def time_of(table: Table) -> str:
+    """The column that is called time; "" without one."""
+    numeric = table.numeric
+    best = max(numeric, key=lambda n: likeness(n, "time"), default="")
+    return best if best and likeness(best, "time") > 0.0 else ""
+
+
+def rises(column: Array) -> bool:
+    """Whether all numbers of a column are larger than those before, up to empty rows at its end."""
+    filled = np.isfinite(column)
+    count = int(filled.sum())
+    return count > 2 and bool(filled[:count].all() and np.all(np.diff(column[:count]) > 0))
+
+
+def as_text(cell: Any) -> Any:
+    """A cell as a text table holds it: 2.0 of a column of numbers is "2"."""
+    if isinstance(cell, float | np.floating):
+        return str(int(cell)) if float(cell).is_integer() else "" if np.isnan(cell) else str(cell)
+    return "" if cell is None else str(cell)

@@ -1,0 +1,146 @@
+"""Tables whose rows belong to several machines in turn: each of them is read with its own clock.
+
+    motor_id; t;     pos;  cmd           joint, time, position, effort
+    1;        0.000; 0.10; 0.2           hip,   0.00, 0.10,     1.5
+    2;        0.001; 2.30; 0.0           knee,  0.00, 2.30,     0.1
+
+A logger may also write some hundred rows of one machine, then those of the other one, without any
+column that tells the two apart. Read as one body, such a table would leap between the machines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...column_names import words_of
+from .._log import Array, join_names
+from ._table import FEWEST_ROWS, LongTable, Signal, Table, as_text, time_of
+
+#: words of the name of a column that names or numbers machines, and most machines of a table
+NUMBERS_MACHINES = frozenset(
+    "id ids no nr num number name motor joint servo axis actuator node device drive can leg".split()
+)
+MOST_MACHINES = 64
+#: part of its changes from row to row that a signal keeps within one machine, and part of the rows
+#: that belong to another machine than the row before: the direction of one machine lasts for rows
+SMOOTHER, EACH_ROW = 0.5, 0.7
+#: longest step within one machine, in usual steps, and returns to an earlier part from which a
+#: table is read so: a clock that is set back once or twice may come to rest there by chance
+GOES_ON, FEWEST_RETURNS = 5.0, 3
+
+
+def machines_in_turn(table: Table) -> LongTable | None:
+    """Rows of several machines in turn, named in a column: "hip, 0.0, 0.1", "knee, 0.0, 2.3".
+
+    Trials follow each other, machines run together. The state of one machine lasts for some rows,
+    or changes without a leap of its signals.
+    """
+    time = time_of(table)
+    if not time or len(table.columns[time]) < 2 * FEWEST_ROWS:
+        return None
+    for name in (n for n in table.names if n != time):
+        labels = _labels_of(name, table.columns[name])
+        numbers = [x for n, x in table.numeric.items() if n not in (time, name)]
+        if labels and _run_together(labels[1], table.numeric[time], numbers):
+            machines = labels[0]
+            how = f"named in {name!r}: {join_names(machines, most=4)}"
+            return _apart(table, time, name, labels, how)
+    return None
+
+
+def machines_by_time(table: Table) -> LongTable | None:
+    """Batches of rows of several machines: the time is set back to where an earlier part ended."""
+    time = time_of(table)
+    if not time or not np.all(np.isfinite(table.numeric[time])):
+        return None
+    parts, returns = parts_by_time(table.numeric[time])
+    count = int(parts.max(initial=-1)) + 1
+    if returns < FEWEST_RETURNS or returns <= count or count > MOST_MACHINES:
+        return None
+    names = [f"part {k + 1}" for k in range(count)]
+    how = f"told apart by their times: {join_names(names, most=4)}"
+    return _apart(table, time, "", (names, parts), how)
+
+
+def _labels_of(name: str, column: NDArray[Any]) -> tuple[list[str], NDArray[np.intp]] | None:
+    """The names of machines and the number of each row's machine, where a column may hold them."""
+    numbered = column.dtype.kind == "f"
+    words = words_of(name)
+    if numbered and not (words and NUMBERS_MACHINES.issuperset(words)):
+        return None
+    if numbered and not (np.all(column == np.round(column)) and np.all(column >= 0)):
+        return None
+    number = {cell: k for k, cell in enumerate(dict.fromkeys(column.tolist()))}
+    if not 2 <= len(number) <= MOST_MACHINES or not {"", None}.isdisjoint(number):
+        return None
+    return [as_text(c) for c in number], np.array([number[c] for c in column], dtype=np.intp)
+
+
+def _run_together(labels: NDArray[np.intp], stamps: Array, signals: Sequence[NDArray[Any]]) -> bool:
+    """Whether the machines of some rows run at the same time, each with signals of its own."""
+    rows = [np.flatnonzero(labels == k) for k in range(int(labels.max()) + 1)]
+    changes = np.diff(labels) != 0
+    if min(map(len, rows)) < FEWEST_ROWS or int(changes.sum()) < 2 * len(rows):
+        return False
+    if any(np.any(np.diff(stamps[r]) < 0) for r in rows):
+        return False
+    if int(np.sum(np.diff(stamps)[changes] < 0)) >= len(rows):
+        return True
+    in_turn = float(changes.mean()) >= EACH_ROW
+    return in_turn and any(_leaps_between(signal, rows) for signal in signals)
+
+
+def _leaps_between(signal: Array, rows: Sequence[NDArray[np.intp]]) -> bool:
+    """Whether a signal changes less within the rows of each machine than from row to row."""
+    if not np.all(np.isfinite(signal)):
+        return False
+    within = sum(float(np.abs(np.diff(signal[r])).sum()) for r in rows)
+    return within < SMOOTHER * float(np.abs(np.diff(signal)).sum())
+
+
+def _apart(
+    table: Table, time: str, key: str, labels: tuple[list[str], NDArray[np.intp]], how: str
+) -> LongTable:
+    """The signals of each machine, with its own clock: "hip.position" at "hip.time"."""
+    names, machine = labels
+    found = []
+    for k, name in enumerate(names):
+        rows = machine == k
+        clock, times = f"{name}.{time}", table.numeric[time][rows]
+        for n in (n for n in table.names if n not in (time, key)):
+            unit, time_unit = table.units.get(n, ""), table.unit_of_time(time)
+            values = table.columns[n][rows]
+            found.append(Signal(f"{name}.{n}", values, clock, times, unit, time_unit))
+    note = f"rows of {len(names)} machines in turn, {how}"
+    return LongTable(tuple(found), len(machine) if key else 0, note)
+
+
+def parts_by_time(stamps: Array) -> tuple[NDArray[np.intp], int]:
+    """The part that each row continues, from 0, and how often the rows return to an earlier part.
+
+    A part goes on where the next stamp lies at most `GOES_ON` usual steps after its last one.
+    """
+    steps = np.diff(stamps)
+    forward = steps[steps > 0]
+    longest = GOES_ON * float(np.median(forward)) if len(forward) else 0.0
+    last, now, returns = [0], 0, 0
+    begins, parts = [0], [0]
+    for row in (np.flatnonzero((steps < 0) | (steps > longest)) + 1).tolist():
+        last[now] = row - 1
+        after = {k: float(stamps[row] - stamps[end]) for k, end in enumerate(last) if k != now}
+        near = {k: step for k, step in after.items() if 0 < step <= longest}
+        if near:
+            now = min(near, key=lambda k: near[k])
+            returns += 1
+        elif steps[row - 1] < 0:
+            last.append(row)
+            now = len(last) - 1
+            if now > MOST_MACHINES:
+                break
+        begins.append(row)
+        parts.append(now)
+    return np.repeat(np.array(parts, dtype=np.intp), np.diff([*begins, len(stamps)])), returns
