@@ -29,7 +29,7 @@ from .printing import (
 )
 
 if TYPE_CHECKING:
-    import control
+    from ..base import python_control as control
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,12 @@ from .between_rows import floor_between_rows
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .decision import refusal
+from .effort import EFFORTS
 from .error import force_error
 from .error_at_command import refer_to_command
 from .estimates import correct_fit
-from .fit import Fit
+from .fit import Fit, estimate
+from .free_functions import Belief, belief
 from .identifiability import doubt, explains_most
 from .ladder_end import LadderEnd
 from .ladder_state import LadderSearch, LadderState
@@ -79,7 +81,8 @@ def conclude(
     moment = moment if floor is state.floor else None  # else all that is left is noise
     end = LadderEnd(
         search=search,
-        verdict=verdict(rungs, floor, moment, trees=trees, repeats=repeats, criteria=criteria),
+        verdict=verdict(rungs, floor, moment, criteria=criteria),
+        beliefs=_beliefs(rungs, prepared),
         rungs=rungs,
         last=state.ranking,
         estimated=estimated,
@@ -101,6 +104,32 @@ def conclude(
     if end.verdict == "effects_missing" and not named:
         return replace(end, verdict="undecided")
     return replace(end, named=named)
+
+
+def _beliefs(rungs: Sequence[Rung], prepared: Prepared) -> dict[tuple[str, str], Belief]:
+    """What each effect of the final model explains beside free functions, as if it came last."""
+    last, beliefs = rungs[-1].fit, {}
+    for rung in rungs[1:]:
+        model = _without_effect_of(rung, rungs)
+        if model is None or rung.added is None:
+            continue
+        without = estimate(model, prepared, effort=EFFORTS.near)
+        beliefs[rung.added.key] = belief(without, last, rung.added.at, prepared)
+    return beliefs
+
+
+def _without_effect_of(rung: Rung, rungs: Sequence[Rung]) -> Model | None:
+    """The final model without the effect of a rung, and without those that need it.
+
+    returns: None where an effect of the user's model needs it
+    """
+    model = rungs[-1].fit.model
+    later = rungs[rungs.index(rung) + 1 :]
+    for gone in ([], *([other] for other in reversed(later)), [*reversed(later)]):
+        without = _undo([*gone, rung], model)
+        if without is not None:
+            return without
+    return None
 
 
 def _select_left_out(set_aside: Sequence[SetAside], rungs: Sequence[Rung]) -> tuple[SetAside, ...]:
@@ -166,21 +195,21 @@ def _find_dependent(rungs: Sequence[Rung], rung: Rung, why: str) -> tuple[Rung, 
     why: the doubt about the other rung
     """
     model = rungs[-1].fit.model
-    if _can_undo([rung], model):
+    if _undo([rung], model) is not None:
         return None
     others = (r for r in reversed(rungs) if r.added not in (None, rung.added))
-    other = next((r for r in others if _can_undo([r, rung], model)), None)
+    other = next((r for r in others if _undo([r, rung], model) is not None), None)
     return None if other is None else (other, f"it needs {rung.added}: {why}")
 
 
-def _can_undo(rungs: Sequence[Rung], model: Model) -> bool:
-    """Whether the effects of rungs can be taken from a model, one after the other."""
+def _undo(rungs: Sequence[Rung], model: Model) -> Model | None:
+    """A model without the effects of rungs, taken one after the other; None: one is needed."""
     try:
         for rung in rungs:
             model = rung.undo_addition(model)
     except ModelError:
-        return False
-    return True
+        return None
+    return model
 
 
 def remove_doubtful_rung(

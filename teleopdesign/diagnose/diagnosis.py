@@ -205,8 +205,7 @@ class Diagnosis(Shown, ByValue):
     @property
     def unlikely(self) -> bool:
         """Whether the verdict is undecided only because no effect is probable enough."""
-        trees, repeats = self.learnable, self.repeats
-        of_rungs = verdict(self.rungs, self.floor, self.moment, trees=trees, repeats=repeats)
+        of_rungs = verdict(self.rungs, self.floor, self.moment)
         return self.verdict == "undecided" and of_rungs == "effects_missing"
 
     @property

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 from ..base.frozen import ByValue
 from .adequacy import is_adequate
 from .candidates import Candidate
 from .fit import Fit
+from .free_functions import Belief
 from .ladder_state import LadderSearch
 from .learnable import Learnable, NearReversals
 from .noise_floor import NoiseFloor
@@ -27,6 +29,7 @@ class LadderEnd(ByValue):
     estimated: the last rung's fit, parameters not yet corrected for errors of the readings
     sensor_floor: error that the sensors alone leave, used for the probability of effects. Where the
         scatter of a command is noise too (`between_rows`), an effect may imitate it
+    beliefs: accepted effect (name, place) -> what it explains beside free functions
     named: accepted effects that are probable enough to be called missing
     silence: why the records tell no effect; "": they may tell one
     The other fields are those of `Diagnosis`.
@@ -47,6 +50,7 @@ class LadderEnd(ByValue):
     set_aside: tuple[SetAside, ...] = ()
     on_all_records: float | None = None
     named: tuple[Candidate, ...] = ()
+    beliefs: Mapping[tuple[str, str], Belief] = field(default_factory=dict)
     silence: str = ""
 
     @property

@@ -4,10 +4,8 @@ It is calibrated on diagnoses of cases from an independent simulator, not by a f
 white noise. In these cases the final error decides whether an accepted effect is true: where it is
 noise, nearly all accepted effects are true; where it is much larger, a wrong effect may have
 imitated one that the catalogue lacks. On a real machine more than noise is nearly always left.
-There the probability follows from the ratio of explained to remaining squares: an effect that only
-imitates the true one leaves a part as large as it explains. Of the remaining squares, only those
-count that another effect could still explain: where a black box that knows the motion only does as
-well as the model, a residual that it cannot learn does not repeat, and hides no other effect.
+There the probability follows from what the effect explains beside free functions of the motion
+(`free_functions`): an effect of the right form explains as much as they do.
 """
 
 from __future__ import annotations
@@ -23,10 +21,11 @@ from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .decision import helps_but_is_barred, list_displaced_parameters
 from .evidence import chance
+from .free_functions import Belief
 from .ladder_end import LadderEnd
 from .ranking import Ranked, Ranking
 from .rung import Rung
-from .verdict import explained_share, open_to_others, removed_share
+from .verdict import removed_share
 
 
 @dataclass(frozen=True)
@@ -39,9 +38,8 @@ class CandidateEvidence:
     explained: part of the squares above the noise floor that it removes on this step
     left: error after the last step, in noise floors
     barred: the rule that excludes it on this step, whatever it explains; "" where none
-    outweighs: G / (G + L), 0 to 1, with G: squares that it removes on this step, and L: squares
-        that the last step leaves above the noise floor and another effect could explain; of the
-        force or at the command, the smaller
+    belief: what the effect that was added on this step explains in the final model, beside free
+        functions; None: it cannot be taken from this model
     from_noise: the step began with a model that leaves only noise
     at_most: probability of the accepted effects that it requires: it cannot act without them
     """
@@ -53,7 +51,7 @@ class CandidateEvidence:
     explained: float
     left: float
     barred: str = ""
-    outweighs: float = 0.0
+    belief: Belief | None = None
     from_noise: bool = False
     at_most: float = 1.0
 
@@ -64,10 +62,11 @@ class CandidateEvidence:
             return 0.0
         if not (self.accepted or self.as_good):
             return criteria.true_of_others * real * self.explained
-        # of 4 accepted effects that left 3.9 to 29 noise floors none was true. Squares: only the
-        # part of the unexplained force that is noise is certain to hide no effect
-        trusted = 1.0 if self.left <= criteria.adequate else (criteria.adequate / self.left) ** 2
-        trusted = max(trusted, self.outweighs**criteria.outweighing)
+        trusted = 1.0
+        if (
+            self.left > criteria.adequate
+        ):  # more than noise is left: is the form of the effect right?
+            trusted = 0.0 if self.belief is None else self.belief.share**criteria.believing
         if self.from_noise:  # a true effect explains nearly all force above the noise
             trusted *= self.explained
         return float(np.clip(criteria.true_of_accepted * real * trusted, 0.0, self.at_most))
@@ -103,7 +102,6 @@ def _evidence_alone(end: LadderEnd) -> list[CandidateEvidence]:
     ]
     steps.append((None, end.last))
     last, floor = end.after, end.sensor_floor
-    open_part = open_to_others(end.learnable, last, end.repeats)
     evidence = []
     for rung, ranking in steps:
         share = shares(ranking, rung)
@@ -120,12 +118,12 @@ def _evidence_alone(end: LadderEnd) -> list[CandidateEvidence]:
                     accepted=accepted,
                     as_good=rung is not None and key in {c.key for c in rung.alternatives},
                     share=share[key],
-                    explained=removed_share((before, after, after), floor.value),
+                    explained=removed_share((before, after), floor.value),
                     left=floors_left(last, floor),
                     barred=barred,
-                    outweighs=explained_share(
-                        ranking.base, ranked.fit, floor, last=last, open_part=open_part
-                    ),
+                    belief=None
+                    if rung is None or rung.added is None
+                    else end.beliefs.get(rung.added.key),
                     from_noise=is_adequate(ranking.base, floor),
                 )
             )

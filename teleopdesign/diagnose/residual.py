@@ -7,6 +7,7 @@ for the model first, and removed.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -34,7 +35,10 @@ def residuals(
 
 
 def relative_residuals(
-    model: Model, stretches: Sequence[Stretch], wrt: Sequence[str | Probe] = ()
+    model: Model,
+    stretches: Sequence[Stretch],
+    wrt: Sequence[str | Probe] = (),
+    forces: Sequence[Array] | None = None,
 ) -> list[tuple[Array, Array]]:
     """Residuals relative to the force that acts in the model, scaled to the measured force.
 
@@ -43,9 +47,11 @@ def relative_residuals(
     such a model gains nothing. Equal to `residuals` where no effect lies between command and force.
     The link parameters that the joints of an arm share are taken into account
     (`shared_links.clear`).
-    returns: per stretch, residual (rows,) and tangents (p, rows) by `wrt`, as in `residuals`
+    forces: per stretch, c forces (c, n) that act besides, each with an unknown factor
+    returns: per stretch, residual (rows,) and tangents (p, rows) by `wrt`, as in `residuals`; below
+        these the tangents by the factors of the forces
     """
-    parts = _residual_along(model, stretches, wrt, _bodies_that_lose_force(model))
+    parts = _residual_along(model, stretches, wrt, _bodies_that_lose_force(model), forces)
     return _relative(model, stretches, parts)
 
 
@@ -123,11 +129,13 @@ def _residual_along(
     stretches: Sequence[Stretch],
     wrt: Sequence[str | Probe],
     taking: Collection[str] = (),
+    forces: Sequence[Array] | None = None,
 ) -> list[tuple[Traced, Traced | None]]:
     """Residual per stretch, low-passed on the rows that count, with its tangents (p, rows).
 
     taking: bodies whose acting plus interaction force is returned too, low-passed likewise; None
         for the others
+    forces: as in `relative_residuals`
     """
     located = [_place_of_probe(model, name) for name in wrt]
     groups = offset_groups(model, stretches)
@@ -137,7 +145,24 @@ def _residual_along(
         return residual_along(body, motion, [located[i][1] for i in mine]), mine
 
     each = (along(*one) for one in apply_offset_groups(model, stretches, groups))
-    return _low_passed(stretches, groups, each, taking, len(wrt))
+    if forces is None:
+        return _low_passed(stretches, groups, each, taking, len(wrt))
+    beside = (_with_forces(*one, more, len(wrt)) for one, more in zip(each, forces, strict=True))
+    return _low_passed(stretches, groups, beside, taking, len(wrt) + len(forces[0]))
+
+
+def _with_forces(
+    along: Residual, places: list[int], forces: Array, parameters: int
+) -> tuple[Residual, list[int]]:
+    """A residual with further tangents: by the factors of forces (c, n) that act besides."""
+    residual, moving, count = along.residual, along.moving, len(forces)
+    nothing = np.zeros((count, len(moving.value)))
+    more = replace(
+        along,
+        residual=Traced(residual.value, np.vstack([residual.tangent, forces])),
+        moving=Traced(moving.value, np.vstack([moving.tangent, nothing])),
+    )
+    return more, [*places, *range(parameters, parameters + count)]
 
 
 def _low_passed(

@@ -176,6 +176,7 @@ def _result(
     model, last = fit.model, end.after.model
     if one.accepted and last.body(at).has(effect):
         model = last  # each later rung estimates all parameters again
+    believed = one.belief if one.accepted else None
     return CandidateResult(
         candidate=candidate,
         probability=one.probability(),
@@ -186,6 +187,9 @@ def _result(
         check_error_at_command=finite(fit.at_command.error),
         blind=finite(fit.at_command.blind),
         refused=one.barred or None,
+        rho=None if believed is None else finite(believed.rho),
+        lambda_=None if believed is None else finite(believed.lambda_),
+        free_function="" if believed is None else believed.best,
         steps=steps,
     )
 

@@ -88,20 +88,20 @@ def stands_in_for_readings(
     Where the readings alone explain the error of the base, an effect that weakens their error must
     leave surely fewer noise floors. An effect that leaves less than the readings alone would, by
     what it does at few moments, follows their errors.
-    returns: None where the effect leaves fewer noise floors too, or only noise of a base that
-        leaves more
+    returns: None where the effect leaves fewer noise floors too, or the base more than noise
     """
     if rung.added is None or not (before.drawn and after.drawn):
         return None
     left, leaves = base.check_error / before.drawn, rung.fit.check_error / after.drawn
-    of_readings = is_of_readings(left, criteria)
-    if of_readings and leaves < criteria.weakened and acts_at_few_moments(base, rung.fit):
+    if not is_of_readings(left, criteria):
+        return None
+    if leaves < criteria.weakened and acts_at_few_moments(base, rung.fit):
         reason = (
             f"leaves {leaves:.2g} noise floors, less than the readings alone would leave, and acts "
             f"at few moments: it only follows their errors ({left:.2g} floors are left without it)"
         )
         return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)
-    if of_readings and after.drawn < criteria.weakened * before.drawn:
+    if after.drawn < criteria.weakened * before.drawn:
         explains = leaves <= criteria.weakened * left
     else:
         explains = leaves <= criteria.adequate or criteria.weakened * leaves <= left

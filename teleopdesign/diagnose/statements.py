@@ -130,6 +130,7 @@ class CandidateResult(ByValue):
     """A candidate with its fit at the step that accepted it, or where it was most probable.
 
     refused: the rule that excludes it whatever it explains; None: none does
+    rho, lambda_, free_function: of an accepted effect: `free_functions.Belief`
     parameters: name in the effect -> estimate
     steps: its result for each row of the ladder, None where it was not fitted; (): not known
     """
@@ -141,6 +142,9 @@ class CandidateResult(ByValue):
     check_error_at_command: Error = math.nan
     blind: Error = 0.0
     refused: str | None = None
+    rho: Annotated[float | None, OMIT] = None
+    lambda_: Annotated[float | None, OMIT, At("lambda")] = None
+    free_function: Annotated[str, OMIT] = ""
     steps: tuple[StepResult | None, ...] = ()
 
 

@@ -77,10 +77,10 @@ def _check_versions(client: Any, address: str) -> None:
                 )
 
 
-def _evaluate_packed(payload: bytes, batch: list[Unit]) -> BatchResult:
+def _evaluate_packed(payload: bytes, batch: list[Unit], until: float) -> BatchResult:
     """In a worker: the outcomes of a batch."""
     with one_thread():
-        return evaluate_batch(_task(payload), batch)
+        return evaluate_batch(_task(payload), batch, until)
 
 
 @lru_cache(maxsize=4)

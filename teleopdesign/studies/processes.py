@@ -16,9 +16,11 @@ import pickle
 import signal
 import threading
 import time
+import warnings
 from collections.abc import Iterable, Iterator
 from concurrent.futures.process import ProcessPoolExecutor
 from contextlib import contextmanager
+from typing import Any
 
 from ..base.errors import ModelError, TeleopDesignError
 from ..base.machine import (
@@ -128,7 +130,9 @@ def _copies(task: StudyTask, count: int) -> Iterator[Workers]:
     executor = ProcessPoolExecutor(count, context, _begin_copy, (task, os.getpid()))
     gc.freeze()  # else a collection in a copy would write to, and so copy, all memory
     try:
-        with one_thread(), shield_from_ctrl_c():
+        with one_thread(), shield_from_ctrl_c(), warnings.catch_warnings():
+            # Python 3.12 counts threads of linear algebra, which end before a copy and begin anew
+            warnings.simplefilter("ignore", DeprecationWarning)
             executor.submit(os.getpid)  # all processes start here
         yield Workers(executor, lambda: count, _evaluate_batch)
     finally:
@@ -208,12 +212,17 @@ def _leave_terminal() -> None:
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
 
 
-def _evaluate_batch(batch: list[Unit]) -> BatchResult:
-    return evaluate_batch(_tasks[-1], batch)
+def _evaluate_batch(batch: list[Unit], until: float) -> BatchResult:
+    result = evaluate_batch(_tasks[-1], batch, until)
+    if not gc.get_freeze_count():  # what was imported stays: no search for unused cycles there
+        gc.freeze()
+    return result
 
 
-def evaluate_batch(task: StudyTask, batch: list[Unit]) -> BatchResult:
-    """In a worker: the outcomes of a batch of units as rows, and the time that they took, s."""
-    start = time.monotonic()
-    rows = [as_row(outcome) for unit in batch for outcome in evaluate_unit(task, unit)]
-    return rows, time.monotonic() - start
+def evaluate_batch(task: StudyTask, batch: list[Unit], until: float) -> BatchResult:
+    """In a worker: the outcomes of the units of a batch that it begins within `until` s."""
+    start, rows, done = time.monotonic(), list[tuple[Any, ...]](), 0
+    while done < len(batch) and (not done or time.monotonic() - start < until):
+        rows += [as_row(outcome) for outcome in evaluate_unit(task, batch[done])]
+        done += 1
+    return rows, time.monotonic() - start, done

@@ -20,8 +20,8 @@ from .evaluate import Unit
 from .outcomes import PointOutcome
 
 Sink = Callable[[PointOutcome], None]
-#: `as_row` of the outcomes of a batch of units, and the time that they took, s
-BatchResult = tuple[list[tuple[Any, ...]], float]
+#: `as_row` of the outcomes of a batch, the time that they took, s, and how many units are done
+BatchResult = tuple[list[tuple[Any, ...]], float, int]
 
 #: s: computing time of the points that a process receives at once; short against the intervals of
 #: progress reports, long against the 0.1 ms of a message
@@ -35,14 +35,16 @@ _MOST_ENDS = 2
 class Workers:
     """Processes that evaluate units.
 
-    count: how many there are now;  evaluate: what they call with a batch of units
+    count: how many there are now
+    evaluate: what they call with a batch of units, and with the time, s, after which the other
+        units of the batch are left
     batch_time: s;  ahead: batches for each of them that wait or are computed
     where: place of the processes, after the name of an error
     """
 
     executor: Executor
     count: Callable[[], int]
-    evaluate: Callable[[list[Unit]], BatchResult]
+    evaluate: Callable[[list[Unit], float], BatchResult]
     batch_time: float = _BATCH_TIME
     ahead: int = 2
     where: str = ""
@@ -61,6 +63,8 @@ class SharedUnits:
         self.pending: dict[Future[BatchResult], list[Unit]] = {}
         self.ends: Counter[Unit] = Counter()
         self.each = 0.0  # s a unit, from the latest batch
+        # most units in a batch, twice as many as came back: a slow one keeps back those before it
+        self.most = 1
 
     def run(self, start: Callable[[bool], AbstractContextManager[Workers]]) -> None:
         """Run until every point is done.
@@ -107,23 +111,26 @@ class SharedUnits:
         while self.todo and len(self.pending) < workers.ahead * count:
             fair = -(-len(self.todo) // (workers.ahead * count))
             size = int(workers.batch_time / self.each) if self.each > 0 else 1
-            size = min(max(size, 1), _MOST_IN_BATCH, fair)
+            size = min(max(size, 1), self.most, fair)
             self._send_batch([self.todo[k] for k in range(size)], workers)
             for _ in range(size):
                 self.todo.popleft()
 
     def _send_batch(self, batch: list[Unit], workers: Workers) -> None:
-        self.pending[workers.executor.submit(workers.evaluate, batch)] = batch
+        future = workers.executor.submit(workers.evaluate, batch, workers.batch_time)
+        self.pending[future] = batch
 
     def _take(self, future: Future[BatchResult], workers: Workers) -> bool:
         """Pass on the outcomes of a batch; returns whether its executor still works."""
         batch = self.pending.pop(future)
         try:
-            rows, seconds = future.result()
+            rows, seconds, done = future.result()
         except Exception as error:
             self._put_back(batch, error, workers)
             return not isinstance(error, BrokenExecutor)
-        self.each = seconds / len(batch)
+        self.each = seconds / done
+        self.most = max(self.most, min(2 * done, _MOST_IN_BATCH))
+        self.todo.extendleft(reversed(batch[done:]))
         for row in rows:
             self.sink(PointOutcome(*row))
         return True

@@ -1,5 +1,6 @@
 """The probability of a candidate follows from what the ladder found of it."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,8 +11,8 @@ from hypothesis import strategies as st
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.evidence import whole_score
+from teleopdesign.diagnose.free_functions import Belief
 from teleopdesign.diagnose.identifiability import is_identifiable
-from teleopdesign.diagnose.learnable import Learnable
 from teleopdesign.diagnose.order import rank_key
 from teleopdesign.diagnose.probability import (
     CandidateEvidence,
@@ -20,7 +21,6 @@ from teleopdesign.diagnose.probability import (
     shares,
 )
 from teleopdesign.diagnose.rung import restore_replaced
-from teleopdesign.diagnose.verdict import open_to_others
 from teleopdesign.effects import EFFECTS
 
 
@@ -49,29 +49,13 @@ def test_it_is_a_probability(left, share, score):
         assert 0.0 <= one <= 1.0
 
 
-def test_it_falls_as_more_is_left_and_never_rises():
+def test_it_is_judged_by_its_form_alone_where_more_than_noise_is_left():
+    one = replace(EVIDENCE, belief=Belief(0.6, 0.0, "velocity"))
     probabilities = [
-        replace(EVIDENCE, left=x).probability() for x in (0.8, CRITERIA.adequate, 2.5, 4.0, 30.0)
+        replace(one, left=x).probability() for x in (0.8, CRITERIA.adequate, 2.5, 4.0, 30.0)
     ]
-    assert probabilities == sorted(probabilities, reverse=True)
     assert probabilities[0] == probabilities[1] > 0.9
-    assert probabilities[3] < 0.5
-    assert probabilities[4] < 0.01
-
-
-def test_what_outweighs_what_is_left_is_believed_though_more_than_noise_is_left():
-    left = replace(EVIDENCE, left=8.0)
-    probabilities = [
-        replace(left, outweighs=x).probability() for x in (0.0, 0.5, 0.7, 0.8, 0.95, 1.0)
-    ]
-    assert probabilities == sorted(probabilities)
-    assert (
-        probabilities[1] < 0.3
-        and probabilities[2] < 0.5 < probabilities[3]
-        and probabilities[4] > 0.85
-    )
-    # what is accepted with noise left alone is believed no less
-    assert replace(EVIDENCE, outweighs=0.1).probability() == EVIDENCE.probability()
+    assert probabilities[2] == probabilities[3] == probabilities[4] < 0.5
 
 
 def test_beside_a_model_that_leaves_only_noise_an_effect_is_believed_by_what_it_takes_away():
@@ -120,7 +104,7 @@ def test_every_candidate_of_every_step_has_its_evidence(end):
 
 def test_a_floor_that_holds_a_commands_scatter_makes_no_effect_more_likely(end):
     def summary(one):
-        return [(e.left, e.explained, e.outweighs, e.probability()) for e in evidence_of(one)]
+        return [(e.left, e.explained, e.probability()) for e in evidence_of(one)]
 
     louder = replace(end.floor, value=3.0 * end.floor.value)
     by_scatter = replace(end, floor=louder)
@@ -201,43 +185,15 @@ def test_an_effect_is_named_beside_one_that_took_the_place_of_the_users(end):
     assert select_independent(whole, {bristles.key}) == ()
 
 
-def with_box(end, *, alone, learned):
-    """The end with a black box beside it.
+def test_an_effect_is_believed_by_what_it_explains_beside_free_functions(end):
+    floor = replace(end.floor, value=0.1 * end.after.check_error)
+    added = end.rungs[-1].added
 
-    alone: its squares without a model, over those that the model leaves;  learned: of the latter
-    """
-    left = end.after.check_error
-    box = Learnable(left=left, error=left * (1.0 - learned) ** 0.5, alone=left * alone**0.5)
-    return replace(end, learnable=box)
+    def probability(rho):
+        beliefs = {} if rho is None else {added.key: Belief(rho, 0.0, "velocity")}
+        noisy = replace(end, floor=floor, sensor_floor=floor, beliefs=beliefs)
+        return next(e.probability() for e in evidence_of(noisy) if e.accepted)
 
-
-@pytest.mark.parametrize(
-    ("alone", "learned", "part"),
-    [
-        (2.0, 0.0, 1.0),  # it sees nothing so small: that it learns nothing says nothing
-        (50.0, 0.0, 1.0),
-        (1.0, 1.0, 1.0),  # all that is left follows the motion
-        (1.0, 0.0, CRITERIA.missed),  # trees miss some of what they could see
-        (0.5, 0.7, 0.7),
-        (1.5, 0.7, 0.85),
-    ],
-)
-def test_what_a_black_box_sees_and_cannot_learn_is_open_to_no_other_effect(
-    end, alone, learned, part
-):
-    assessment = with_box(end, alone=alone, learned=learned)
-    assert open_to_others(assessment.learnable, assessment.after) == pytest.approx(part, abs=1e-9)
-    assert open_to_others(None, assessment.after) == 1.0
-
-
-def test_an_effect_is_believed_more_the_less_of_what_is_left_follows_the_motion(end):
-    floor = replace(end.floor, value=0.5 * end.after.check_error)
-    noisy = replace(end, floor=floor, sensor_floor=floor)
-
-    def outweighs(one):
-        return next(e.outweighs for e in evidence_of(one) if e.accepted)
-
-    shares_learned = (CRITERIA.missed, 0.7, 0.9, 1.0)
-    values = [outweighs(with_box(noisy, alone=1.0, learned=x)) for x in shares_learned]
-    assert values == sorted(values, reverse=True) and values[0] > values[-1]
-    assert values[-1] == pytest.approx(outweighs(replace(noisy, learnable=None)))
+    values = [probability(rho) for rho in (None, -1.0, 0.5, 0.79, 0.81, 1.0, math.inf)]
+    assert values == sorted(values) and values[:2] == [0.0, 0.0]
+    assert values[3] < CRITERIA.named <= values[4] and values[5] == values[6]

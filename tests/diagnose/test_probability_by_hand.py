@@ -8,8 +8,8 @@ import pytest
 from diagnose.stand_ins import fit, floor, ranked
 from diagnose.stub_models import Names, candidate
 
+from teleopdesign.diagnose.free_functions import Belief
 from teleopdesign.diagnose.ladder_end import LadderEnd
-from teleopdesign.diagnose.learnable import Learnable
 from teleopdesign.diagnose.probability import (
     CandidateEvidence,
     evidence_of,
@@ -19,7 +19,6 @@ from teleopdesign.diagnose.probability import (
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.rung import Rung
 from teleopdesign.diagnose.statements import SetAside
-from teleopdesign.diagnose.verdict import open_to_others
 
 
 def entry(name, error, **more):
@@ -61,27 +60,14 @@ def test_what_a_step_takes_away_by_hand():
     assert of["spring"].explained == pytest.approx(0.16 / 0.24)
     assert of["viscous"].explained == pytest.approx(0.09 / 0.24)
     assert of["bias"].explained == pytest.approx((0.09 - 0.0841) / 0.08)
-    assert of["spring"].outweighs == pytest.approx(0.16 / (0.16 + 0.08))
-    assert of["viscous"].outweighs == pytest.approx(0.09 / (0.09 + 0.08))
-    assert of["bias"].outweighs == pytest.approx(0.0059 / (0.0059 + 0.08))
     assert [e.left for e in evidence] == pytest.approx([3.0] * 3)
     assert not any(e.from_noise for e in evidence)
-
-
-def test_what_outweighs_is_the_smaller_of_the_force_and_at_the_command():
-    spring = entry("spring", 0.3, at_command=0.4)
-    (finding,) = evidence_of(diagnosis([(spring, [], [])]))
-    # at the command 0.25 to 0.16, of which 0.15 are left
-    assert finding.outweighs == pytest.approx(0.09 / (0.09 + 0.15))
-    spring.fit.at_command.error = math.nan
-    (finding,) = evidence_of(diagnosis([(spring, [], [])]))
-    assert finding.outweighs == 0.0, "blind everywhere"
 
 
 def test_what_leaves_more_takes_nothing_away():
     worse = entry("viscous", 0.6)
     (finding,) = evidence_of(diagnosis([], last=[worse]))
-    assert (finding.explained, finding.outweighs, finding.accepted) == (0.0, 0.0, False)
+    assert (finding.explained, finding.accepted) == (0.0, False)
 
 
 def test_beside_a_base_that_leaves_no_more_than_the_floor_nothing_is_explained():
@@ -96,42 +82,6 @@ def test_beside_a_base_that_leaves_no_more_than_the_floor_nothing_is_explained()
 def test_a_step_begins_at_noise_where_its_base_leaves_less_than_nearly_two_floors(first, noise):
     (finding,) = evidence_of(diagnosis([(entry("spring", 0.11), [], [])], first=first))
     assert finding.from_noise == noise
-
-
-def test_what_a_black_box_cannot_learn_stands_against_no_effect():
-    box = Learnable(left=0.3, error=0.3 * 0.5**0.5, alone=0.3)
-    open_part = evidence_of(diagnosis([(entry("spring", 0.3), [], [])], learnable=box))[0]
-    assert open_part.outweighs == pytest.approx(0.16 / (0.16 + 0.5 * 0.08))
-
-
-def test_a_box_beside_a_model_that_leaves_nothing_says_nothing():
-    nothing = diagnosis([(entry("spring", 0.0), [], [])])
-    box = Learnable(left=0.1, error=0.1, alone=0.1)
-    assert open_to_others(box, nothing.after) == 1.0
-    there = diagnosis([(entry("spring", 0.3), [], [])])
-    assert open_to_others(replace(box, left=0.0), there.after) == 1.0
-    assert open_to_others(box, there.after) == pytest.approx(0.5)
-
-
-@pytest.mark.parametrize("size", [0.01, 0.3, 4.0])
-@pytest.mark.parametrize(
-    ("alone", "learned", "part"),
-    [
-        (2.1, 0.0, 1.0),  # twice the squares and more: it sees nothing so small
-        (1.9, 0.0, 1 - 0.1 * 0.5),
-        (1.5, 0.8, 1 - 0.5 * 0.2),
-        (1.0, 0.8, 0.8),
-        (0.3, 0.8, 0.8),
-        (0.3, 0.3, 0.5),  # trees miss some of what they could see
-        (1.0, -1.0, 0.5),
-    ],
-)
-def test_what_is_open_by_squares_alone_and_squares_learned(size, alone, learned, part):
-    there = diagnosis([(entry("spring", size), [], [])], first=2 * size, noise=0.1 * size)
-    box = Learnable(
-        left=2.0 * size, error=2.0 * size * (1 - learned) ** 0.5, alone=size * alone**0.5
-    )
-    assert open_to_others(box, there.after) == pytest.approx(part)
 
 
 def test_candidates_that_explain_as_well_are_reported_as_equally_good():
@@ -208,14 +158,12 @@ EVIDENCE = CandidateEvidence(
     [
         ({}, 0.97),
         ({"left": 1.8}, 0.97),
-        ({"left": 3.6}, 0.97 / 4),
-        ({"left": 3.6, "outweighs": 0.4}, 0.97 / 4),
-        ({"left": 3.6, "outweighs": 0.9}, 0.97 * 0.81),
-        ({"left": math.inf}, 0.0),
+        ({"left": 3.6}, 0.0),
+        ({"left": 3.6, "belief": Belief(0.9, 0.0, "velocity")}, 0.97 * 0.729),
+        ({"left": math.inf, "belief": Belief(2.0, 0.0, "velocity")}, 0.97),
         ({"share": 0.25}, 0.97 / 4),
         ({"ranked": SimpleNamespace(score=0.0)}, 0.97 / 2),
         ({"from_noise": True}, 0.97 * 0.9),
-        ({"from_noise": True, "left": 3.6}, 0.97 / 4 * 0.9),
         ({"at_most": 0.3}, 0.3),
         ({"accepted": False}, 0.03 * 0.9),
         ({"accepted": False, "share": 0.5, "explained": 0.2}, 0.003),

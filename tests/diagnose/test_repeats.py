@@ -15,7 +15,6 @@ from teleopdesign.diagnose.repeats import (
     _differences,
     repeatability,
 )
-from teleopdesign.diagnose.verdict import open_to_others
 from teleopdesign.measurement.prepare import prepare
 
 NOISE, EXACT = 0.3, 1e-6  # N m, in each reading of the torque
@@ -112,24 +111,6 @@ def test_a_repeatability_returns_from_an_answer():
         "of 3 % left there, 2.2 % repeats"
     )
     assert str(replace(repeats, chance=0.025)).endswith("none surely repeats")
-
-
-@pytest.mark.parametrize(
-    ("error", "squares", "part"),
-    [
-        (0.3, 1.0, 0.5),  # nothing repeats: half may be missed, as by a black box
-        (0.3, 0.4, 1 - 0.4 * 0.5),  # the rest is left where the motion was not made again
-        (0.3 * 0.3**0.5, 1.0, 0.7),
-        (0.0, 1.0, 1.0),
-    ],
-)
-def test_what_does_not_repeat_hides_no_other_effect(error, squares, part):
-    class After:
-        check_error = 0.3
-
-    repeats = Repeatability(error=error, left=0.3, share=0.5, squares=squares, chance=0.0)
-    assert open_to_others(None, After, repeats) == pytest.approx(part)
-    assert open_to_others(None, After) == 1.0
 
 
 def with_noise(prepared, size, seed):

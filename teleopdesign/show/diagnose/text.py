@@ -226,13 +226,7 @@ def sentence(diagnosis: Diagnosis) -> str:
     if diagnosis.unlikely:
         return (
             f"verdict: undecided, leading candidate {names}: less likely than not, because "
-            f"{left} noise floors are left."
-        )
-    if any(not r.alternatives for r in added):
-        helps = "helps, but explains" if len(added) == 1 else "help, but explain"
-        return (
-            f"verdict: undecided. {names} {helps} less than half of what is missing: "
-            f"{left} noise floors are left."
+            f"{_why_unlikely(diagnosis) or f'{left} noise floors are left'}."
         )
     if diagnosis.groups:
         names = "; ".join(" or ".join(map(str, g)) for g in diagnosis.groups)
@@ -244,6 +238,17 @@ def sentence(diagnosis: Diagnosis) -> str:
         f"verdict: undecided. No {which} explains the {left} noise floors that are left."
         f"{_nearest(diagnosis)}"
     )
+
+
+def _why_unlikely(diagnosis: Diagnosis) -> str:
+    """The free function that explains more than an accepted effect does; "": none is known."""
+    compared = [c for c in diagnosis.candidates if c.rho is not None and c.rho < 1.0]
+    if not compared:
+        return ""
+    one = min(compared, key=lambda c: c.rho or 0.0)
+    rho = one.rho or 0.0
+    times = f"{1.0 / rho:.2g} times as much as" if rho > 0.1 else "far more than"
+    return f"a free function of {one.free_function} explains {times} {one.candidate}"
 
 
 def _named_effects(diagnosis: Diagnosis) -> str:
