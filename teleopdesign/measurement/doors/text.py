@@ -1,7 +1,7 @@
 """Text tables: csv of any dialect. A well-formed table is read fast; errors name row and column.
 
 The lines become plain rows (`_line_shapes`), the rows a table with a separator, a decimal sign and
-names (`_dialect`), and the table signals with times (`_shapes`).
+names (`_dialect`), and the table signals with times (`shapes`).
 """
 
 from __future__ import annotations
