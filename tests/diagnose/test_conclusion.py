@@ -62,6 +62,7 @@ def concluded(monkeypatch):
             "learnable": lambda *_, **__: None,
             "repeatability": lambda *_, **__: None,
             "find_undetermined": lambda *_: (),
+            "_beliefs": lambda *_: {},
             "check_error_on_all": lambda *_: None,
             "error_near_reversals": lambda model, _: model,  # to show of which model it is
             "moment_above_noise": lambda fit, *_, **__: moment if fit is rungs[-1].fit else None,
