@@ -17,7 +17,7 @@ from ._opaque import wrap_code
 from ._state_space import Array
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 
 def from_control(system: control.InputOutputSystem, *, name: str = "state_space") -> Controller:

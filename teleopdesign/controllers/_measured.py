@@ -15,7 +15,7 @@ from ..effects import Parameter
 from ._controller import ControlLaw, Controller, Stage
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 #: relative distance from the axis that is the rounding of a point on the axis
 _ROUNDING = 1e-9

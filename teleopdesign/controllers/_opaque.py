@@ -21,7 +21,7 @@ from ._controller import ControlLaw, Controller, ControllerState, Stage, mark_sa
 from ._state_space import check_period
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 #: tolerances, relative and in units of the states, of the integration of a system over a sample:
 #: far below the resolution of the simulation around it, at some hundred calls a sample

@@ -18,7 +18,7 @@ from .transfer_functions import Case, named_cases, transfer_function
 from .two_port import has_two_sides, two_port_cases
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 SECONDS = 2.0  # longest time for the derivation of one output
 

@@ -29,7 +29,7 @@ from .printing import (
 )
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 
 @dataclass(frozen=True)

@@ -61,7 +61,7 @@ def belief(without: Fit, fit: Fit, at: str, prepared: Prepared) -> Belief:
     without: the model fitted without the effect, and without what needs it
     fit: the model with the effect;  at: the place of the effect
     """
-    bare, whole = beside_free_functions(without, at, prepared), own_squares(fit, prepared)
+    bare, whole = compare_free_functions(without, at, prepared), own_squares(fit, prepared)
     return bare.against(whole)
 
 
@@ -88,7 +88,7 @@ def own_squares(fit: Fit, prepared: Prepared) -> float:
     return _Problem.of(fit, prepared, None, "").left()
 
 
-def beside_free_functions(fit: Fit, at: str, prepared: Prepared) -> FreeFunctions:
+def compare_free_functions(fit: Fit, at: str, prepared: Prepared) -> FreeFunctions:
     """A model alone, and with each free function of the motion of one body.
 
     at: the place of the force;  prepared: of the fit
@@ -263,18 +263,18 @@ def _splines(u: Array, low: float, high: float, count: int) -> Array:
     return np.array(basis.T, dtype=float)
 
 
-def _over_position(motion: Motion, ranges: Ranges) -> Array:
+def _curve_of_position(motion: Motion, ranges: Ranges) -> Array:
     low, high = ranges.position
     return _splines(motion.position, low, max(high, low + ranges.step), SPLINES)
 
 
-def _of_velocity(motion: Motion, ranges: Ranges) -> Array:
+def _curve_of_velocity(motion: Motion, ranges: Ranges) -> Array:
     """A curve over the speed in each direction; finer at low speeds, where friction changes."""
     over = _splines(np.sqrt(np.abs(motion.velocity) / ranges.speed), 0.0, 1.0, OF_SPEED)
     return np.vstack([(motion.direction == 1) * over, (motion.direction == -1) * over])
 
 
-def _of_past(motion: Motion, ranges: Ranges) -> Array:
+def _memory(motion: Motion, ranges: Ranges) -> Array:
     """Forces in the direction of motion that fade with travel, or time, since it last turned."""
     direction = motion.direction.astype(float)
     turned = np.flatnonzero(np.diff(direction, prepend=0.0) != 0.0)
@@ -291,7 +291,7 @@ def _of_past(motion: Motion, ranges: Ranges) -> Array:
     return direction * fading
 
 
-def _of_past_and_derivatives(motion: Motion, ranges: Ranges) -> Array:
+def _memory_and_derivatives(motion: Motion, ranges: Ranges) -> Array:
     command = motion.at_rows(motion.command)
     spectrum = motion.spectrum
     more = [
@@ -300,14 +300,14 @@ def _of_past_and_derivatives(motion: Motion, ranges: Ranges) -> Array:
         spectrum.multiply(command, spectrum.derivative(1)),
         spectrum.multiply(command, spectrum.derivative(2)),
     ]
-    return np.vstack([_of_past(motion, ranges), *more])
+    return np.vstack([_memory(motion, ranges), *more])
 
 
 FAMILIES: Mapping[str, Columns] = {
-    "velocity": _of_velocity,
-    "position": _over_position,
-    "position and direction": lambda m, r: m.direction * _over_position(m, r),
-    "position and velocity": lambda m, r: m.velocity / r.speed * _over_position(m, r),
-    "the past": _of_past,
-    "the past and derivatives": _of_past_and_derivatives,
+    "velocity": _curve_of_velocity,
+    "position": _curve_of_position,
+    "position and direction": lambda m, r: m.direction * _curve_of_position(m, r),
+    "position and velocity": lambda m, r: m.velocity / r.speed * _curve_of_position(m, r),
+    "the past": _memory,
+    "the past and derivatives": _memory_and_derivatives,
 }

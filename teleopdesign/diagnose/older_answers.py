@@ -128,8 +128,12 @@ def upgrade_content(
 def _row(
     row: dict[str, Any], number: int, old: _Answer, known: Mapping[str, Effect]
 ) -> dict[str, Any]:
-    """A row of the ladder with its look-alikes, and whether its effect is named."""
+    """A row of the ladder with its look-alikes, and whether its effect is named.
+
+    Where no error at the command was written, no effect lay between command and force.
+    """
     added = old.ladder[number].added
+    row = {"check_error_at_command": row["check_error"], **row}
     if added is None:
         return row
     groups = (g for g in old.indistinguishable if g[:1] == (added,) and not _is_named(g, known))

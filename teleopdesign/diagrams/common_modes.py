@@ -20,7 +20,7 @@ from ..base.errors import ModelError
 from ..controllers import exact_decimal
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 _S = sp.Symbol("s")
 Fractions = list[list[Fraction]]

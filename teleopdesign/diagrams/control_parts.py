@@ -20,7 +20,7 @@ from .parts import Control, Entry, Moving
 from .plant_states import states_of_plant
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 
 def controller_parts(

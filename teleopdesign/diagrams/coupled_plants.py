@@ -24,7 +24,7 @@ from .parts import Control, Linked, Moving
 from .plant_states import states_of_plant
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 _S = sp.Symbol("s")
 #: relative asymmetry of a mass matrix that is rounding: in mechanics a mass matrix is symmetric

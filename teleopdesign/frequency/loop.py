@@ -32,7 +32,7 @@ from .late_zeros import count_growing
 from .sampled_loop import SampledLoop, sampled_loop
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 
 #: order of the Pade approximation in the stability test of a loop with several sampled parts

@@ -23,9 +23,8 @@ from ..realise.lti import linear_blocks, numerical
 from ..realise.parted import linear_parted
 
 if TYPE_CHECKING:
+    import control
     import xarray
-
-    from ..base import python_control as control
 
 
 @dataclass(frozen=True, eq=False)

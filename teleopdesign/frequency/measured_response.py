@@ -26,7 +26,7 @@ from .response import FrequencyResponse, cases_of, phase_of, ratio_unit
 from .sinusoid import BRISTLE_SHARE, Sinusoid, steady_harmonics
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 
 def measured_response(

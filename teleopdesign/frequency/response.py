@@ -21,10 +21,9 @@ from ..realise.lti import numerical
 from ..realise.tips import linear_tips
 
 if TYPE_CHECKING:
+    import control
     import matplotlib.figure
     import xarray
-
-    from ..base import python_control as control
 
 
 Array = NDArray[np.float64]

@@ -29,7 +29,7 @@ from .simulated import prepare_for_simulation
 from .wired_parts import sum_inputs
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 MECHANICS = "mechanics"
 

@@ -22,7 +22,7 @@ from ..diagrams import Control, Diagram, Linked, Moving
 from ..diagrams.second_input import acts_along_another, without_motion
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 S = sp.Symbol("s")
 

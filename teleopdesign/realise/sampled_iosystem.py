@@ -23,7 +23,7 @@ from .program import Program, program
 from .simulated import realise_in_computer
 
 if TYPE_CHECKING:
-    from ..base import python_control as control
+    import control
 
 #: largest divisor of an inner step, for bristles or fast oscillations
 _MOST_DIVIDED = 200

@@ -185,7 +185,7 @@ def test_an_effect_is_named_beside_one_that_took_the_place_of_the_users(end):
     assert select_independent(whole, {bristles.key}) == ()
 
 
-def test_an_effect_is_believed_by_what_it_explains_beside_free_functions(end):
+def test_an_effect_is_believed_by_what_it_explains_compare_free_functions(end):
     floor = replace(end.floor, value=0.1 * end.after.check_error)
     added = end.rungs[-1].added
 

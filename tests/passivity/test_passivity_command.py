@@ -93,7 +93,8 @@ def test_the_estimate_may_be_passive_where_the_interval_is_not(answer, tmp_path)
 def without_presliding(content, left, verdict="undecided"):
     content["ladder"], content["missing"] = content["ladder"][:1], []
     content["candidates"] = content["candidates"][1:]
-    return content | {"verdict": verdict, "left_over_noise_floors": left}
+    floor = content["ladder"][-1]["check_error"] / left
+    return content | {"verdict": verdict, "noise_floor": floor}
 
 
 def cell(low, way, samples, least):

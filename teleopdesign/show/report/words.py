@@ -84,18 +84,11 @@ def verdict(diagnosis: Diagnosis) -> str:
             f"force. The force error is {percent(after)}, {left} times what sensor noise alone "
             "would leave."
         )
-    if diagnosis.unlikely:
-        each = "it is" if len(added) == 1 else "each is"
-        return (
-            f"Undecided: with {join_names(added)} {fell}, but {each} less likely than not. {rest}"
-        )
     if all(r.alternatives for r in diagnosis.rungs[1:]):
         names = join_names(added)
         return f"Undecided, {names}: these records do not decide. Either way {fell}. {rest}"
-    helps = "helps, but explains" if len(added) == 1 else "help, but explain"
-    return (
-        f"Undecided: {join_names(added)} {helps} less than half of what is missing: {fell}. {rest}"
-    )
+    each = "it is" if len(added) == 1 else "each is"
+    return f"Undecided: with {join_names(added)} {fell}, but {each} less likely than not. {rest}"
 
 
 def _verdict_on_arm(diagnosis: Diagnosis) -> str:
