@@ -62,7 +62,7 @@ def curve_of(rows: Rows, dependence: Dependence, earlier: tuple[Dependence, ...]
     y = value @ functions
     half = BAND * np.sqrt(np.maximum(np.einsum("ig,ij,jg->g", functions, spread, functions), 0.0))
     means, weight = _means(rows, dependence.shape, left, x), _weight(rows, dependence.shape, x)
-    if dependence.shape.carrier is LOST and variable is None:
+    if dependence.shape.carrier == LOST and variable is None:
         # counted so far in what arrives, for residuals are referred to that: c / (1 + c) of all
         low, y, high = (c / (1.0 + c) for c in (y - half, y, y + half))
         return Curve(x, y, low, high, means, weight)

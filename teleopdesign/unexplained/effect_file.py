@@ -80,10 +80,10 @@ def effect_text(part: BodyResidual, described: DescribedDependence, prepared: Pr
     """
     shape, formula = described.dependence.shape, described.formula
     variable = shape.variable
-    if shape.carrier is LATENESS or (variable is not None and variable.name not in SIGNALS):
+    if shape.carrier == LATENESS or (variable is not None and variable.name not in SIGNALS):
         raise ModelError(
             f'describe: "{shape.name}" cannot be written as an effect file: a law knows no '
-            f"{'earlier command' if shape.carrier is LATENESS else variable_words(shape)}; see "
+            f"{'earlier command' if shape.carrier == LATENESS else variable_words(shape)}; see "
             "`teleopdesign effects` for those with a memory, such as presliding"
         )
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
@@ -137,16 +137,16 @@ def _role(shape: Shape) -> str:
         return "actuation"
     # a branch for each direction opposes the motion, as friction does, also where it sticks
     signed = shape.variable is not None and shape.variable.signed
-    return "friction_level" if shape.carrier is FRICTION or signed else "force"
+    return "friction_level" if shape.carrier == FRICTION or signed else "force"
 
 
 def _return_statement(shape: Shape, law: str) -> str:
     variable = shape.variable
     assignment = f"u = {SIGNALS[variable.name]}\n    " if variable is not None else ""
-    if shape.of_command and variable is COMMAND:
+    if shape.of_command and variable == COMMAND:
         assignment = "u = now.command\n    "
     factor = FACTORS.get(shape.carrier.name, "")
-    if shape.carrier is LOST:
+    if shape.carrier == LOST:
         return f"{assignment}return now.command * (1 - ({law}))"
     if shape.of_command:
         return f"{assignment}return now.command - ({law})"

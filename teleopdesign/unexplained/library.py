@@ -69,14 +69,14 @@ def terms_of(variable: Variable, knots: Array, wave: float) -> list[FormulaTerm]
     """
     low, high = float(knots[0]), float(knots[-1])
     terms = [FormulaTerm("power", p) for p in (1.0, 2.0, 3.0)]
-    if low >= 0.0 or variable is TIME:
+    if low >= 0.0 or variable == TIME:
         first = max(float(knots[1]), 1e-3 * high)
         for n in np.geomspace(first, high, STARTS).tolist():
             terms += [FormulaTerm("bell", n), FormulaTerm("decay", n)]
     if variable in (COMMAND, INTERACTION, ACCELERATION):
         top = max(abs(low), abs(high))
         terms += [FormulaTerm("beyond", n) for n in (top * np.arange(1, STARTS) / STARTS).tolist()]
-    if variable is POSITION:
+    if variable == POSITION:
         for n in np.linspace(low, high, STARTS + 2)[1:-1].tolist():
             terms += [FormulaTerm("above", n), FormulaTerm("below", n)]
     if wave > 0.0:

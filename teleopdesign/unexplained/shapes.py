@@ -92,7 +92,7 @@ class Shape:
     @property
     def of_command(self) -> bool:
         """Whether the shape may describe another gain of the actuator."""
-        return self.carrier is LOST or (self.carrier is FORCE and self.variable is COMMAND)
+        return self.carrier == LOST or (self.carrier == FORCE and self.variable == COMMAND)
 
     @property
     def is_wave(self) -> bool:
@@ -184,7 +184,7 @@ def functions_of(shape: Shape, knots: Array, values: Array) -> Array:
         return np.ones((1, len(values)))
     functions = basis(variable, knots, values)
     # without a command there is none to lose
-    of_command = shape.carrier is FORCE and shape.of_command
+    of_command = shape.carrier == FORCE and shape.of_command
     return functions - basis(variable, knots, np.zeros(1)) * of_command
 
 

@@ -240,7 +240,7 @@ DEAR = set(
     Arm DahlBehindSpring Linked Reading Unknown Amount
     BodyResidual CasePrediction Comparison DescribedDependence Design Diagnosis LadderRow
     FeedbackLoop Fit Prediction ProposedController Ranked Ranking Reason ResidualDescription
-    ResidualFriction Rung
+    ResidualFriction Rung CheckedRecording RecordingCheck
 """.split()
 )
 

@@ -48,9 +48,10 @@ def claims(diagram):
 @pytest.mark.slow
 @pytest.mark.parametrize("bandwidth", BANDWIDTHS)
 def test_a_disturbance_observer_of_a_transfer_function_is_not_refuted_by_rounding(bandwidth):
-    (claim,) = claims(observed(bandwidth))
-    assert claim.status == "proved"
-    claim.certificates[0].check()
+    """Its s over s is no part of the transfer function, but a mode at 0 that no port shows."""
+    first, *others = claims(observed(bandwidth))
+    assert first.status == "unknown" and "does not decay, at s = 0" in str(first)
+    assert all(other.status == "evidence" for other in others)
 
 
 @pytest.mark.parametrize("bandwidth", BANDWIDTHS)

@@ -79,11 +79,11 @@ def _size(value: float, shape: Shape, axis: str, *, backward: bool = False) -> s
     more = "more" if value > 0 else "less"
     if carrier in (FORCE, FRICTION):
         return f"{size} {more}"
-    if carrier is DAMPING:
+    if carrier == DAMPING:
         return f"{size} {more} damping"
-    if carrier is MASS:
+    if carrier == MASS:
         return f"{size} {more} moving mass"
-    if carrier is LOST:
+    if carrier == LOST:
         return f"{size} of the command {'fails to arrive' if value > 0 else 'arrives in excess'}"
     return f"{size} {'later' if value > 0 else 'earlier'}"
 
@@ -127,16 +127,16 @@ def _ranges(shape: Shape, regions: Sequence[SignRegion], axis: str) -> str:
         where = place(region, shape.variable, axis)
         size = _size(region.extreme, shape, axis, backward=backward)
         parts.append((where or "everywhere", size, i))
-    if shape.carrier is LOST:
+    if shape.carrier == LOST:
         return " and ".join(f"{where} up to {size}" for where, size, _ in parts)
-    need = "the device needs" if shape.carrier is not LATENESS else "the command acts"
+    need = "the device needs" if shape.carrier != LATENESS else "the command acts"
     sentence = ""
     for where, size, i in parts:
         if i == 0:
             sentence = f"{where} {need} up to {size} than the model"
         else:
             sentence += f", {where} up to {size}"
-    if shape.carrier is FORCE and not shape.variable.signed:
+    if shape.carrier == FORCE and not shape.variable.signed:
         sentence += " (counted in the positive direction)"
     return sentence
 
@@ -177,17 +177,17 @@ def _wave(shape: Shape, formula: Formula, axis: str) -> str:
 
 def _constant(shape: Shape, value: float, axis: str) -> str:
     size = _size(value, shape, axis)
-    if shape.carrier is FORCE:
+    if shape.carrier == FORCE:
         twice = amount(2 * abs(value), "force", axis)
         return (
             f"everywhere the device needs {size} than the model (counted in the positive "
             f"direction): a constant force, or friction that differs by {twice} between directions"
         )
-    if shape.carrier is FRICTION:
+    if shape.carrier == FRICTION:
         return f"at all speeds the device needs {size} than the model, in both directions"
-    if shape.carrier is LOST:
+    if shape.carrier == LOST:
         return f"everywhere {size}"
-    if shape.carrier is LATENESS:
+    if shape.carrier == LATENESS:
         return f"the command acts {size} than the model says"
     return f"everywhere the device needs {size} than the model"
 
@@ -206,7 +206,7 @@ def _qualify(shape: Shape, contrasts: Sequence[Contrast]) -> str:
             ratio = contrast.sizes[strong] / contrast.sizes[1 - strong]
             if ratio > UNLIKE:
                 words += f", {number(float(ratio))} times as much {contrast.sides[strong]}"
-        elif directions and shape.carrier is FRICTION:
+        elif directions and shape.carrier == FRICTION:
             words += ", in both directions"
     return words
 
