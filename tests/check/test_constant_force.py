@@ -62,7 +62,7 @@ def test_no_effect_is_named_under_a_constant_force():
     diagnosis = td.find_missing(spun_up())
     assert diagnosis.verdict == "undecided" and diagnosis.missing == ()
     assert "The force is constant" in str(diagnosis)
-    assert "The force is constant" in diagnosis.why_silent
+    assert "The force is constant" in diagnosis.silence
 
 
 @pytest.mark.slow
@@ -70,4 +70,4 @@ def test_a_known_inertia_tells_the_force_that_remains():
     """With the inertia fixed, a constant force is as good as any other."""
     made = spun_up(fixed=True)
     assert "constant force" not in {f.topic for f in td.check_experiment(made)}
-    assert not td.find_missing(made).why_silent
+    assert not td.find_missing(made).silence

@@ -53,7 +53,8 @@ def test_the_page_of_an_answer_tells_what_the_answer_tells(answer, capsys):
     ]
     rows = shown["report"]["candidates"]
     assert {r["effect"] for r in rows} == {c["effect"] for c in saved["candidates"]}
-    assert all(len(r["steps"]) == len(shown["report"]["candidate_steps"]) == 1 for r in rows)
+    steps = shown["report"]["candidate_steps"]
+    assert all(len(r["steps"]) == len(steps) == len(saved["ladder"]) for r in rows)
 
 
 @pytest.mark.slow
