@@ -85,7 +85,7 @@ class FreeFunctions(ByValue):
 
 def own_squares(fit: Fit, prepared: Prepared) -> float:
     """Squares that a model leaves on rows that were not fitted."""
-    return _Problem.of(fit, prepared, None, "").left()
+    return _Problem.of(fit, prepared, None, "").squares()
 
 
 def compare_free_functions(fit: Fit, at: str, prepared: Prepared) -> FreeFunctions:
@@ -94,7 +94,8 @@ def compare_free_functions(fit: Fit, at: str, prepared: Prepared) -> FreeFunctio
     at: the place of the force;  prepared: of the fit
     """
     left = {
-        name: _Problem.of(fit, prepared, columns, at).left() for name, columns in FAMILIES.items()
+        name: _Problem.of(fit, prepared, columns, at).squares()
+        for name, columns in FAMILIES.items()
     }
     return FreeFunctions(own_squares(fit, prepared), left)
 
@@ -143,21 +144,21 @@ class _Problem:
         checked = _sums(_rows(fit, check, columns, ranges, at)) if check else None
         return cls(tuple(parts), checked, len(fit.free))
 
-    def left(self) -> float:
+    def squares(self) -> float:
         """Squares on rows that were not fitted: of the check records, or of each block in turn."""
         if self.check is not None:
-            return self.check.squares(self.solved(self.parts))
+            return self.check.squares(self.factors(self.parts))
         return sum(
-            part.squares(self.solved(self._others(i, self.parts)))
+            part.squares(self.factors(self._other_parts(i, self.parts)))
             for i, part in enumerate(self.parts)
         )
 
-    def solved(self, parts: Sequence[_Sums]) -> Array:
+    def factors(self, parts: Sequence[_Sums]) -> Array:
         """The columns' factors, with the ridge that leaves least of blocks held out in turn."""
 
         def left(ridge: float) -> float:
             return sum(
-                part.squares(self._solve(self._others(i, parts), ridge))
+                part.squares(self._solve(self._other_parts(i, parts), ridge))
                 for i, part in enumerate(parts)
             )
 
@@ -166,7 +167,7 @@ class _Problem:
         return self._solve(parts, ridge)
 
     @staticmethod
-    def _others(i: int, parts: Sequence[_Sums]) -> list[_Sums]:
+    def _other_parts(i: int, parts: Sequence[_Sums]) -> list[_Sums]:
         return [part for j, part in enumerate(parts) if j != i]
 
     def _solve(self, parts: Sequence[_Sums], ridge: float) -> Array:

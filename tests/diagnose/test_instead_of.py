@@ -20,7 +20,7 @@ from teleopdesign.base.errors import ModelError
 from teleopdesign.diagnose.answer import answer, load_answer, write_answer
 from teleopdesign.diagnose.candidates import Candidate, candidates
 from teleopdesign.diagnose.criteria import CRITERIA
-from teleopdesign.diagnose.decision import find_superfluous_effect, objection
+from teleopdesign.diagnose.decision import find_superfluous_effect
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.rung import Rung, restore_replaced
 from teleopdesign.diagnose.search import estimate_from_starts
@@ -154,29 +154,10 @@ def test_a_search_that_follows_starts_from_the_users_values_of_what_is_still_the
     )
 
 
-def driven_to_its_bound(search, relative):
-    """The model's damping at its bound beside a candidate; before, with such a relative error."""
-    fit, name = search[1].fit(search[1].before.model), "device.viscous.damping"
-    value = fit.model.parameters[name]
-    sure = replace(value, stderr=relative * abs(value.value))
-    model = fit.model.with_values({name: sure})
-    candidate = next(r for r in search[1].rungs[1].ranking.ranked if r.counts)
-    there = replace(candidate.fit, at_bound=(name,))
-    return replace(fit, model=model, at_bound=()), replace(candidate, fit=there)
-
-
-def test_a_parameter_that_hardly_differs_from_absence_bars_no_candidate(search):
-    base, candidate = driven_to_its_bound(search, 0.1)
-    sentence = objection(base, candidate, search[1].floor)
-    assert sentence.startswith("drives to a bound") and sentence.endswith("viscous.damping")
-    base, candidate = driven_to_its_bound(search, 0.7)
-    assert "to a bound" not in objection(base, candidate, search[1].floor)
-
-
 def test_what_ends_at_its_absence_gives_way_before_what_is_only_open(search):
     """Two are no longer told beside a candidate; one of them is gone."""
     names = ("device.coulomb.level", "device.viscous.damping")
-    fit, candidate = search[1].before, search[1].rungs[1].added
+    fit, candidate = search[1].fit(search[1].before.model), search[1].rungs[1].added
     sure, unsure = (
         fit.model.with_values(
             {n: replace(fit.model.parameters[n], value=1.0, stderr=e) for n in names}

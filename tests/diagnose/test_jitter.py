@@ -82,7 +82,7 @@ def test_records_with_much_jitter_tell_no_effect(adequate, monkeypatch):
     monkeypatch.setattr(sample_clock, "JITTER", 0.99 * share)
     diagnosis = find_missing(late)
     assert diagnosis.verdict == "undecided" and not diagnosis.missing
-    assert len(diagnosis.last.ranked) == 0
+    assert diagnosis.candidates == ()
     assert "taken at other moments than their rows say" in str(diagnosis)
     warning = [f for f in check_experiment(late) if "taken at other moments" in f.sentence]
     assert [f.concern for f in warning] == ["warning"]
