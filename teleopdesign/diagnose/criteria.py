@@ -99,10 +99,11 @@ class Criteria:
     #: probability of a best candidate that was not accepted: of 31 none was true, 1/33
     true_of_others: float = 0.03
     #: power of the part of a free function's squares that an effect explains, by which it is
-    #: believed though more than noise is left. Three: it is named from 0.8 of these squares on
-    #: (0.97 x 0.8^3 = 0.5). Of 165 steps on simulated cases and recordings, 0.7 to 0.9 did nearly
-    #: the same. Lower: what stands in for something unknown is named; higher: true effects are not
-    believing: float = 3.0
+    #: believed though more than noise is left. Two: it is named from 0.72 of these squares on
+    #: (0.97 x 0.72^2 = 0.5). Of 165 steps on simulated cases and recordings, 0.7 to 0.9 did nearly
+    #: the same; with three, documented friction of an industrial joint (0.77) has no name. Lower:
+    #: what stands in for something unknown is named; higher: true effects are not
+    believing: float = 2.0
     #: weight of an effect beside a commoner one that explains as much. Of public recordings of
     #: revolute axes whose torque follows the place over less than a turn gravity is documented on
     #: eight, a spring or a cable's pull on two: (2 + 1)/(8 + 1). Higher: undecided more often;

@@ -159,7 +159,7 @@ EVIDENCE = CandidateEvidence(
         ({}, 0.97),
         ({"left": 1.8}, 0.97),
         ({"left": 3.6}, 0.0),
-        ({"left": 3.6, "belief": Belief(0.9, 0.0, "velocity")}, 0.97 * 0.729),
+        ({"left": 3.6, "belief": Belief(0.9, 0.0, "velocity")}, 0.97 * 0.81),
         ({"left": math.inf, "belief": Belief(2.0, 0.0, "velocity")}, 0.97),
         ({"share": 0.25}, 0.97 / 4),
         ({"ranked": SimpleNamespace(score=0.0)}, 0.97 / 2),
