@@ -178,6 +178,8 @@ def unity_crossings(
         ratio = _ratio_of(loop)
     if count_growing(ratio.closed):
         raise _unstable()
+    if not ratio.above:  # a gain of 0 at every frequency
+        return np.zeros(0), np.zeros(0), True
     if isinstance(loop, LoopGain) and loop.has_delay:
         return *_crossings(loop, ratio), ratio.fades()
     (above,), (below,) = ratio.above.values(), ratio.below.values()

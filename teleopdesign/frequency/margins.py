@@ -55,6 +55,8 @@ def gain_margin(loop: LoopGain) -> float:
         return float(np.imag(call(np.array([1j * w]))[0]))
 
     ratio = None if loop.held else (loop.counted or loop_as_written(loop.expression)).ratio
+    if ratio is not None and not ratio.above:
+        return np.inf  # a gain of 0 at every frequency
     w = _grid(loop, np.zeros(0) if ratio is None else ratio.corners())
 
     def at(w: np.ndarray) -> np.ndarray:

@@ -151,7 +151,7 @@ def test_an_effect_of_the_users_model_without_values_is_estimated(experiment, di
 
     model = Model.from_experiment(experiment).with_effect("stribeck")
     comparison = compare(fit(model, experiment), experiment)
-    assert comparison.check_error < 1.1 * diagnosis.rungs[1].fit.check_error
+    assert comparison.check_error < 1.1 * diagnosis.rungs[1].check_error
 
 
 def test_a_fit_alone_gives_what_a_diagnosis_that_adds_nothing_gives(experiment):
@@ -164,7 +164,7 @@ def test_a_fit_alone_gives_what_a_diagnosis_that_adds_nothing_gives(experiment):
     alone = fit(stated, experiment)
     # value and standard error of each, to the last digit: the same steps on the same draws
     assert alone.parameters == diagnosed.model.parameters
-    assert alone.parameters != diagnosed.estimated.model.parameters
+    assert alone.parameters != diagnosed.estimated.parameters
 
 
 def test_a_model_has_one_error_in_the_ladder_and_among_the_candidates(diagnosis):
@@ -199,6 +199,6 @@ def test_parameters_carry_standard_errors_that_fit_their_distance_to_the_truth(
 
 
 def test_errors_fall_along_the_ladder(diagnosis):
-    errors = [r.fit.check_error for r in diagnosis.rungs]
+    errors = [r.check_error for r in diagnosis.rungs]
     assert np.all(np.diff(errors) < 0)
     assert diagnosis.rungs[0].added is None

@@ -118,5 +118,5 @@ def test_a_real_recording_has_the_names_that_its_authors_give(name, among, docum
     listed = {c.effect.name for group in diagnosis.groups for c in group}
     assert documented <= named | listed
     assert not excluded & (named | {r.added.effect.name for r in diagnosis.rungs if r.added})
-    errors = [r.fit.check_error for r in diagnosis.rungs]
+    errors = [r.check_error for r in diagnosis.rungs]
     assert errors == sorted(errors, reverse=True)

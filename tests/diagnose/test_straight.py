@@ -49,7 +49,7 @@ def test_bends_and_lines_are_recognised_by_their_laws():
 def test_a_spring_with_a_rest_position_is_a_spring_and_a_constant(tmp_path, stiffness, neutral):
     diagnosis = diagnosed(tmp_path / "line", lambda x: stiffness * (x - neutral))
     assert {c.effect.name for c in diagnosis.missing} == {"bias", "spring"}
-    errors = [r.fit.check_error for r in diagnosis.rungs]
+    errors = [r.check_error for r in diagnosis.rungs]
     assert errors == sorted(errors, reverse=True)
     value = diagnosis.model.parameters["device.spring.stiffness"].value
     assert value == pytest.approx(stiffness, rel=0.02)
@@ -60,7 +60,7 @@ def test_a_spring_on_a_slide_whose_zero_is_far_away_is_a_spring_and_a_constant(t
     """An absolute encoder: the position never comes near the zero of its log."""
     diagnosis = diagnosed(tmp_path, lambda x: 0.6 * (x - 2.0), prismatic=True)
     assert {c.effect.name for c in diagnosis.missing} == {"bias", "spring"}
-    assert diagnosis.rungs[-1].fit.check_error < 0.05
+    assert diagnosis.rungs[-1].check_error < 0.05
 
 
 @pytest.mark.slow
@@ -90,6 +90,6 @@ def test_a_users_spring_that_a_pendulum_takes_the_place_of_is_not_added_again(tm
 def test_whatever_force_of_the_place_a_user_has_the_ladder_goes_down(tmp_path, there, place_force):
     user = "\n".join([USER, *(f"{name} = {{}}" for name in there)])
     diagnosis = diagnosed(tmp_path, place_force, user)
-    errors = [r.fit.check_error for r in diagnosis.rungs]
+    errors = [r.check_error for r in diagnosis.rungs]
     assert errors == sorted(errors, reverse=True)
     assert errors[-1] < 0.02

@@ -87,7 +87,7 @@ def test_a_gear_with_friction_on_the_load_is_named_whole(user, gap, tmp_path):
         assert abs(fitted.value - TRUE[name]) < max(5 * fitted.stderr, 0.1 * TRUE[name])
     level = diagnosis.model.parameters["device.tip_friction.level"]
     assert level.value == pytest.approx(0.3, rel=0.1)
-    assert np.all(np.diff([r.fit.check_error for r in diagnosis.rungs]) < 0)
+    assert np.all(np.diff([r.check_error for r in diagnosis.rungs]) < 0)
 
 
 @pytest.mark.parametrize("structure", ["transmission_compliance", "backlash"])
