@@ -22,7 +22,7 @@ from ..claims.certificate import (
 )
 from ..claims.claim import TOO_MUCH, Claim, Evidence, Proof, Refutation, Unknown, Verdict
 from ..search.growing_wave import GrowingWave, wave_of
-from ..search.points import candidates, near_axis, near_poles, resonances
+from ..search.points import candidates, near_axis, near_poles, resonances, zeros_and_poles
 from ..search.wave_search import select_fastest, wave_out_of
 from ..two_port.growing_mode import growing_mode
 from ..two_port.termination import far_termination
@@ -42,10 +42,12 @@ _METHODS = {
     "absolutely stable": "Llewellyn's criterion, its inequalities for all frequencies, and the "
     "residues at poles on the axis, compared exactly",
 }
-#: Hz: range of a sweep, and its frequencies; those across resonances are added
-_SWEEP = (1e-4, 1e4, 4001)
+#: Hz: least range of a sweep, and its frequencies in a decade; those across resonances are added
+_SWEEP, _IN_A_DECADE = (1e-4, 1e4), 500
+#: times the fastest mode, or the rate of the shortest dead time, up to which a sweep goes
+_BEYOND = 30.0
 _SWEPT = (
-    "margin over 4001 frequencies from 1e-4 to 1e4 Hz and across resonances, refined at the "
+    "margin over {} frequencies from {:g} to {:g} Hz and across resonances, refined at the "
     "lowest; every mode with dampers at the ports, and the ends of the axis"
 )
 #: points with a termination that are tested for a wave
@@ -163,7 +165,8 @@ def _describe_failure(family: Family) -> str:
 def _judge_late(family: Family, claim: str, statement: str) -> Verdict:
     """With dead times: evidence, a motion, or unknown."""
     margin = margin_of(claim)
-    grid = np.unique(np.concatenate([np.geomspace(*_SWEEP), resonances(family)]))
+    swept = _sweep(family)
+    grid = np.unique(np.concatenate([swept, resonances(family)]))
     lowest, least, values = least_over(
         lambda f: margin(family.at(2j * np.pi * f)), grid, rounds=3, points=401
     )
@@ -181,7 +184,7 @@ def _judge_late(family: Family, claim: str, statement: str) -> Verdict:
     if not why and (ends := fails_at_ends(family, claim)):
         why, frequencies = f"the inequality fails {ends[0]}", [*frequencies, ends[1]]
     if not why:
-        return Evidence(True, _SWEPT, least, unit)
+        return Evidence(True, _SWEPT.format(len(swept), swept[0], swept[-1]), least, unit)
     if claim == "passive":
         wave = wave_out_of(family, frequencies)
         if wave is not None:
@@ -192,6 +195,17 @@ def _judge_late(family: Family, claim: str, statement: str) -> Verdict:
     if wave is not None:
         return Refutation(f"port 2 {held[wave]}, a growing wave", wave)
     return Unknown(f"{why}; no termination that makes it grow was found")
+
+
+def _sweep(family: Family) -> np.ndarray:
+    """Frequencies (Hz) of a sweep: over the usual range, and that of modes and dead times."""
+    times = [float(t) for t in family.times.values() if not t.free_symbols]
+    _, poles = zeros_and_poles(family)
+    rates = np.concatenate([np.abs(poles), [1.0 / t for t in times if t > 0]]) / (2 * np.pi)
+    rates = rates[(rates > 0) & np.isfinite(rates)]
+    low = min(_SWEEP[0], *(rates / _BEYOND)) if len(rates) else _SWEEP[0]
+    high = max(_SWEEP[1], *(rates * _BEYOND)) if len(rates) else _SWEEP[1]
+    return np.geomspace(low, high, round(_IN_A_DECADE * np.log10(high / low)) + 1)
 
 
 def _terminated_waves(
