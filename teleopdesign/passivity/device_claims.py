@@ -112,7 +112,8 @@ def _search_claim(
         claim = search_counterexample(
             haptic_interface(device.body, cancellation=compensator.controller),
             stroke=stroke,
-            speed=10 * stroke,  # a stroke takes a third of a second, or up to a hundred times that
+            # a stroke takes a third of a second, or up to a hundred times that
+            speed=round_near(10 * stroke, digits=3),
             rng=rng,
             computer=computer or "continuous",
             give=min(lengths) / 100,
