@@ -12,25 +12,18 @@ are held out in turn.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import BSpline
 
 from ..base.frozen import ByValue
 from ..measurement.filtering import Array
-from ..measurement.motion import Motion
 from ..measurement.prepare import FOLDS, Prepared, Stretch
 from .fit import Fit
+from .free_forces import FAMILIES, FreeForce, MotionRanges
 from .residual import relative_residuals
 
-#: splines over a variable that has both signs, or none
-SPLINES = 8
-#: splines over the speed, in each direction
-OF_SPEED = 6
-#: travels and times over which the past is forgotten
-MEMORIES = 4
 #: weights of the ridge, over the mean square of a column, one of which the folds choose
 RIDGES = tuple(float(x) for x in np.geomspace(1e-6, 1.0, 7))
 
@@ -61,7 +54,7 @@ def belief(without: Fit, fit: Fit, at: str, prepared: Prepared) -> Belief:
     without: the model fitted without the effect, and without what needs it
     fit: the model with the effect;  at: the place of the effect
     """
-    bare, whole = compare_free_functions(without, at, prepared), own_squares(fit, prepared)
+    bare, whole = compare_free_functions(without, at, prepared), residual_squares(fit, prepared)
     return bare.against(whole)
 
 
@@ -83,7 +76,7 @@ class FreeFunctions(ByValue):
         return Belief(float(rho), float(np.log(self.left[best] / with_effect)), best)
 
 
-def own_squares(fit: Fit, prepared: Prepared) -> float:
+def residual_squares(fit: Fit, prepared: Prepared) -> float:
     """Squares that a model leaves on rows that were not fitted."""
     return _Problem.of(fit, prepared, None, "").squares()
 
@@ -97,7 +90,7 @@ def compare_free_functions(fit: Fit, at: str, prepared: Prepared) -> FreeFunctio
         name: _Problem.of(fit, prepared, columns, at).squares()
         for name, columns in FAMILIES.items()
     }
-    return FreeFunctions(own_squares(fit, prepared), left)
+    return FreeFunctions(residual_squares(fit, prepared), left)
 
 
 @dataclass(frozen=True)
@@ -133,10 +126,10 @@ class _Problem:
     stiff: int
 
     @classmethod
-    def of(cls, fit: Fit, prepared: Prepared, columns: Columns | None, at: str) -> _Problem:
+    def of(cls, fit: Fit, prepared: Prepared, columns: FreeForce | None, at: str) -> _Problem:
         """columns: of the free function; None: none;  at: its body"""
         known, check = prepared.of("fit"), prepared.of("check")
-        ranges = Ranges.of([s.motion for s in known if s.motion.body == at])
+        ranges = MotionRanges.of([s.motion for s in known if s.motion.body == at])
         rows = _rows(fit, known, columns, ranges, at)
         parts = [
             _sums([r[:, b] for r in rows for b in [_block(r.shape[1], k)]]) for k in range(FOLDS)
@@ -191,7 +184,7 @@ class _Problem:
 
 
 def _rows(
-    fit: Fit, stretches: Sequence[Stretch], columns: Columns | None, ranges: Ranges, at: str
+    fit: Fit, stretches: Sequence[Stretch], columns: FreeForce | None, ranges: MotionRanges, at: str
 ) -> list[Array]:
     """Per stretch the weighted residual above its tangents and the free columns, (1 + p + c, n)."""
     free = None
@@ -218,97 +211,3 @@ def _sums(rows: Sequence[Array]) -> _Sums:
     whole = np.hstack(rows)
     products = whole @ whole.T
     return _Sums(products[1:, 1:], products[1:, 0], float(products[0, 0]))
-
-
-@dataclass(frozen=True)
-class Ranges:
-    """Ranges of the motion of one body on its fit records, for the knots of splines.
-
-    position: least and largest;  speed, acceleration, jerk, rate, rate_of_rate: largest sizes
-    step: of a reading of the position;  fast: s, shortest memory
-    """
-
-    position: tuple[float, float]
-    speed: float
-    step: float
-    fast: float
-
-    @classmethod
-    def of(cls, motions: Sequence[Motion]) -> Ranges:
-        if not motions:
-            return cls((0.0, 1.0), 1.0, 1.0, 1.0)
-        low = min(float(m.position.min()) for m in motions)
-        high = max(float(m.position.max()) for m in motions)
-        speed = max(float(np.abs(m.velocity).max()) for m in motions)
-        first = motions[0]
-        fast = 1.0 / (2.0 * np.pi * first.bandwidth)
-        return cls((low, high), speed or 1.0, max(m.step for m in motions), fast)
-
-    @property
-    def travel(self) -> float:
-        """Largest change of the position."""
-        return max(self.position[1] - self.position[0], self.step)
-
-
-#: (motion, ranges) -> forces (c, n) that a free function is a sum of
-Columns = Callable[[Motion, Ranges], Array]
-
-
-def _splines(u: Array, low: float, high: float, count: int) -> Array:
-    """Cubic splines (count, n) over low to high; constant beyond."""
-    knots = np.linspace(low, high, count - 2)
-    step = knots[1] - knots[0]
-    knots = np.concatenate([low - step * np.arange(3, 0, -1), knots, high + step * np.arange(1, 4)])
-    inside = np.clip(u, low, high - 1e-9 * (high - low))
-    basis = BSpline.design_matrix(inside, knots, 3).toarray()
-    return np.array(basis.T, dtype=float)
-
-
-def _curve_of_position(motion: Motion, ranges: Ranges) -> Array:
-    low, high = ranges.position
-    return _splines(motion.position, low, max(high, low + ranges.step), SPLINES)
-
-
-def _curve_of_velocity(motion: Motion, ranges: Ranges) -> Array:
-    """A curve over the speed in each direction; finer at low speeds, where friction changes."""
-    over = _splines(np.sqrt(np.abs(motion.velocity) / ranges.speed), 0.0, 1.0, OF_SPEED)
-    return np.vstack([(motion.direction == 1) * over, (motion.direction == -1) * over])
-
-
-def _memory(motion: Motion, ranges: Ranges) -> Array:
-    """Forces in the direction of motion that fade with travel, or time, since it last turned."""
-    direction = motion.direction.astype(float)
-    turned = np.flatnonzero(np.diff(direction, prepend=0.0) != 0.0)
-    last = np.zeros(len(direction), dtype=np.intp)
-    last[turned] = turned
-    last = np.maximum.accumulate(last)
-    travel = np.abs(motion.position - motion.position[last])
-    elapsed = motion.time - motion.time[last]
-    travels = np.geomspace(max(ranges.step, 1e-3 * ranges.travel), ranges.travel, MEMORIES)
-    times = ranges.fast * np.geomspace(1.0, 100.0, MEMORIES)
-    fading: Array = np.vstack(
-        [np.exp(-travel[None] / travels[:, None]), np.exp(-elapsed[None] / times[:, None])]
-    )
-    return direction * fading
-
-
-def _memory_and_derivatives(motion: Motion, ranges: Ranges) -> Array:
-    command = motion.at_rows(motion.command)
-    spectrum = motion.spectrum
-    more = [
-        motion.acceleration,
-        spectrum.multiply(motion.acceleration, spectrum.derivative(1)),
-        spectrum.multiply(command, spectrum.derivative(1)),
-        spectrum.multiply(command, spectrum.derivative(2)),
-    ]
-    return np.vstack([_memory(motion, ranges), *more])
-
-
-FAMILIES: Mapping[str, Columns] = {
-    "velocity": _curve_of_velocity,
-    "position": _curve_of_position,
-    "position and direction": lambda m, r: m.direction * _curve_of_position(m, r),
-    "position and velocity": lambda m, r: m.velocity / r.speed * _curve_of_position(m, r),
-    "the past": _memory,
-    "the past and derivatives": _memory_and_derivatives,
-}
