@@ -78,6 +78,7 @@ golden: $(VENV)/installed-test  ## what the package answers against golden/froze
 
 size:  $(VENV)/installed-core  ## lines, files, thresholds, importers, modules loaded
 	@$(BIN)/python golden/size.py
+
 faults: $(VENV)/installed-test  ## planted faults that the plain tests do not notice; hours (FAULT_ARGS="--anchors-only")
 	@echo "== Planted faults"
 	@$(BIN)/python golden/faults.py $(FAULT_ARGS)
