@@ -21,11 +21,13 @@ from ..base.frozen import ByValue
 from ..measurement.filtering import Array
 from ..measurement.prepare import FOLDS, Prepared, Stretch
 from .fit import Fit
-from .free_forces import FAMILIES, FreeForce, MotionRanges
+from .free_forces import FAMILIES, MotionRanges
 from .residual import relative_residuals
 
 #: weights of the ridge, over the mean square of a column, one of which the folds choose
 RIDGES = tuple(float(x) for x in np.geomspace(1e-6, 1.0, 7))
+#: the same for the model's own parameters: above rounding, where two of them do the same
+_NEXT_TO_NONE = 1e-10
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class Belief(ByValue):
     @property
     def share(self) -> float:
         """`rho` between 0 and 1: part of the squares that it explains where it explains less."""
-        return min(max(self.rho, 0.0), 1.0)
+        return min(self.rho, 1.0) if self.rho > 0.0 else 0.0
 
 
 def belief(without: Fit, fit: Fit, at: str, prepared: Prepared) -> Belief:
@@ -54,8 +56,7 @@ def belief(without: Fit, fit: Fit, at: str, prepared: Prepared) -> Belief:
     without: the model fitted without the effect, and without what needs it
     fit: the model with the effect;  at: the place of the effect
     """
-    bare, whole = compare_free_functions(without, at, prepared), residual_squares(fit, prepared)
-    return bare.against(whole)
+    return compare_free_functions(without, at, prepared).against(residual_squares(fit, prepared))
 
 
 @dataclass(frozen=True)
@@ -78,19 +79,18 @@ class FreeFunctions(ByValue):
 
 def residual_squares(fit: Fit, prepared: Prepared) -> float:
     """Squares that a model leaves on rows that were not fitted."""
-    return _Problem.of(fit, prepared, None, "").squares()
+    return _Problem.of(fit, prepared).squares()
 
 
 def compare_free_functions(fit: Fit, at: str, prepared: Prepared) -> FreeFunctions:
     """A model alone, and with each free function of the motion of one body.
 
-    at: the place of the force;  prepared: of the fit
+    at: the place of the force; what a body touches it touches with its own motion
+    prepared: of the fit
     """
-    left = {
-        name: _Problem.of(fit, prepared, columns, at).squares()
-        for name, columns in FAMILIES.items()
-    }
-    return FreeFunctions(residual_squares(fit, prepared), left)
+    problem = _Problem.of(fit, prepared, fit.model.holder(at))
+    left = {name: problem.squares(columns) for name, columns in problem.families.items()}
+    return FreeFunctions(problem.squares(), left)
 
 
 @dataclass(frozen=True)
@@ -108,6 +108,13 @@ class _Sums:
             self.of_residual + other.of_residual,
         )
 
+    def part(self, columns: Sequence[int]) -> _Sums:
+        """The sums of some columns alone."""
+        chosen = np.asarray(columns, dtype=np.intp)
+        return _Sums(
+            self.of_columns[np.ix_(chosen, chosen)], self.with_residual[chosen], self.of_residual
+        )
+
     def squares(self, x: Array) -> float:
         """Squares of the residual with the columns times x."""
         return float(self.of_residual + 2.0 * x @ self.with_residual + x @ self.of_columns @ x)
@@ -115,35 +122,46 @@ class _Sums:
 
 @dataclass(frozen=True)
 class _Problem:
-    """A linear problem: the residual of a model, its tangents, and columns of a free function.
+    """A linear problem: the residual of a model, its tangents, and columns of all free functions.
 
     parts: sums over the blocks of the fit records;  check: over the check records, if there are any
     stiff: number of the first columns, which have no ridge: the model's own parameters
+    families: free function -> its columns
     """
 
     parts: tuple[_Sums, ...]
     check: _Sums | None
     stiff: int
+    families: Mapping[str, Sequence[int]]
 
     @classmethod
-    def of(cls, fit: Fit, prepared: Prepared, columns: FreeForce | None, at: str) -> _Problem:
-        """columns: of the free function; None: none;  at: its body"""
-        known, check = prepared.of("fit"), prepared.of("check")
-        ranges = MotionRanges.of([s.motion for s in known if s.motion.body == at])
-        rows = _rows(fit, known, columns, ranges, at)
-        parts = [
-            _sums([r[:, b] for r in rows for b in [_block(r.shape[1], k)]]) for k in range(FOLDS)
-        ]
-        checked = _sums(_rows(fit, check, columns, ranges, at)) if check else None
-        return cls(tuple(parts), checked, len(fit.free))
+    def of(cls, fit: Fit, prepared: Prepared, body: str | None = None) -> _Problem:
+        """body: whose motion the free functions follow; None: there are none"""
+        known, check, stiff = prepared.of("fit"), prepared.of("check"), len(fit.free)
+        ranges = MotionRanges.of([s.motion for s in known if s.motion.body == body])
+        families: dict[str, range] = {}
+        if body is not None:
+            first = stiff
+            for name, force in FAMILIES.items():
+                count = len(force(known[0].motion, ranges))
+                families[name] = range(first, first + count)
+                first += count
+        rows = _rows(fit, known, ranges, body)
+        parts = [_sums([r[:, _block(r.shape[1], k)] for r in rows]) for k in range(FOLDS)]
+        checked = _sums(_rows(fit, check, ranges, body)) if check else None
+        return cls(tuple(parts), checked, stiff, families)
 
-    def squares(self) -> float:
-        """Squares on rows that were not fitted: of the check records, or of each block in turn."""
+    def squares(self, free: Sequence[int] = ()) -> float:
+        """Squares on rows that were not fitted: of the check records, or of each block in turn.
+
+        free: columns of a free function; (): the model alone
+        """
+        columns = [*range(self.stiff), *free]
+        parts = [part.part(columns) for part in self.parts]
         if self.check is not None:
-            return self.check.squares(self.factors(self.parts))
+            return self.check.part(columns).squares(self.factors(parts))
         return sum(
-            part.squares(self.factors(self._other_parts(i, self.parts)))
-            for i, part in enumerate(self.parts)
+            part.squares(self.factors(self._other_parts(i, parts))) for i, part in enumerate(parts)
         )
 
     def factors(self, parts: Sequence[_Sums]) -> Array:
@@ -168,11 +186,11 @@ class _Problem:
         for part in parts[1:]:
             sums = sums + part
         size = np.sqrt(np.diag(sums.of_columns))
-        used = size > 0.0
+        used = (size > 0.0) & np.isfinite(size)
         x = np.zeros(len(size))
         if not used.any():
             return x
-        weights = np.where(np.arange(len(size)) < self.stiff, 1e-10, ridge)[used]
+        weights = np.where(np.arange(len(size)) < self.stiff, _NEXT_TO_NONE, ridge)[used]
         matrix = sums.of_columns[np.ix_(used, used)] / np.outer(size[used], size[used])
         x[used] = (
             -np.linalg.lstsq(
@@ -184,23 +202,19 @@ class _Problem:
 
 
 def _rows(
-    fit: Fit, stretches: Sequence[Stretch], columns: FreeForce | None, ranges: MotionRanges, at: str
+    fit: Fit, stretches: Sequence[Stretch], ranges: MotionRanges, body: str | None
 ) -> list[Array]:
     """Per stretch the weighted residual above its tangents and the free columns, (1 + p + c, n)."""
-    free = None
-    if columns is not None:
-        count = len(columns(stretches[0].motion, ranges))
-        free = [
-            columns(s.motion, ranges)
-            if s.motion.body == at
-            else np.zeros((count, len(s.motion.time)))
+    forces = None
+    if body is not None:
+        forces = [
+            np.vstack([force(s.motion, ranges) for force in FAMILIES.values()])
+            * (s.motion.body == body)
             for s in stretches
         ]
-    parts = relative_residuals(fit.model, stretches, fit.free, free)
-    return [
-        np.sqrt(s.weight) * np.vstack([r[None], d])
-        for s, (r, d) in zip(stretches, parts, strict=True)
-    ]
+    parts = relative_residuals(fit.model, stretches, fit.free, forces)
+    weights = [np.sqrt(s.weight) for s in stretches]
+    return [w * np.vstack([r[None], d]) for w, (r, d) in zip(weights, parts, strict=True)]
 
 
 def _block(rows: int, number: int) -> slice:

@@ -63,9 +63,8 @@ class CandidateEvidence:
         if not (self.accepted or self.as_good):
             return criteria.true_of_others * real * self.explained
         trusted = 1.0
-        if (
-            self.left > criteria.adequate
-        ):  # more than noise is left: is the form of the effect right?
+        if self.left > criteria.adequate:
+            # more than noise is left: is the form of the effect right?
             trusted = 0.0 if self.belief is None else self.belief.share**criteria.believing
         if self.from_noise:  # a true effect explains nearly all force above the noise
             trusted *= self.explained
