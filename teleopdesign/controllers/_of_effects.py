@@ -46,7 +46,7 @@ _UNKNOWN = {
 
 
 def cancel(
-    what: Body | Mapping[str | Effect, Mapping[str, float]],
+    what: Body | Mapping[Any, Mapping[str, float]],
     *,
     only: Collection[str] = (),
     smoothing_velocity: float | None = None,

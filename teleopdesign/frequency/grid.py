@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.errors import ModelError
+from ..diagrams import Diagram
 
 if TYPE_CHECKING:
     import xarray
@@ -79,3 +80,12 @@ def _positive(what: str, values: float | Sequence[float] | np.ndarray) -> np.nda
     if array.ndim != 1 or not array.size or not (np.isfinite(array) & (array > 0)).all():
         raise ModelError(f"{what}: found {values}, expected positive numbers")
     return array
+
+
+def cases_of(diagrams: Diagram | Mapping[str, Diagram]) -> dict[str, Diagram]:
+    """Case -> diagram; a single diagram has its name as case. Raises ModelError: no diagram."""
+    if isinstance(diagrams, Diagram):
+        return {diagrams.name: diagrams}
+    if not diagrams:
+        raise ModelError("diagrams: found none, expected a diagram, or several by case")
+    return dict(diagrams)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -21,11 +22,15 @@ from ..derive import block_symbol, transfer
 from ..derive.printing import dead_time_symbol, motion_controller_symbol
 from ..diagrams import Control, Diagram
 from ..diagrams.units import first_axis
-from ..realise.lti import S, linear_blocks
-from .describing_function import describing_function, driven_gain
-from .grid import Amplitude, Grid
+from ..realise.lti import S, linear_blocks, numerical
+from .describing_function import (
+    LawExpressions,
+    controller_law,
+    describing_function,
+    driven_gain,
+)
+from .grid import Amplitude, Grid, cases_of
 from .impedance_map import ImpedanceMap
-from .response import cases_of
 
 #: relative change at the end of the iteration for the phase of a controller's input; most
 #: iterations
@@ -51,22 +56,53 @@ def quasi_linear_impedance(
     grid = Grid.of(amplitude, frequency)
     z = np.empty((len(cases), *(len(getattr(grid, n)) for n in grid.dims)), dtype=complex)
     for i, diagram in enumerate(cases.values()):
-        form = _Form(diagram, motion, force)
-        for at, size, f in grid.points:
-            z[(i, *at)] = form.value(size, f)
+        form = _Form(diagram, motion, force, motion, motion)
+        places, sizes, frequencies = zip(*grid.points, strict=True)
+        for at, value in zip(
+            places, form.values(np.array(sizes), np.array(frequencies)), strict=True
+        ):
+            z[(i, *at)] = value
     axis = first_axis(next(iter(cases.values())))
-    values = {"impedance": (z, unit_of("stiffness", axis))}
-    data = grid.label(values, cases=list(cases), length=unit_of("position", axis))
+    units = {"impedance": (z, unit_of("stiffness", axis))}
+    data = grid.label(units, cases=list(cases), length=unit_of("position", axis))
     data.attrs |= {"motion": motion, "force": force}
     return ImpedanceMap(data)
 
 
-class _Form:
-    """The transfer function from motion to force, into which blocks are inserted."""
+def quasi_linear(
+    diagram: Diagram,
+    output: str,
+    source: str,
+    given: str | tuple[str, ...],
+    amplitude: float,
+    frequency: np.ndarray,
+    *,
+    motion: str = "L",
+) -> np.ndarray:
+    """Response from one signal to another over frequency (Hz), while a motion has an amplitude.
 
-    def __init__(self, diagram: Diagram, motion: str, force: str) -> None:
-        self.diagram, self.motion = diagram, motion
-        self.force = transfer(diagram, force, (motion,), given=motion)[motion]
+    motion: the one along which nonlinear laws have their first harmonic, m or rad
+    raises ModelError: a block without laws or without describing function
+    """
+    form = _Form(diagram, motion, output, source, given)
+    return form.values(np.full(len(frequency), amplitude), frequency)
+
+
+class _Form:
+    """A transfer function into which blocks are inserted, each at the amplitude of a motion."""
+
+    def __init__(
+        self,
+        diagram: Diagram,
+        motion: str,
+        output: str,
+        source: str,
+        given: str | tuple[str, ...],
+    ) -> None:
+        self.diagram, self.motion, self.source, self.given = diagram, motion, source, given
+        self.force = self._transfer(output)
+        self.compiled: dict[sp.Expr, Any] = {}
+        self.moved = sp.S(1) if source == motion else self._transfer(motion)
         self.controls: dict[str, tuple[Controller, sp.Expr | None]] = {}
         self.linear = linear_blocks(diagram)
         for part in diagram.controls:
@@ -94,42 +130,66 @@ class _Form:
         """Input of a controller per motion; None: the input is the motion itself."""
         if part.input == self.motion:
             return None
-        transfers = transfer(self.diagram, part.input, (self.motion,), given=self.motion)
-        return sp.sympify(transfers[self.motion])
+        return self._transfer(part.input) / self.moved
 
-    def value(self, amplitude: float, frequency: float) -> complex:
+    def _transfer(self, output: str) -> sp.Expr:
+        made = transfer(self.diagram, output, (self.source,), given=self.given)
+        return sp.sympify(made[self.source])
+
+    def values(self, amplitude: np.ndarray, frequency: np.ndarray) -> np.ndarray:
+        """The transfer function at amplitudes (n,) of the motion and frequencies (n,), Hz."""
         s = 2j * np.pi * frequency
-        values = {
-            block_symbol(f"A_{n}"): complex(e.subs(S, s)) for n, e in self.linear.actuation.items()
-        }
+        of_s = {block_symbol(f"A_{n}"): e for n, e in self.linear.actuation.items()}
         for name, form in self.linear.along.items():
-            values[motion_controller_symbol(name)] = complex(form.subs(S, s))
-            values[block_symbol(name)] = complex(self.linear.blocks[name].subs(S, s))
-        values |= {dead_time_symbol(n): complex(t) for n, t in self.linear.dead_times.items()}
-        values[S] = s
+            of_s[motion_controller_symbol(name)] = form
+            of_s[block_symbol(name)] = self.linear.blocks[name]
+        made = {x: numerical(e)(s) for x, e in of_s.items()}
+        times = {dead_time_symbol(n): float(t) for n, t in self.linear.dead_times.items()}
+        made |= {x: np.full(len(s), t, dtype=complex) for x, t in times.items()} | {S: s}
+        at = {"amplitude": amplitude, "frequency": frequency}
         for part in self.diagram.bodies:
             assert isinstance(part.body, Body)
             if part.motion == self.motion:
-                z = describing_function(part.body, amplitude=amplitude, frequency=frequency)
-                values[block_symbol(part.name)] = complex(z)
-        gains = []
+                made[block_symbol(part.name)] = np.asarray(describing_function(part.body, **at))
+        driven = {}
         for name, (law, drive) in self.controls.items():
-            values[block_symbol(name)] = 0j
             if drive is None:
-                n = describing_function(law, amplitude=amplitude, frequency=frequency)
-                values[block_symbol(name)] = complex(n)
+                made[block_symbol(name)] = np.asarray(describing_function(law, **at))
             else:
-                gain = driven_gain(law, amplitude=amplitude, frequency=frequency)
-                gains.append((block_symbol(name), gain, drive))
+                driven[name] = law, controller_law(law), drive
+        points = zip(amplitude.tolist(), frequency.tolist(), strict=True)
+        return np.array(
+            [
+                self._settle({x: complex(v[k]) for x, v in made.items()}, driven, *point)
+                for k, point in enumerate(points)
+            ]
+        )
+
+    def _settle(
+        self,
+        values: dict[sp.Symbol, complex],
+        driven: Mapping[str, tuple[Controller, LawExpressions, sp.Expr]],
+        amplitude: float,
+        frequency: float,
+    ) -> complex:
+        """The value at one point, once the gains of the driven controllers have settled."""
+        gains = []
+        for name, (law, expressions, drive) in driven.items():
+            gain = driven_gain(law, amplitude=amplitude, frequency=frequency, law=expressions)
+            gains.append((block_symbol(name), gain, drive))
+            values[block_symbol(name)] = 0j
         for _ in range(_MOST):
             before = dict(values)
             for symbol, gain, drive in gains:
-                size = _number(drive, values) * amplitude
+                size = self._number(drive, values) * amplitude
                 values[symbol] = gain(size) if size else 0j  # nothing drives it: no output
             if all(cmath.isclose(values[k], before[k], rel_tol=_CONVERGED) for k in values):
-                return _number(self.force, values)
+                return self._number(self.force, values)
         raise ModelError(f"{self.diagram.name}: the gains of its controllers settle on no phase")
 
-
-def _number(form: sp.Expr, values: dict[sp.Symbol, complex]) -> complex:
-    return complex(sp.N(sp.sympify(form).subs(values)))
+    def _number(self, form: sp.Expr, values: dict[sp.Symbol, complex]) -> complex:
+        if form not in self.compiled:
+            used = tuple(sorted(form.free_symbols, key=str))
+            self.compiled[form] = used, sp.lambdify(used, form, "cmath")
+        used, call = self.compiled[form]
+        return complex(call(*(values[x] for x in used)))
