@@ -114,6 +114,7 @@ if TYPE_CHECKING:
     from .design import Assumptions as Assumptions
     from .design import Design as Design
     from .design import design as design_compensation
+    from .design import verify as verify
     from .diagnose import Comparison as Comparison
     from .diagnose import Diagnosis as Diagnosis
     from .diagnose import Ranking as Ranking
@@ -209,7 +210,7 @@ FURTHER = {
         "read_study", "MEASURES", "latin_hypercube", "sobol", "random_samples",
         "sensitivity_samples", "limit", "trade_off", "sensitivities", "fit_simulation",
     ),
-    "recordings": ("Record", "fetch", "measured_impedance"),
+    "recordings": ("Record", "fetch", "measured_impedance", "verify"),
     "exchange": ("to_iosystem", "from_control"),
 }
 #: these have another name in their folders; type checkers see all others by their imports

@@ -44,25 +44,34 @@ class ExpectedError(ByValue):
     unexplained: float
 
 
+def drawn_values(
+    diagram: Diagram, draws: int, *, first_exact: bool = False
+) -> dict[str, ArrayLike]:
+    """Values of the body within its standard errors, one for each draw, each by itself.
+
+    first_exact: whether the first draw has the estimates
+    """
+    (body,) = (b.body for b in diagram.bodies if b.name == "Z_M")
+    assert isinstance(body, Body)
+    random, values = np.random.default_rng(0), dict[str, ArrayLike]()
+    for name, value in body.parameters.items():
+        if value.fixed or not math.isfinite(value.stderr) or value.stderr == 0:
+            continue
+        errors = random.standard_normal(draws)
+        errors[0] *= not first_exact
+        declared = body.parameter(name)
+        drawn = np.clip(value.value + value.stderr * errors, declared.lower, declared.upper)
+        values[f"Z_M.{name}"] = drawn
+    return values or {"Z_M.inertia": np.full(draws, body.parameters["inertia"].value)}
+
+
 def error_interval(
     diagram: Diagram, motion: StatedMotion, sampling: Sampling
 ) -> tuple[float, float]:
     """Interval of the force error of one case over the errors of the body's parameters."""
-    (body,) = (b.body for b in diagram.bodies if b.name == "Z_M")
-    assert isinstance(body, Body)
-    random = np.random.default_rng(0)
-    values: dict[str, ArrayLike] = {
-        f"Z_M.{name}": np.clip(
-            value.value + value.stderr * random.standard_normal(DRAWS),
-            body.parameter(name).lower,
-            body.parameter(name).upper,
-        )
-        for name, value in body.parameters.items()
-        if not value.fixed and math.isfinite(value.stderr) and value.stderr > 0
-    } or {"Z_M.inertia": [body.parameters["inertia"].value]}
     runs = simulate_many(
         diagram,
-        values,
+        drawn_values(diagram, DRAWS),
         duration=CYCLES / motion.frequency,
         motion={led_motion(diagram, "L"): motion.motion},
         computer=sampling,
