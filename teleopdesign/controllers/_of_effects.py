@@ -173,9 +173,24 @@ def _law_of(effects: tuple[Effect, ...], smoothed: bool) -> ControlLaw:
         },
         linear=not reads and is_linear(about_zero, [*driving, *rates]),
         reads_command=reads,
+        **_abilities({*symbols.values()}),
         source="; ".join(dict.fromkeys(e.source for e in effects)),
     )
     return remember(made.named(CANCEL, __doc__ or ""), _law_of, effects, smoothed)
+
+
+def _abilities(parameters: set[str]) -> dict[str, Any]:
+    """What the law is declared to be where friction of one level is all that it cancels.
+
+    Claims derive these declarations from the equations.
+    """
+    level, bristle = "coulomb.level", "presliding.stiffness"
+    declared = {
+        (level,): {"bound": level},
+        (level, _SMOOTHING): {"bound": level, "smoothing": _SMOOTHING},
+        (level, bristle): {"bound": level, "bristle_stiffness": bristle},
+    }
+    return declared.get(tuple(sorted(parameters)), {})
 
 
 def _zero() -> sp.Symbol:

@@ -134,6 +134,18 @@ def test_c_header_steps_like_the_law(tmp_path):
     assert float(ran.stdout) == pytest.approx(float(expected), rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    "more, smoothing", [({}, 0.02), ({"presliding": {"stiffness": 50.0}}, None)]
+)
+def test_passivity_of_cancelled_friction_is_proved_as_for_the_law_of_that_name(more, smoothing):
+    body = td.Body("revolute", {"inertia": 0.01})
+    body = body.with_effect(EFFECTS["coulomb"], {"level": 0.3})
+    body = body.with_effect(EFFECTS["viscous"], {"damping": 0.02})
+    law = td.cancel({"coulomb": {"level": 0.27}, **more}, smoothing_velocity=smoothing)
+    claims = td.diagram_claims(td.haptic_interface(body, cancellation=law)).claims
+    assert any(c.claim.status == "proved" for c in claims if c.topic == "friction of Z_M with C")
+
+
 def test_linear_effects_have_a_linear_form():
     law = td.cancel({"viscous": {"damping": 0.2}, "spring": {"stiffness": 3.0}})
     s = sp.Symbol("s")
