@@ -21,6 +21,7 @@ from ..derive.transfer_functions import symbol_values
 from ..diagrams import Diagram, Moving
 from ..realise.lti import linear_blocks, numerical
 from ..realise.parted import linear_parted
+from .frozen_friction import cancellations_left_over, growing_modes
 
 if TYPE_CHECKING:
     import control
@@ -32,10 +33,14 @@ class MatrixResponse(Shown, ByValue):
     """Response of several outputs to several inputs.
 
     data: complex, over frequency (Hz), output and input;  left_out: names without linear form
+    left_over: controllers that cancel friction while friction is left out
+    unstable: modes of the whole diagram that grow, in words; "": none, or not known
     """
 
     data: xarray.DataArray
     left_out: tuple[str, ...]
+    left_over: tuple[str, ...] = ()
+    unstable: str = ""
 
     def singular_values(self) -> np.ndarray:
         """Gains over all directions, (frequencies, min(outputs, inputs)), largest first."""
@@ -108,7 +113,9 @@ def matrix_response(
         },
         ("frequency", "output", "input"),
     )
-    return MatrixResponse(data, form.left_out)
+    cancelled = cancellations_left_over(diagram, form.left_out)
+    modes = None if given else growing_modes(diagram, speed=speed)
+    return MatrixResponse(data, form.left_out, cancelled, modes or "")
 
 
 def _respond_to_itself(output: str, inputs: Sequence[str], s: np.ndarray) -> np.ndarray:

@@ -15,6 +15,8 @@ from ..registry import shows
 from .axes import PageColumns, legend_below, look, mark_degrees, panels, points, share_abscissa
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import matplotlib.axes
     import matplotlib.figure
     import numpy as np
@@ -36,12 +38,16 @@ def response_text(response: FrequencyResponse) -> str:
         lines.append(f"  {case}: {zero}left out: {', '.join(gone) or 'nothing'}")
         if modes := response.unstable.get(case):
             lines.append(f"    UNSTABLE: a mode of the whole diagram grows, {modes}")
-        if over := response.left_over.get(case):
-            lines.append(
-                f"    friction is left out, its cancellation {', '.join(over)} is not: state "
-                "speed= or amplitude="
-            )
+        if over := _left_over(response.left_over.get(case, ())):
+            lines.append(f"    {over}: state speed= or amplitude=")
     return "\n".join(lines)
+
+
+def _left_over(names: Sequence[str]) -> str:
+    """Words on cancellations whose friction is left out; "" for none."""
+    if not names:
+        return ""
+    return f"friction is left out, its cancellation {', '.join(names)} is not"
 
 
 @shows("text")
@@ -50,7 +56,9 @@ def matrix_response_text(response: MatrixResponse) -> str:
     shape = f"{len(response.data['output'])} outputs from {len(response.data['input'])} inputs"
     f = response.data["frequency"].values
     gone = f"; left out: {', '.join(response.left_out)}" if response.left_out else ""
-    return f"Response of {shape}, {f[0]:g} to {f[-1]:g} Hz{gone}"
+    over = f"; {words}" if (words := _left_over(response.left_over)) else ""
+    grows = f"; UNSTABLE: {response.unstable}" if response.unstable else ""
+    return f"Response of {shape}, {f[0]:g} to {f[-1]:g} Hz{gone}{over}{grows}"
 
 
 @shows("text")
@@ -59,6 +67,7 @@ def loop_text(loop: LoopGain) -> str:
     held = f"; sampled and held: {', '.join(loop.held)}" if loop.held else ""
     gone = ", ".join(loop.left_out) or "nothing"
     held += ", margins by an approximation" if loop.held and loop.sampled is None else ""
+    held += f"; {words}" if (words := _left_over(loop.left_over)) else ""
     return f"Gain round the loop of {loop.controller}; left out: {gone}{held}"
 
 
