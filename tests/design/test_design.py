@@ -47,6 +47,24 @@ def test_late_force_feedback_gives_out_energy(designed):
         assert (claim.verdict.margin > 0) is holds
 
 
+def test_the_first_lines_say_what_to_build_what_to_expect_and_whether_it_is_passive(designed):
+    text = " ".join(str(designed).split("\n\n")[0].split())
+    assert text.startswith("build C = dahl") and "H, with the force sensor" in text
+    assert "not compensated: viscous (it damps)" in text
+    e = designed.expected
+    assert 0 < e.low <= designed.prediction.cases["hybrid"].simulated <= e.high < e.without
+    assert "passive with C alone: proved" in text and "passive with C and H: no" in text
+
+
+def test_without_a_force_sensor_the_first_line_has_no_force_feedback(designed):
+    blind = replace(designed.reach, measures_force=False)
+    text = str(
+        replace(designed, reach=blind, expected=replace(designed.expected, case="MBC"))
+    ).split("\n\n")[0]
+    assert "H," not in text and "with C and H" not in text
+    assert "resting on" in text and "without a force sensor" in text
+
+
 def test_every_number_has_its_reason_and_unit(designed):
     for chosen in (designed.cancellation, designed.force_feedback):
         assert {r.parameter for r in chosen.reasons} == set(chosen.controller.names())
