@@ -26,8 +26,7 @@ from ..realise.friction_interval import (
 )
 from ..realise.reach import ANY_MOTION, Reach
 from ..realise.simulated import without_absent
-from .claims.axis_units import use_units_of
-from .claims.claim import Claim, Unknown
+from .claims.claim import Claim, Unknown, use_units_of
 from .declarations import is_shipped, underived_energy
 
 #: digits of a measured number in a claim. A standard error is rarely known to more than two digits,

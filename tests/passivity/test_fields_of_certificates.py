@@ -7,18 +7,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.passivity.checker import Refused
-from teleopdesign.passivity.checker.effort import (
-    bound_effort,
-    longest,
-    spend,
-    spend_from,
-)
-from teleopdesign.passivity.checker.fields import (
+from teleopdesign.passivity.checker.algebra import (
     expect,
     expect_fields,
     read_matrix,
     read_number,
     read_words,
+)
+from teleopdesign.passivity.checker.effort import (
+    bound_effort,
+    longest,
+    spend,
+    spend_from,
 )
 
 LETTERS = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"

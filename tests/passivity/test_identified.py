@@ -16,7 +16,7 @@ from teleopdesign.passivity.device_claims import (
     margins,
     wall_claims,
 )
-from teleopdesign.passivity.friction_pairs import friction_pairs, pair_claims
+from teleopdesign.passivity.diagram_claims import friction_pairs, pair_claims
 from teleopdesign.passivity.identified import DIGITS, identify_device
 from teleopdesign.realise.friction_interval import friction_interval
 from teleopdesign.realise.reach import Reach

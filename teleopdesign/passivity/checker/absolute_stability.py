@@ -49,9 +49,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from .algebra import Poly
+from .algebra import Poly, expect_fields, read_matrix
 from .effort import bound_effort, need
-from .fields import expect_fields, read_matrix
 from .over_a_box import PolyMatrix, SignsOverBox, degree, read_impedance, times_x
 from .polynomials import coefficient_list, derivative, greatest_common_divisor, is_hurwitz
 from .positive_real import with_damper, with_one_denominator

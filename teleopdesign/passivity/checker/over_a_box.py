@@ -23,10 +23,9 @@ from fractions import Fraction
 from itertools import combinations
 from typing import Any
 
-from .algebra import Algebra, Poly
+from .algebra import Algebra, Poly, expect, expect_fields, flat, read_number, read_words
 from .box_signs import Ends, are_apart_from_zero, are_non_negative
 from .effort import EFFORT, bound_effort, need
-from .fields import expect, expect_fields, flat, read_number, read_words
 from .polynomials import (
     Polynomial,
     coefficient_list,

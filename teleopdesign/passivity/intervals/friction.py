@@ -17,8 +17,7 @@ from ...blocks import Body
 from ...controllers import laws_that_declare
 from ...diagrams import Diagram
 from ..claims.claim import Claim
-from ..diagram_claims import composed_claim
-from ..friction_pairs import FrictionPair, friction_pairs, pair_claims
+from ..diagram_claims import FrictionPair, composed_claim, friction_pairs, pair_claims
 from ..linear.conditions import is_shown
 from ..linear.family import family_of_states
 from ..linear.signs import Signs

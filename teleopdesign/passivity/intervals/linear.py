@@ -15,6 +15,7 @@ from ...base.errors import ModelError
 from ...derive.all_states import AllStates, all_states, is_well_posed
 from ...derive.effort import TooMuchEffort, try_within_effort
 from ...derive.polynomials import is_hurwitz
+from ...derive.responses import Responses
 from ...diagrams import Diagram
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim
@@ -24,8 +25,6 @@ from ..linear.family import Family, family_of_states
 from ..linear.signs import Ends, Signs
 from ..linear_diagrams import linear_claims
 from ..ports import drop_absent_effects, ports
-from .agreement import agrees
-from .at_points import judge_at_points
 from .box import ValueBox, nonlinear_within
 from .interval_claim import Parts, Status, parts_of
 from .late import judge_late
@@ -252,3 +251,64 @@ def _explain_no_proof(signs: Signs) -> str:
         f"no proof over the whole box: not shown on {signs.cells} parts of it, or modes that no "
         "port shows"
     )
+
+
+#: points inside the box at which the equations are compared, besides two opposite vertices
+_COMPARED = 2
+#: s at which responses are compared, 1/s, and the relative difference that is rounding
+_AT, _ROUNDING = np.array([3.1 + 4.7j]), 1e-6
+
+
+def agrees(states: AllStates, diagram: Diagram, box: ValueBox, speed: float) -> bool:
+    """Whether all signals respond alike to all signals from outside, at some points of the box.
+
+    Values may make an effect absent at an end of an interval, and then it has another form there.
+
+    states: with the values of the box as the first symbols after s;  speed: see `all_states`
+    """
+    symbols = states.ring.symbols[1 : 1 + len(box.names)]
+    first = Responses(states, states.unknown, states.outside)
+    for point in (np.array(box.low), np.array(box.high), *box.inside(_COMPARED, 0)):
+        diagram = diagram.with_values(box.named(point))
+        there = all_states(drop_absent_effects(diagram), speed=speed)
+        shared = tuple(n for n in states.unknown if n in there.unknown)
+        one = first.at(_AT, dict(zip(symbols, map(float, point), strict=True)))[0]
+        other = Responses(there, shared, there.outside).at(_AT)[0]
+        largest = np.nan_to_num(np.abs(one)).max(initial=0.0)
+        one = one[[states.unknown.index(n) for n in shared]]
+        size = np.abs(one).max(axis=1, initial=0.0) + _ROUNDING * largest
+        if (np.abs(one - other).max(axis=1, initial=0.0) > _ROUNDING * size).any():
+            return False
+    return True
+
+
+def judge_at_points(
+    middle: Diagram, box: ValueBox, claim: Callable[[Diagram], Any], points: int, seed: int
+) -> Parts:
+    """Judge a user's margin or claim at the vertices, the middle and further points of a box.
+
+    claim: function of a diagram, which returns a margin (>= 0: it holds) or a `Claim`
+    points: number of further points;  seed: of these points
+    """
+    unknown: list[str] = []
+    units: list[str] = []
+
+    def margin(point: np.ndarray) -> float:
+        value = claim(middle.with_values(box.named(point)))
+        if not isinstance(value, Claim):
+            return float(value)
+        if value.holds is None:
+            unknown.append(str(value.verdict))
+        units.append(getattr(value.verdict, "unit", ""))
+        size = float(getattr(value.verdict, "margin", float("nan")))
+        if np.isfinite(size) and (size >= 0) == bool(value.holds):
+            return size
+        return {True: np.inf, False: -np.inf, None: np.inf}[value.holds]
+
+    worst = search_worst(margin, box, points=points, seed=seed, downhill=False)
+    name = getattr(claim, "__name__", "the claim")
+    failed = not worst.margin >= 0
+    how = f"{name} is {worst.margin:.4g} there" if failed else f"{name}: nothing is proved"
+    status: Status = "refuted" if failed else "unknown" if unknown else "evidence"
+    how = f"unknown at {len(unknown)} points: {unknown[0]}" if status == "unknown" else how
+    return parts_of(f"{name} holds", status, worst, box, next(filter(None, units), ""), how)

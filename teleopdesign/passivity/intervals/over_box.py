@@ -11,15 +11,13 @@ from ...base.expectations import describe_value
 from ...derive.effort import TooMuchEffort, bounded_effort
 from ...diagrams import Diagram
 from ...diagrams.units import first_axis, unit_of_value
-from ..claims.axis_units import use_rotary_units
-from ..holders import without_holders
+from ..claims.claim import use_rotary_units
 from ..linear.impedance import decimal, exact
-from ..ports import drop_absent_effects, ports
-from .at_points import judge_at_points
+from ..ports import drop_absent_effects, ports, without_holders
 from .box import ValueBox, box_of, nonlinear_within
 from .friction import judge_friction
 from .interval_claim import IntervalClaim, Parts, parts_of
-from .linear import CLAIMS, judge_linear, judge_stability
+from .linear import CLAIMS, judge_at_points, judge_linear, judge_stability
 from .worst import Worst
 
 

@@ -22,8 +22,15 @@ from ..claims.certificate import (
 )
 from ..claims.claim import TOO_MUCH, Claim, Evidence, Proof, Refutation, Unknown, Verdict
 from ..search.growing_wave import GrowingWave, wave_of
-from ..search.points import candidates, near_axis, near_poles, resonances, zeros_and_poles
-from ..search.wave_search import select_fastest, wave_out_of
+from ..search.points import (
+    candidates,
+    near_axis,
+    near_poles,
+    resonances,
+    select_fastest,
+    wave_out_of,
+    zeros_and_poles,
+)
 from ..two_port.growing_mode import growing_mode
 from ..two_port.termination import far_termination
 from .box_certificates import stability_certificate

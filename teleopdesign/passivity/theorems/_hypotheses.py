@@ -21,8 +21,7 @@ import sympy as sp
 
 from ...base.errors import ModelError, did_you_mean
 from ...base.units import AXES
-from ..claims.axis_units import use_units_of
-from ..claims.claim import Claim
+from ..claims.claim import Claim, use_units_of
 from ..linear.impedance import exact
 
 Claiming = Callable[..., Claim]

@@ -19,9 +19,8 @@ from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Cycle, Dahl, symmetric_cycle
 from ._certificates import certificate
-from ._cycle_simulation import simulate_cycle
 from ._hypotheses import POSITIVE, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim, decide
+from ._theorem import Question, Theorem, TopicClaim, decide, simulate_cycle
 
 #: N/m for each N of level: a bristle so stiff that its length does not matter to a hand
 _STIFFEST = 1e3

@@ -19,9 +19,8 @@ from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal
 from ..rate_independent import Coulomb, Cycle, Dahl, dahl_loss, lost_share, symmetric_cycle
 from ._certificates import certificate
-from ._cycle_simulation import simulate_cycle
 from ._hypotheses import POSITIVE, require_hypotheses
-from ._theorem import Question, Theorem, Time, TopicClaim, decide
+from ._theorem import Question, Theorem, Time, TopicClaim, decide, simulate_cycle
 from .bounded_compensation import cycle_beyond_onset, proof_of_level
 from .lugre import add_bristle_damping
 

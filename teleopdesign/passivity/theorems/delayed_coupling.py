@@ -16,8 +16,7 @@ from typing import Any
 from ...realise.lti import S
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
-from ..two_port.claims import absolutely_stable
-from ..two_port.two_port import teleoperator_two_port
+from ..two_port.two_port import absolutely_stable, teleoperator_two_port
 from ._certificates import certificate
 from ._hypotheses import NOT_NEGATIVE, REAL, require_hypotheses
 from ._theorem import Theorem

@@ -25,9 +25,8 @@ from ..claims.claim import Claim
 from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, Dahl
 from ..search.stroke_motion import Strokes
-from ._cycle_simulation import simulate_cycle
 from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim, leave_open, refute
+from ._theorem import Question, Theorem, TopicClaim, leave_open, refute, simulate_cycle
 from .bounded_compensation import bounded_compensation
 
 #: most samples, one way, of a motion that refutes a claim

@@ -25,6 +25,7 @@ import sympy as sp
 
 from ...base.arguments import describe_value
 from ...base.errors import ModelError
+from ...controllers import from_control
 from ...realise.lti import S
 from ..claims.certificate import positive_real_certificate
 from ..claims.claim import Claim, prove_by_certificate
@@ -32,7 +33,6 @@ from ..linear.impedance import Impedance, decimal, exact, impedance, readable
 from ..linear.positive_real import NO_WAVE, damping_excess, is_positive_real
 from ..search.growing_wave import growing_wave
 from ..search.sampled_wave import Z, sampled_wave
-from ._discrete_system import discrete_transfer_function
 from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, REAL, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, refute
 
@@ -184,3 +184,40 @@ THEOREM = Theorem(
     claims=_claims,
     order=30,
 )
+
+
+#: relative difference of two periods that counts as rounding of decimals
+_ROUNDING = 1e-9
+
+
+def discrete_transfer_function(controller: Any, *, sample_time: float, z: sp.Symbol) -> Any:
+    """The transfer function in z of a system of python-control; any other object unchanged.
+
+    The numbers of the system are kept exactly.
+
+    controller: the system;  sample_time: period that the system must have, s;  z: symbol of z
+    raises ModelError: continuous time, another period, several inputs or outputs, or a mode that
+        the transfer function does not show
+    """
+    if not (hasattr(controller, "dt") and hasattr(controller, "nstates")):
+        return controller
+    if not controller.isdtime(strict=True):
+        raise ModelError(
+            "controller: found a system in continuous time, expected one in discrete time: "
+            "`control.sample_system` makes one"
+        )
+    if controller.dt is not True and abs(controller.dt - sample_time) > _ROUNDING * sample_time:
+        raise ModelError(
+            f"controller: is sampled every {controller.dt * 1e3:g} ms, the body every "
+            f"{sample_time * 1e3:g} ms: sample both alike"
+        )
+    (stage,) = from_control(controller, name="controller").stages
+    if stage.law.shift is None:
+        raise ModelError("controller: expected a transfer function or a state space")
+    law = sp.cancel(stage.law.shift(stage.values, z))
+    if sp.degree(sp.fraction(law)[1], z) < len(stage.law.states):
+        raise ModelError(
+            "controller: has a mode that its transfer function does not show, and which may grow: "
+            "give its least form (`control.minreal`)"
+        )
+    return law

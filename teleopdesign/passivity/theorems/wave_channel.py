@@ -27,11 +27,10 @@ from ...diagrams import Diagram, Moving, wave_variables
 from ...realise.lti import S, linear_blocks
 from ..claims.claim import Claim, Proof, Unknown
 from ..declarations import falsely_linear, is_shipped
-from ..holders import without_holders
 from ..linear.impedance import decimal, exact
 from ..linear.positive_real import positive_real
 from ..linear.unseen import unseen_within
-from ..ports import drop_absent_effects
+from ..ports import drop_absent_effects, without_holders
 from ._certificates import certificate
 from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, require_hypotheses
 from ._theorem import Theorem

@@ -28,10 +28,12 @@ from ...base.finding import Graph, Series
 from ...base.frozen import ByValue
 from ...diagrams.control_parts import entry_of
 from ...realise.lti import S
+from ..claims.claim import Claim, Unknown
 from ..linear.family import Family, family_of_matrix
 from ..linear.impedance import Impedance, exact, impedance
+from ..linear.judge import passive_claim, stable_claim
 from ..linear.sweep import passive_margin, stable_margin
-from ..linear.unseen import unseen_modes
+from ..linear.unseen import explain_unseen, unseen_modes
 
 
 @dataclass(frozen=True)
@@ -185,3 +187,35 @@ def sweep_margins(
     f = np.geomspace(1e-4, 1e4, 4001) if frequency is None else np.asarray(frequency, dtype=float)
     z = system.over(f)
     return FrequencyMargins(f, passive_margin(z), stable_margin(z))
+
+
+def passive(system: TwoPort) -> Claim:
+    """Is the two-port passive: does no motion of its two ports take energy out (Raisbeck)?
+
+    The positive-real test of the matrix decides, poles on the axis included.
+
+    returns: proved; or refuted by a growing wave; or, with dead times, evidence over frequency;
+        unknown where no proof and no wave is available, or where a mode of a system of
+        python-control that no port shows does not decay
+    """
+    return _with_unseen(system, passive_claim(system.family))
+
+
+def absolutely_stable(system: TwoPort) -> Claim:
+    """Is the two-port stable between any passive terminations (Llewellyn, residues on the axis)?
+
+    `checker/absolute_stability.py` contains the statement and its proof.
+
+    returns: proved; or refuted by a motion that grows by itself between the two passive
+        terminations that the verdict names. With dead times: evidence over frequency, or refuted by
+        a wave with which port 1 releases energy while port 2 has the termination that the verdict
+        names; else unknown
+    """
+    return _with_unseen(system, stable_claim(system.family))
+
+
+def _with_unseen(system: TwoPort, claim: Claim) -> Claim:
+    """The claim; unknown if it holds while modes that no port shows do not decay."""
+    if claim.holds and system.unseen:
+        return Claim(claim.statement, Unknown(explain_unseen(system.unseen)))
+    return claim
