@@ -19,15 +19,15 @@ from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Cycle, Dahl, symmetric_cycle
 from ._certificates import certificate
-from ._hypotheses import POSITIVE, require_hypotheses
+from ._hypotheses import Positive, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, decide, simulate_cycle
 
 #: N/m for each N of level: a bristle so stiff that its length does not matter to a hand
 _STIFFEST = 1e3
 
 
-@require_hypotheses(coulomb_level=POSITIVE, bound=POSITIVE)
-def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
+@require_hypotheses
+def bounded_compensation(*, coulomb_level: Positive, bound: Positive) -> Claim:
     """Is Coulomb friction passive together with any compensator whose force is within a bound?
 
     The bound is the only condition, so the compensator may be sampled, delayed, quantised or driven
@@ -35,7 +35,6 @@ def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
 
     coulomb_level: f_C, N;  bound: f_D, N
     returns: proved if and only if f_D <= f_C; else refuted by a Dahl compensator in a cycle
-    raises ModelError: an argument that is not > 0
     """
     f_c, f_d = coulomb_level, bound
     return decide(

@@ -10,7 +10,6 @@ link; and no release of energy in slow free motion, where friction f_2 alone hol
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -18,31 +17,22 @@ from ..claims.claim import Claim, Evidence, Proof, Refutation
 from ..linear.impedance import decimal
 from ..rate_independent import Coulomb, Cycle, Dahl, Element, Spring, lost_share, symmetric_cycle
 from ._certificates import certificate
-from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
+from ._hypotheses import Free, NotNegative, Positive, Whole, require_hypotheses
 from ._theorem import Theorem
 from .dahl_compensation import dahl_compensation
 
 
-@require_hypotheses(
-    motor_level=POSITIVE,
-    link_level=NOT_NEGATIVE,
-    transmission_stiffness=POSITIVE,
-    compensator_level=POSITIVE,
-    compensator_stiffness=POSITIVE,
-    motor_inertia=POSITIVE,
-    link_inertia=POSITIVE,
-    transmission_damping=NOT_NEGATIVE,
-)
+@require_hypotheses
 def any_environment(
     *,
-    motor_level: Any,
-    link_level: Any,
-    transmission_stiffness: Any,
-    compensator_level: Any,
-    compensator_stiffness: Any,
-    motor_inertia: Any = 1,
-    link_inertia: Any = 1,
-    transmission_damping: Any = 0,
+    motor_level: Positive,
+    link_level: NotNegative,
+    transmission_stiffness: Positive,
+    compensator_level: Positive,
+    compensator_stiffness: Positive,
+    motor_inertia: Positive = 1,
+    link_inertia: Positive = 1,
+    transmission_damping: NotNegative = 0,
 ) -> Claim:
     """Is the joint passive for any environment and any stroke: if and only if f_D <= f_1?
 
@@ -53,7 +43,6 @@ def any_environment(
     motor_inertia, link_inertia: kg;  transmission_damping: c, N s/m
     returns: proved; else refuted by a cycle of the motor, with the link clamped and the force of
         the spring balanced by the environment
-    raises ModelError: an argument outside of its hypothesis
     """
     f_1, f_d = motor_level, compensator_level
     statement = (
@@ -82,24 +71,16 @@ def any_environment(
     return Claim(statement, Proof(method, (made,), float(f_1 - f_d), "N", equality))
 
 
-@require_hypotheses(
-    motor_level=POSITIVE,
-    link_level=POSITIVE,
-    transmission_stiffness=POSITIVE,
-    compensator_level=POSITIVE,
-    compensator_stiffness=POSITIVE,
-    rng=FREE,
-    paths=WHOLE,
-)
+@require_hypotheses
 def free_motion(
     *,
-    motor_level: float,
-    link_level: float,
-    transmission_stiffness: float,
-    compensator_level: float,
-    compensator_stiffness: float,
-    rng: np.random.Generator | int = 0,
-    paths: int = 2000,
+    motor_level: Positive,
+    link_level: Positive,
+    transmission_stiffness: Positive,
+    compensator_level: Positive,
+    compensator_stiffness: Positive,
+    rng: Free = 0,
+    paths: Whole = 2000,
 ) -> Claim:
     """Does slow free motion of the joint never release energy?
 
@@ -113,7 +94,6 @@ def free_motion(
     compensator_level: f_D, N;  compensator_stiffness: sigma_D, N/m
     rng: draws the random paths, or the seed of the generator that does;  paths: their number
     returns: refuted by a closed path, or evidence, because the searched paths are not all motions
-    raises ModelError: an argument outside of its hypothesis
     """
     rng, levels = np.random.default_rng(rng), (motor_level, link_level, compensator_level)
     f_1, f_2, f_d = map(float, levels)

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -24,7 +23,7 @@ from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ..search.growing_wave import first_wave, rates_at
 from ._certificates import certificate
-from ._hypotheses import NOT_NEGATIVE, require_hypotheses
+from ._hypotheses import NotNegative, require_hypotheses
 from ._theorem import Theorem, decide
 
 #: just above 0.2172336, which is minus the least value of sin(y)/y (at tan y = y, y = 4.4934)
@@ -52,14 +51,13 @@ def inertia_given_out(*, inertia: float, amplitude: float, frequency: float, del
     return float(np.pi * inertia * amplitude**2 * w**2 * np.sin(w * delay))
 
 
-@require_hypotheses(
-    damping=NOT_NEGATIVE,
-    compensator_stiffness=NOT_NEGATIVE,
-    delay=NOT_NEGATIVE,
-    presliding_stiffness=NOT_NEGATIVE,
-)
+@require_hypotheses
 def delayed_small_motion(
-    *, damping: Any, compensator_stiffness: Any, delay: Any, presliding_stiffness: Any
+    *,
+    damping: NotNegative,
+    compensator_stiffness: NotNegative,
+    delay: NotNegative,
+    presliding_stiffness: NotNegative,
 ) -> Claim:
     """Is small motion passive: friction is then a spring, the compensator a late negative spring.
 
@@ -71,7 +69,6 @@ def delayed_small_motion(
     damping: B, N s/m;  compensator_stiffness: sigma_D, N/m;  delay: tau, s
     presliding_stiffness: sigma_p, N/m
     returns: proved, or refuted by a growing wave; unknown where the search has no wave
-    raises ModelError: an argument outside of its hypothesis
     """
     b, tau, sigma_d, sigma_p = damping, delay, compensator_stiffness, presliding_stiffness
     margin = b - SINC_LEAST * sigma_d * tau

@@ -15,7 +15,7 @@ abs(g) <= 1/(2 T) for r = 2, reached at w T = 1 without delay.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import sympy as sp
@@ -27,7 +27,7 @@ from ..linear.impedance import decimal
 from ..linear.positive_real import positive_real
 from ..search.growing_wave import first_wave, rates_at
 from ._certificates import certificate
-from ._hypotheses import NOT_NEGATIVE, one_of, require_hypotheses
+from ._hypotheses import NotNegative, one_of, require_hypotheses
 from ._theorem import Theorem, refute
 
 Order = Literal[1, 2]
@@ -72,22 +72,15 @@ def largest_passive_inertia(
     return damping / _maximum(delay, time_constant)[1]
 
 
-@require_hypotheses(
-    inertia=NOT_NEGATIVE,
-    damping=NOT_NEGATIVE,
-    cancelled=NOT_NEGATIVE,
-    delay=NOT_NEGATIVE,
-    time_constant=NOT_NEGATIVE,
-    order=one_of(1, 2),
-)
+@require_hypotheses
 def cancelled_inertia(
     *,
-    inertia: Any,
-    damping: Any,
-    cancelled: Any,
-    delay: Any,
-    time_constant: Any = 0,
-    order: int = 2,
+    inertia: NotNegative,
+    damping: NotNegative,
+    cancelled: NotNegative,
+    delay: NotNegative,
+    time_constant: NotNegative = 0,
+    order: Annotated[int, one_of(1, 2)] = 2,
 ) -> Claim:
     """Is a device passive if a part of its inertia is cancelled, delayed and low-passed?
 
@@ -97,7 +90,6 @@ def cancelled_inertia(
         without delay decided exactly; else refuted by a growing wave, or, for r = 2 with delay
         between 2 B T and the limit, evidence; unknown where no wave is available, or for a delay of
         more than 10000 time constants
-    raises ModelError: an argument outside of its hypothesis
     """
     m, b, c, tau, t = inertia, damping, cancelled, delay, time_constant
     filtered = f", low-passed of order {order} with {decimal(t)} s" if t else ""

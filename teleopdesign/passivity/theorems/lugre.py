@@ -25,7 +25,7 @@ from ..identified import DIGITS
 from ..linear.impedance import decimal, exact
 from ..rate_independent import AbstractMotion, Dahl
 from ._certificates import certificate
-from ._hypotheses import NOT_NEGATIVE, POSITIVE, require_hypotheses
+from ._hypotheses import NotNegative, Positive, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, decide
 
 _STRIBECK = EFFECTS["stribeck"]
@@ -76,22 +76,15 @@ class Jumps(AbstractMotion):
         return out
 
 
-@require_hypotheses(
-    coulomb_level=POSITIVE,
-    static_level=POSITIVE,
-    stiffness=POSITIVE,
-    bristle_damping=NOT_NEGATIVE,
-    viscous_damping=NOT_NEGATIVE,
-    stribeck_velocity=POSITIVE,
-)
+@require_hypotheses
 def lugre_passivity(
     *,
-    coulomb_level: Any,
-    static_level: Any,
-    stiffness: Any,
-    bristle_damping: Any,
-    viscous_damping: Any,
-    stribeck_velocity: Any,
+    coulomb_level: Positive,
+    static_level: Positive,
+    stiffness: Positive,
+    bristle_damping: NotNegative,
+    viscous_damping: NotNegative,
+    stribeck_velocity: Positive,
 ) -> Claim:
     """Is LuGre friction passive: if and only if s2 >= s1 (F_S/F_C - 1)?
 

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -23,7 +22,7 @@ from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion
 from ._certificates import certificate
-from ._hypotheses import NOT_NEGATIVE, POSITIVE, require_hypotheses
+from ._hypotheses import NotNegative, Positive, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, decide
 
 
@@ -58,22 +57,15 @@ class Flip(AbstractMotion):
         return self.stiffness * self.step * math.floor(position / self.step + 0.5)
 
 
-@require_hypotheses(
-    stiffness=NOT_NEGATIVE,
-    damping=NOT_NEGATIVE,
-    sample_time=POSITIVE,
-    step=NOT_NEGATIVE,
-    coulomb_level=NOT_NEGATIVE,
-    compensator_level=NOT_NEGATIVE,
-)
+@require_hypotheses
 def quantised_spring(
     *,
-    stiffness: Any,
-    damping: Any,
-    sample_time: Any,
-    step: Any,
-    coulomb_level: Any,
-    compensator_level: Any = 0,
+    stiffness: NotNegative,
+    damping: NotNegative,
+    sample_time: Positive,
+    step: NotNegative,
+    coulomb_level: NotNegative,
+    compensator_level: NotNegative = 0,
 ) -> Claim:
     """Is the virtual spring passive: if and only if K <= min(2 b/T, 2 (f_C - f_D)/Delta)?
 
@@ -82,7 +74,6 @@ def quantised_spring(
     returns: proved, equality included, or refuted by a motion between two positions. With f_D > 0
         the refutation is for a compensator that pushes with f_D along the motion. Unknown where the
         condition fails by too little for the search
-    raises ModelError: an argument outside of its hypothesis
     """
     k, b, late, delta = stiffness, damping, sample_time, step
     f_c, f_d = coulomb_level, compensator_level

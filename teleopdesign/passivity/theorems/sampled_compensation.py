@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -25,7 +24,7 @@ from ..claims.claim import Claim
 from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, Dahl
 from ..search.stroke_motion import Strokes
-from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
+from ._hypotheses import NotNegative, Positive, PositiveOrNone, Whole, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, leave_open, refute, simulate_cycle
 from .bounded_compensation import bounded_compensation
 
@@ -115,24 +114,16 @@ class Trembling(AbstractMotion):
         return first + self.friction.leg(there, -self.back)[1]
 
 
-@require_hypotheses(
-    coulomb_level=POSITIVE,
-    compensator_level=POSITIVE,
-    compensator_stiffness=POSITIVE,
-    sample_time=POSITIVE,
-    presliding_stiffness=POSITIVE.or_none(),
-    viscous_damping=NOT_NEGATIVE,
-    late=WHOLE,
-)
+@require_hypotheses
 def sampled_compensation(
     *,
-    coulomb_level: Any,
-    compensator_level: Any,
-    compensator_stiffness: Any,
-    sample_time: Any,
-    presliding_stiffness: Any = None,
-    viscous_damping: Any = 0,
-    late: int = 0,
+    coulomb_level: Positive,
+    compensator_level: Positive,
+    compensator_stiffness: Positive,
+    sample_time: Positive,
+    presliding_stiffness: PositiveOrNone = None,
+    viscous_damping: NotNegative = 0,
+    late: Whole = 0,
 ) -> Claim:
     """Is friction passive together with a Dahl compensator in a computer?
 
@@ -145,7 +136,6 @@ def sampled_compensation(
     returns: for ideal friction proved if and only if f_D <= f_C. For Dahl friction refuted, for all
         numbers, by a motion that trembles once a sample; unknown where this motion would need more
         than `LONGEST` samples to release the energy that its start takes
-    raises ModelError: an argument outside of its hypothesis
     """
     if presliding_stiffness is None:
         return bounded_compensation(coulomb_level=coulomb_level, bound=compensator_level)

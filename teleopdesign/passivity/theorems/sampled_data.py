@@ -33,13 +33,13 @@ from ..linear.impedance import Impedance, decimal, exact, impedance, readable
 from ..linear.positive_real import NO_WAVE, damping_excess, is_positive_real
 from ..search.growing_wave import growing_wave
 from ..search.sampled_wave import Z, sampled_wave
-from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, REAL, require_hypotheses
+from ._hypotheses import Free, NotNegative, Positive, Real, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, refute
 
 
-@require_hypotheses(controller=FREE, damping=NOT_NEGATIVE, sample_time=POSITIVE, stiffness=REAL)
+@require_hypotheses
 def sampled_passivity(
-    controller: Any, *, damping: Any, sample_time: Any, stiffness: Any = 0
+    controller: Free, *, damping: NotNegative, sample_time: Positive, stiffness: Real = 0
 ) -> Claim:
     """Is the body with this sampled controller passive at the hand?
 
@@ -94,11 +94,13 @@ def required_damping(controller: Any, *, sample_time: Any, stiffness: Any = 0) -
     return max(-float(late) * float(damping_excess(operator)), 0.0)
 
 
-@require_hypotheses(
-    coupling=FREE, master_damping=NOT_NEGATIVE, slave_damping=NOT_NEGATIVE, sample_time=POSITIVE
-)
+@require_hypotheses
 def sampled_coupling(
-    coupling: Any, *, master_damping: Any, slave_damping: Any, sample_time: Any
+    coupling: Free,
+    *,
+    master_damping: NotNegative,
+    slave_damping: NotNegative,
+    sample_time: Positive,
 ) -> Claim:
     """Is a teleoperator passive whose equal and opposite forces -H(z) (x_m - x_s) are sampled?
 
