@@ -32,17 +32,17 @@ if TYPE_CHECKING:
     from .diagram_claims import DiagramClaims as DiagramClaims
     from .diagram_claims import Search as Search
     from .diagram_claims import diagram_claims as diagram_claims
-    from .intervals.interval_claim import IntervalClaim as IntervalClaim
+    from .intervals.box import IntervalClaim as IntervalClaim
     from .intervals.over_box import claim_over_intervals as claim_over_intervals
+    from .linear.excess import Excess as Excess
+    from .linear.excess import damping_excess as damping_excess
+    from .linear.excess import mobility_excess as mobility_excess
     from .linear.impedance import Impedance as Impedance
     from .linear.impedance import impedance as impedance
+    from .linear.judge import positive_real as positive_real
     from .linear.kyp import Kyp as Kyp
     from .linear.kyp import kyp as kyp
     from .linear.kyp import storage_function as storage_function
-    from .linear.positive_real import Excess as Excess
-    from .linear.positive_real import damping_excess as damping_excess
-    from .linear.positive_real import mobility_excess as mobility_excess
-    from .linear.positive_real import positive_real as positive_real
     from .linear_diagrams import hand_port as hand_port
     from .margin_map import MarginMap as MarginMap
     from .margin_map import margin_map as margin_map

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from ..base.errors import ModelError
 from ..base.frozen import ByValue
 from .claims.claim import Evidence
-from .rate_independent import Coulomb, Dahl, Element, compliance
+from .rate_independent import AbstractElement, Coulomb, Dahl, compliance
 
 Array = NDArray[np.float64]
 #: growth of the storage per travel, as a share of the compensator's level, that counts as none
@@ -92,7 +92,7 @@ class AvailableStorage(ByValue):
 
 def available_storage(
     compensator: Dahl,
-    friction: Sequence[Element],
+    friction: Sequence[AbstractElement],
     *,
     points: int = 61,
     moves: int | None = None,
@@ -108,7 +108,10 @@ def available_storage(
     raises ModelError: more than three forces with a state, lengths too far apart for one grid,
         fewer than 3 points or 1 move, or a negative load
     """
-    stateful: list[Element] = [compensator, *(e for e in friction if not isinstance(e, Coulomb))]
+    stateful: list[AbstractElement] = [
+        compensator,
+        *(e for e in friction if not isinstance(e, Coulomb)),
+    ]
     if points < 3 or (moves is not None and moves < 1) or load_coefficient < 0:
         raise ModelError(
             f"available_storage: expected 3 points, 1 move and a load of 0 at least, found "
@@ -116,7 +119,8 @@ def available_storage(
         )
     if len(stateful) > 3:
         raise ModelError(f"available_storage: at most 3 forces with a state, found {len(stateful)}")
-    lengths = [_length(e) for e in stateful]
+    # travel over which the force of an element changes by about its level, m
+    lengths = [e.level * compliance(e) for e in stateful]
     # two cells of the stiffest force's grid: shorter moves would only be blurred by interpolation
     travel = 4 * min(lengths) / (points - 1)
     moves = moves or int(24 * max(lengths) / travel) + 10 * points
@@ -134,8 +138,8 @@ def available_storage(
 
 
 def _iterate(
-    stateful: Sequence[Element],
-    friction: Sequence[Element],
+    stateful: Sequence[AbstractElement],
+    friction: Sequence[AbstractElement],
     points: int,
     travel: float,
     moves: int,
@@ -167,12 +171,7 @@ def _check_work(moves: int, points: int, forces: int, *, ratio: float) -> None:
         )
 
 
-def _length(element: Element) -> float:
-    """Travel over which the force of an element changes by about its level, m."""
-    return element.level * compliance(element)
-
-
-def _stored_energy(stateful: Sequence[Element], points: int) -> Array:
+def _stored_energy(stateful: Sequence[AbstractElement], points: int) -> Array:
     """Energy in the springs of friction less that in the compensator's, at each node, J."""
     total: Array = np.zeros((1,) * len(stateful))
     for axis, element in enumerate(stateful):
@@ -184,8 +183,8 @@ def _stored_energy(stateful: Sequence[Element], points: int) -> Array:
 
 
 def _move(
-    stateful: Sequence[Element],
-    friction: Sequence[Element],
+    stateful: Sequence[AbstractElement],
+    friction: Sequence[AbstractElement],
     travel: float,
     *,
     points: int,
@@ -235,7 +234,7 @@ _REFINED = 3
 _ROUNDING = 1e-9
 
 
-def repeated_force(element: Element, stroke: float) -> float:
+def repeated_force(element: AbstractElement, stroke: float) -> float:
     """Force f (N) at the ends of a stroke (m) back and forth that repeats: from -f to f."""
     from scipy.optimize import brentq
 
@@ -247,13 +246,13 @@ def repeated_force(element: Element, stroke: float) -> float:
     return float(brentq(beyond, 0.0, element.level, xtol=1e-15 * element.level, rtol=1e-14))
 
 
-def loss_per_stroke(element: Element, stroke: float) -> float:
+def loss_per_stroke(element: AbstractElement, stroke: float) -> float:
     """Energy (J) that an element takes in each stroke (m) back and forth, after the transient."""
     return element.leg(-repeated_force(element, stroke), stroke)[1]
 
 
 def most_released(
-    compensator: Dahl, friction: Sequence[Element], load_coefficient: float = 0.0
+    compensator: Dahl, friction: Sequence[AbstractElement], load_coefficient: float = 0.0
 ) -> tuple[float, float]:
     """Most energy per travel that a round trip releases forever, and its stroke.
 
@@ -291,7 +290,7 @@ def most_released(
     return (released if released > _ROUNDING * gives else 0.0), stroke
 
 
-def _integral_of_size(element: Element, stroke: float) -> float:
+def _integral_of_size(element: AbstractElement, stroke: float) -> float:
     """Integral (N m) of the size of a force over one stroke (m) of a round trip that repeats."""
     from scipy.optimize import brentq
 

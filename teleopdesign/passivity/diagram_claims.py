@@ -20,8 +20,7 @@ from ..base.shown import Shown
 from ..blocks import Body, Value
 from ..controllers import Controller, Stage
 from ..diagrams import Control, Diagram, Moving
-from .claims.claim import Claim, Proof, Refutation, Unknown
-from .device_claims import device_claims
+from .claims.claim import Claim, Proof, Unknown
 from .identified import IdentifiedDevice, identify_device, restate_for_device
 from .linear_diagrams import WHOLE, linear_claims
 from .ports import (
@@ -34,7 +33,7 @@ from .ports import (
     without_friction,
     without_holders,
 )
-from .search.by_simulation import Computer, SimulatedMotion, search_counterexample
+from .search.by_simulation import Computer, search_counterexample
 from .theorems import Question, TopicClaim, settle
 from .theorems.wave_channel import wave_claim
 
@@ -98,7 +97,7 @@ def diagram_claims(
         pairs = friction_pairs(alone)
         for pair in pairs:
             topic = f"friction of {pair.body.name}"
-            claims += [replace(s, topic=topic) for s in device_claims(pair.device)]
+            claims += [replace(s, topic=topic) for s in settle(Question(pair.device))]
             claims += pair_claims(pair)
         if (composed := composed_claim(alone, all_ports, pairs)) is not None:
             claims.append(composed)
@@ -204,10 +203,7 @@ def _search_claim(
         )
     except ModelError as problem:  # what this simulation does not take
         return TopicClaim(topic, Claim(statement, Unknown(str(problem))))
-    verdict = claim.verdict
-    if isinstance(verdict, Refutation) and isinstance(verdict.record, SimulatedMotion):
-        return TopicClaim(topic, claim, verdict.replayed, verdict.record)
-    return TopicClaim(topic, claim)
+    return TopicClaim.searched(topic, claim)
 
 
 @dataclass(frozen=True)
@@ -271,7 +267,11 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
         if len(along) > 1 or not all(_acts_alone(c, part, diagram) for c in along):
             continue
         try:
-            device = identify_device(_exact(part.body))
+            # exact values have no standard errors
+            values = {
+                n: replace(v, fixed=True, stderr=0.0) for n, v in part.body.parameters.items()
+            }
+            device = identify_device(part.body.with_values(dict[str, float | Value](values)))
         except ModelError:
             continue
         pairs.append(FrictionPair(part, along[0] if along else None, device))
@@ -284,12 +284,6 @@ def _acts_alone(control: Control, part: Moving, diagram: Diagram) -> bool:
         return False
     acts = not any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
     return acts and drives_alone(diagram, control.output, part)
-
-
-def _exact(body: Body) -> Body:
-    """The body with its values made exact: no standard errors."""
-    values = {n: replace(v, fixed=True, stderr=0.0) for n, v in body.parameters.items()}
-    return body.with_values(dict[str, float | Value](values))
 
 
 def pair_claims(pair: FrictionPair, *, simulated: bool = True) -> list[TopicClaim]:

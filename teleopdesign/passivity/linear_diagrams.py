@@ -21,8 +21,7 @@ from .claims.claim import Claim, Unknown, use_units_of
 from .declarations import falsely_linear
 from .linear.family import Family, family_at
 from .linear.impedance import Impedance, impedance
-from .linear.judge import passive_claim, stable_claim
-from .linear.positive_real import NEARBY
+from .linear.judge import NEARBY, passive_claim, stable_claim
 from .ports import Port, nonlinear_parts
 from .search.growing_wave import GrowingWave, wave_of
 from .theorems import TopicClaim
@@ -57,7 +56,9 @@ def _judge(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
     if any(one.claim.status == "refuted" for one in claims):
         for other in _nearby(diagram):
             claims = _refuted_there_too(claims, other, all_ports, judges)
-    axis = _axis(diagram, all_ports)
+    motions = {motion.removesuffix("_tip") for port in all_ports for motion in port.weights}
+    axes = {getattr(b.body, "axis", "") for b in diagram.bodies if b.motion in motions}
+    axis = axes.pop() if len(axes) == 1 else "prismatic"  # which all bodies at the ports share
     return [replace(one, claim=use_units_of(axis, one.claim)) for one in claims]
 
 
@@ -111,13 +112,6 @@ def _nearby(diagram: Diagram) -> list[Diagram]:
         for bit in range(2)
         for side in (1, -1)
     ]
-
-
-def _axis(diagram: Diagram, all_ports: Sequence[Port]) -> str:
-    """The axis that all bodies at the ports share; "prismatic" where they differ."""
-    motions = {motion.removesuffix("_tip") for port in all_ports for motion in port.weights}
-    axes = {getattr(b.body, "axis", "") for b in diagram.bodies if b.motion in motions}
-    return axes.pop() if len(axes) == 1 else "prismatic"
 
 
 def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple[str, ...]]:

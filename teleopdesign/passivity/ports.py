@@ -20,7 +20,7 @@ from sympy.polys.matrices.exceptions import DMNonInvertibleMatrixError
 from ..base.errors import ModelError
 from ..blocks import Body
 from ..controllers import Controller, make_exact
-from ..diagrams import Attached, Diagram, Kinematics, Linked, Moving, Part, position_symbol
+from ..diagrams import Attached, Diagram, Linked, Moving, position_symbol
 from ..effects import is_linear
 from ..realise.lti import S, linear_blocks
 from ..realise.simulated import without_absent
@@ -57,12 +57,12 @@ class Port:
         return first if not others and weight == 1 else None
 
     def __str__(self) -> str:
-        parts = [m if w == 1 else f"{_weight_text(w)} {m}" for m, w in self.weights.items()]
+        factors = {
+            m: f"({w}) " if isinstance(w, sp.Expr) else "" if w == 1 else f"{w:.4g} "
+            for m, w in self.weights.items()
+        }
+        parts = [f"{factor}{m}" for m, factor in factors.items()]
         return f"({self.force}, {' + '.join(parts).replace('+ -', '- ')})"
-
-
-def _weight_text(weight: float | sp.Expr) -> str:
-    return f"({weight})" if isinstance(weight, sp.Expr) else f"{weight:.4g}"
 
 
 def drop_absent_effects(diagram: Diagram) -> Diagram:
@@ -92,20 +92,12 @@ def ports(diagram: Diagram) -> tuple[Port, ...]:
     for force in dict.fromkeys(b.driver for b in moving if b.driver in diagram.outside):
         shares = shares_of(diagram, force)
         loads = {b.motion: total_share(b.loads, shares) for b in moving}
-        if weights := {m: _plain_number(w) for m, w in loads.items() if w != 0}:
+        kept = {m: w for m, w in loads.items() if w != 0}
+        if weights := {m: w if w.free_symbols else float(w) for m, w in kept.items()}:
             at_forces.append(Port(force, weights))
     if not at_forces:
         raise ModelError(f"{diagram.name}: no force from outside drives a body: it has no port")
     return tuple(at_forces)
-
-
-def _is_fixed(part: Kinematics) -> bool:
-    """Whether a position is a weighted sum of others, so that the Jacobian does not change."""
-    return is_linear([sp.sympify(part.expression)], [position_symbol(n) for n in part.inputs])
-
-
-def _plain_number(weight: sp.Expr) -> float | sp.Expr:
-    return weight if weight.free_symbols else float(weight)
 
 
 def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
@@ -118,7 +110,12 @@ def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
         if form is not None and form.has(speed):
             names.append(part.name)
     names += falsely_linear(diagram)
-    names += [k.name for k in diagram.kinematics if not _is_fixed(k)]
+    # a position that is a weighted sum of others has a Jacobian that does not change
+    names += [
+        k.name
+        for k in diagram.kinematics
+        if not is_linear([sp.sympify(k.expression)], [position_symbol(n) for n in k.inputs])
+    ]
     return (*names, *(j.name for j in diagram.junctions if j.arms))
 
 
@@ -198,12 +195,9 @@ def drives_alone(diagram: Diagram, signal: str, body: Moving) -> bool:
     forces |= {name: _weight(w) for name, w in body.loads.items()}
     forces[body.command] += 1
     return total_share(forces, shares) == 1 and not any(
-        part is not body and _takes(part, shares) for part in (*diagram.blocks, *diagram.kinematics)
+        part is not body and any(name in shares for name in part.inputs)
+        for part in (*diagram.blocks, *diagram.kinematics)
     )
-
-
-def _takes(part: Part, shares: Shares) -> bool:
-    return any(name in shares for name in part.inputs)
 
 
 def _weight(weight: sp.Expr | float) -> sp.Expr:

@@ -259,13 +259,8 @@ def use_units_of(axis: str, claim: Claim) -> Claim:
     if axis != "revolute":
         return claim
     verdict: Any = claim.verdict
-    texts: dict[type, tuple[str, ...]] = {
-        Proof: ("method",),
-        Refutation: ("method",),
-        Evidence: ("searched",),
-        Unknown: ("why",),
-    }
-    changed = {name: use_rotary_units(getattr(verdict, name)) for name in texts[type(verdict)]}
+    texts = (n for n in ("method", "searched", "why") if hasattr(verdict, n))
+    changed = {name: use_rotary_units(getattr(verdict, name)) for name in texts}
     if isinstance(verdict, Proof | Evidence):
         first, _, rest = verdict.unit.partition(" of ")
         unit = _ROTARY.get(first, first)

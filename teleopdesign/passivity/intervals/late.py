@@ -35,21 +35,20 @@ from ...derive.effort import try_within_effort
 from ...derive.polynomials import is_hurwitz
 from ...frequency.late_zeros import Terms, count_growing, exact_terms, terms_of
 from ...realise.lti import S
-from .box import ValueBox
-from .interval_claim import Parts, Status, parts_of
+from .box import IntervalClaim, Status, ValueBox
 from .late_cells import LateSum, is_zero_free
-from .worst import search_worst
+from .worst import judged, search_worst
 
 _STATEMENT = "every pole has a negative real part"
 
 
 def judge_late(
     p: Any, times: Mapping[sp.Symbol, sp.Expr], box: ValueBox, points: int, seed: int
-) -> Parts:
+) -> IntervalClaim:
     """Judge whether all zeros of f have a negative real part, over a box.
 
     p: f, a polynomial in s, the values of the box and symbols of e^(-s T);  times: of these T
-    points, seed: of `search_worst`;  returns: fields of an `IntervalClaim`
+    points, seed: of `search_worst`;  returns: the claim
     """
     symbols = p.ring.symbols[1 : 1 + len(box.names)]
 
@@ -67,12 +66,12 @@ def judge_late(
         radius = holds_root(exact_terms(p, times, there), root) if root.real > 0 else None
         if radius is not None and root.real > radius:
             how = f"a pole at {root:.4g} 1/s, within {radius:.1g} 1/s: by Rouche's theorem"
-            return parts_of(_STATEMENT, "refuted", worst, box, "1/s", how)
+            return judged(_STATEMENT, "refuted", worst, box, "1/s", how)
         how = (
             "at the worst point of the search a pole is beyond the axis, or too near to it, and "
             "not shown"
         )
-        return parts_of(_STATEMENT, "unknown", worst, box, "1/s", how)
+        return judged(_STATEMENT, "unknown", worst, box, "1/s", how)
     cells = None
     if _starts_stable(p, times, box):
         cells = try_within_effort(lambda: is_zero_free(LateSum.of(p, times, box)), None)
@@ -84,7 +83,7 @@ def judge_late(
             "floats with all rounding bounded, without a certificate"
         )
     bound = {"proved_margin": 0.0} if cells is not None else {}
-    return parts_of(_STATEMENT, status, worst, box, "1/s", how, **bound)
+    return judged(_STATEMENT, status, worst, box, "1/s", how, **bound)
 
 
 def _starts_stable(p: Any, times: Mapping[sp.Symbol, sp.Expr], box: ValueBox) -> bool:

@@ -8,58 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from ...derive.polynomials import X, as_poly, roots_of, where_negative
-from ..linear.conditions import hermitian_minors
+from ...derive.polynomials import roots_of
+from ..linear.conditions import where_it_fails
 from ..linear.family import Family
 from ..linear.gaussian import ZERO, add, multiply, value_at
 from ..linear.matrices import close, dampers
-from ..linear.sweep import passive_margin
+from ..linear.sweep import passive_margin, zeros_and_poles
 from .growing_wave import GrowingWave, growing_wave, halvings, wave_of
 
+#: most points with a termination that are tested for a motion, a millisecond each
+_MOST = 40
 #: powers of 1/2 by which points approach the axis or a pole, or (reversed) go far out
 _CLOSER = tuple(range(1, 34, 2))
-#: places across a resonance, in half widths from its frequency: the real part of an entry changes
-#: its sign within the first half width
-_ACROSS = (-30.0, -10.0, -3.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 3.0, 10.0, 30.0)
-
-
-def zeros_and_poles(family: Family) -> tuple[np.ndarray, np.ndarray]:
-    """Zeros and poles of the parts of all entries, one part for each dead time; without values."""
-    above, below = [np.zeros(0)], [np.zeros(0)]
-    whole = _parts(family.d)
-    for row in family.n:
-        for entry in row:
-            for p in _parts(entry):
-                for q in whole:
-                    top, bottom = p.cancel(q)
-                    above.append(roots_of(top))
-                    below.append(roots_of(bottom))
-    return np.concatenate(above), np.concatenate(below)
-
-
-def _parts(p: Any) -> list[Any]:
-    """Coefficients of the powers of dead times, polynomials in s alone."""
-    made: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-    for k, c in p.items():
-        made.setdefault(k[1:], {})[(k[0], *(0 for _ in k[1:]))] = c
-    return [p.ring(part) for part in made.values()]
-
-
-def resonances(family: Family) -> np.ndarray:
-    """Frequencies across the width of each resonance, Hz, (n,): a grid alone may miss one.
-
-    Poles on the axis have no width and are left out.
-    """
-    _, poles = zeros_and_poles(family)
-    poles = poles[poles.real < -1e-12 * np.abs(poles)]
-    across = poles.imag[:, None] + poles.real[:, None] * np.array(_ACROSS)
-    f = across.ravel() / (2 * np.pi)
-    return np.asarray(f[(f > 0) & np.isfinite(f)])
 
 
 def near_poles(family: Family) -> np.ndarray:
@@ -90,18 +54,16 @@ def near_axis(frequencies: Sequence[float], closer: Sequence[int]) -> np.ndarray
     return np.asarray((w[:, None] * (2.0 ** -np.array(closer, dtype=float) + 1j)).ravel())
 
 
-def candidates(
-    values: Sequence[np.ndarray], points: np.ndarray
-) -> list[tuple[complex, complex, bool]]:
+def candidates(family: Family, points: np.ndarray) -> list[tuple[complex, complex, bool]]:
     """Points at which two passive terminations seem to make a two-port grow, the best one first.
 
     At such a point the near port with its termination -z_in(s) would grow, and -z_in(s) is a value
     that a passive termination can have. Numerical.
 
-    values: z11, z12, z21, z22 at each point, each (n,);  points: s, 1/s, (n,)
-    returns: (s, value of the far termination, whether the far port is port 1)
+    family: of two ports;  points: s, 1/s, (n,)
+    returns: (s, value of the far termination, whether the far port is port 1), of the best points
     """
-    z11, z12, z21, z22 = values
+    z11, z12, z21, z22 = family.at(points).reshape(-1, 4).T
     with np.errstate(all="ignore"):
         loop = z12 * z21
     scored = [
@@ -109,7 +71,7 @@ def candidates(
         *_score_points(z22, loop, z11, points, True),
     ]
     scored.sort(key=lambda one: -one[0])
-    return [one[1:] for one in scored]
+    return [one[1:] for one in scored[:_MOST]]
 
 
 def _score_points(
@@ -169,8 +131,9 @@ def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWav
         return growing_wave(family.impedance)
     parts = [near_poles(family), near_axis(frequencies, range(33))]
     if not family.times:
+        places = where_it_fails(family, "passive")
         parts += [
-            near_axis(_exact_frequencies(family), range(33)),
+            near_axis([float(x) ** 0.5 / (2 * np.pi) for x in places], range(33)),
             _modes_between_dampers(family),
         ]
     points = np.concatenate(parts)
@@ -207,13 +170,6 @@ def wave_at(z: sp.ImmutableMatrix, frequency: float) -> GrowingWave | None:
         if wave is not None and wave.energy > 0:
             return wave
     return None
-
-
-def _exact_frequencies(family: Family) -> list[float]:
-    """Frequencies, Hz, at which Z + Z^H is not positive on the axis, from exact polynomials."""
-    minors = hermitian_minors(family.n, family.d)
-    places = (x for p in minors for x in where_negative(as_poly(p, X)))
-    return [float(x) ** 0.5 / (2 * np.pi) for x in places]
 
 
 def _modes_between_dampers(family: Family) -> np.ndarray:

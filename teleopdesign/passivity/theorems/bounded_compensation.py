@@ -78,7 +78,9 @@ def proof_of_level(
 
 def _claims(question: Question) -> list[TopicClaim]:
     device, bound = question.device, question.law.bound
-    assert bound is not None
+    # for friction that deflects before it slides, a bound of the force alone is not sufficient
+    if bound is None or device.presliding is not None:
+        return []
     acting, time = device.acting_force(bound), question.time_of_bound
     claims = [TopicClaim("any law within the level", _compare_level(device, acting), time=time)]
     if question.estimates:
@@ -109,15 +111,13 @@ def _compare_at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
 
 def _covers(question: Question) -> Sequence[str]:
     """Effects of the actuation, where the bound of the acting force is known."""
-    bound = question.law.bound
-    assert bound is not None
-    return () if math.isinf(question.device.acting_force(bound)) else question.device.actuation
+    device, bound = question.device, question.law.bound
+    is_known = bound is not None and math.isfinite(device.acting_force(bound))
+    return device.actuation if is_known else ()
 
 
 THEOREM = Theorem(
     mathematics=(bounded_compensation,),
-    # for friction that deflects before it slides, a bound of the force alone is not sufficient
-    applies=lambda q: q.device.presliding is None and q.law.bound is not None,
     claims=_claims,
     order=10,
     covers=_covers,

@@ -9,13 +9,22 @@ link; and no release of energy in slow free motion, where friction f_2 alone hol
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ..claims.claim import Claim, Evidence, Proof, Refutation
 from ..linear.impedance import decimal
-from ..rate_independent import Coulomb, Cycle, Dahl, Element, Spring, lost_share, symmetric_cycle
+from ..rate_independent import (
+    AbstractElement,
+    Coulomb,
+    Cycle,
+    Dahl,
+    Spring,
+    lost_share,
+    strongest,
+    symmetric_cycle,
+)
 from ._certificates import certificate
 from ._hypotheses import Free, NotNegative, Positive, Whole, require_hypotheses
 from ._theorem import Theorem
@@ -99,7 +108,7 @@ def free_motion(
     f_1, f_2, f_d = map(float, levels)
     k, sigma = float(transmission_stiffness), float(compensator_stiffness)
     helps = Dahl(f_d, sigma)
-    against: list[Element] = [Coulomb(f_1), Spring(f_2, k)]
+    against: list[AbstractElement] = [Coulomb(f_1), Spring(f_2, k)]
     texts = [decimal(x) for x in (*levels, transmission_stiffness, compensator_stiffness)]
     statement = (
         f"slow free motion of a joint (motor {texts[0]} N, link {texts[1]} N behind {texts[3]} "
@@ -112,9 +121,9 @@ def free_motion(
         compensator_level=f_d,
         compensator_stiffness=sigma,
     )
-    cycle = (
-        _worst_cycle(helps, against) if margin < 0 else _search_cycle(helps, against, rng, paths)
-    )
+    cycle = _worst_cycle(helps, against) if margin < 0 else None
+    if margin >= 0:
+        cycle = strongest(_paths(helps, against, rng, paths))
     if cycle is not None and cycle.energy > 0:
         return Claim(statement, Refutation("a closed path of the motor", cycle))
     searched = (
@@ -146,7 +155,7 @@ def free_motion_margin(
     return min(motor_level + link_level - compensator_level, motor_level - stuck)
 
 
-def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:
+def _worst_cycle(helps: Dahl, against: Sequence[AbstractElement]) -> Cycle | None:
     """The symmetric cycle that releases most energy per travel, of a grid of amplitudes."""
     stuck = against[1]
     elastic = stuck.level / stuck.stiffness if isinstance(stuck, Spring) else 1.0
@@ -158,36 +167,20 @@ def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:
     return max(cycles, key=lambda c: c.energy / c.turning_points[0])
 
 
-def _search_cycle(
-    helps: Dahl, against: Sequence[Element], rng: np.random.Generator, paths: int
-) -> Cycle | None:
-    """The closed path that releases most, of cycles with steps and random paths; None if none."""
+def _paths(
+    helps: Dahl, against: Sequence[AbstractElement], rng: np.random.Generator, number: int
+) -> Iterator[Cycle]:
+    """Cycles with a step back and forth at each reversal, and so many random closed paths."""
     lengths = [helps.level / helps.stiffness]
     lengths += [e.level / e.stiffness for e in against if isinstance(e, Dahl | Spring)]
-    best = _add_steps(helps, against, lengths)
-    for _ in range(paths):
-        scale = np.exp(rng.uniform(np.log(0.1 * min(lengths)), np.log(10 * max(lengths))))
-        points = scale * rng.standard_normal(rng.integers(2, 11))
-        cycle = Cycle(helps, tuple(against), tuple(float(x) for x in points), rounds=30)
-        if cycle.energy > (best.energy if best else 0.0):
-            best = cycle
-    return best
-
-
-def _add_steps(helps: Dahl, against: Sequence[Element], lengths: Sequence[float]) -> Cycle | None:
-    """Of cycles with a step back and forth at each reversal, the one that releases most.
-
-    lengths: of the bristle and of the spring beside it, m
-    returns: None where none of them releases energy
-    """
-    best: Cycle | None = None
     for a in np.geomspace(0.3 * min(lengths), 3.0 * max(lengths), 24):
         for step in a * np.geomspace(0.003, 0.5, 8):
             points = (a, a - step, a, -a, step - a, -a)
-            cycle = Cycle(helps, tuple(against), tuple(map(float, points)), rounds=30)
-            if cycle.energy > (best.energy if best else 0.0):
-                best = cycle
-    return best
+            yield Cycle(helps, tuple(against), tuple(map(float, points)), rounds=30)
+    for _ in range(number):
+        scale = np.exp(rng.uniform(np.log(0.1 * min(lengths)), np.log(10 * max(lengths))))
+        points = scale * rng.standard_normal(rng.integers(2, 11))
+        yield Cycle(helps, tuple(against), tuple(map(float, points)), rounds=30)
 
 
 THEOREM = Theorem(mathematics=(any_environment, free_motion), order=76)

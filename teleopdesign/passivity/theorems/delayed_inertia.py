@@ -24,11 +24,11 @@ from ...base.errors import ModelError
 from ...realise.lti import S
 from ..claims.claim import Claim, Evidence, Proof, Unknown
 from ..linear.impedance import decimal
-from ..linear.positive_real import positive_real
-from ..search.growing_wave import first_wave, rates_at
+from ..linear.judge import positive_real
+from ..search.growing_wave import rates_at
 from ._certificates import certificate
 from ._hypotheses import NotNegative, one_of, require_hypotheses
-from ._theorem import Theorem, refute
+from ._theorem import Theorem, refute_by_wave
 
 Order = Literal[1, 2]
 #: longest delay, in time constants, for which the maximum of g is searched: 2.5 million samples
@@ -120,12 +120,7 @@ def cancelled_inertia(
     else:  # the phase of jw at the peaks; far enough up for a margin of 1e-3
         where = [(2 * np.pi * n + np.pi / 2 * (not t)) / float(tau) for n in 2 ** np.arange(0, 14)]
     points = (point for w in where for point in rates_at(Fraction(w), 30))
-    return refute(
-        statement,
-        first_wave(sp.ImmutableMatrix([[z]]), points),
-        lambda wave: f"a growing wave at {float(wave.frequency) / (2 * np.pi):.4g} Hz",
-        "the condition fails, but no wave was found",
-    )
+    return refute_by_wave(statement, z, points)
 
 
 def _maximum(delay: float, time_constant: float) -> tuple[float, float]:

@@ -20,7 +20,7 @@ import numpy as np
 
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
-from ..rate_independent import AbstractMotion
+from ..rate_independent import AbstractMotion, strongest
 from ._certificates import certificate
 from ._hypotheses import NotNegative, Positive, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, decide
@@ -45,16 +45,11 @@ class Flip(AbstractMotion):
 
     def replay(self) -> float:
         """Energy released in two samples, J, each with constant speed."""
-        edge, a = self.step / 2, self.distance
-        high, low = (self._spring_force(edge + side * a) for side in (1, -1))
+        k, step, a = self.stiffness, self.step, self.distance
+        positions = [step / 2 + side * a for side in (1, -1)]
+        high, low = (k * step * math.floor(x / step + 0.5) if step else k * x for x in positions)
         lost = 2 * (self.damping / self.sample_time * (2 * a) ** 2 + self.friction * 2 * a)
         return (high - low) * 2 * a - lost
-
-    def _spring_force(self, position: float) -> float:
-        """Force of the spring at a sample, N, from the rounded position."""
-        if self.step == 0:
-            return self.stiffness * position
-        return self.stiffness * self.step * math.floor(position / self.step + 0.5)
 
 
 @require_hypotheses
@@ -102,7 +97,7 @@ def _flip(values: list[float], scale: float) -> Flip | None:
     flips = [Flip(k, delta, late, b, left, float(a)) for a in scale * np.geomspace(1e-9, 1e9, 400)]
     giving = [f for f in flips if f.energy > 0]
     near = [f for f in giving if f.distance <= 1e3 * scale] or giving[:1]
-    return max(near, key=lambda f: f.energy, default=None)
+    return strongest(near)
 
 
 def stiffest_spring(
@@ -121,17 +116,13 @@ def stiffest_spring(
     return max(min(2 * damping / sample_time, by_steps), 0.0)
 
 
-def _applies(question: Question) -> bool:
-    """Whether the question is about a wall without damping and delay, on encoder steps."""
-    wall, computer = question.wall, question.computer
-    if wall is None or computer is None:
-        return False
-    return bool(computer.encoder_step) and not wall.damping and question.late == 0
-
-
 def _claims(question: Question) -> list[TopicClaim]:
+    """The claim about a wall without damping and delay, on encoder steps."""
     device, wall, computer = question.device, question.wall, question.computer
-    assert wall is not None and computer is not None
+    if wall is None or computer is None or question.late != 0:
+        return []
+    if wall.damping or not computer.encoder_step:
+        return []
     claim = quantised_spring(
         stiffness=wall.stiffness,
         damping=device.damping.low,
@@ -143,4 +134,4 @@ def _claims(question: Question) -> list[TopicClaim]:
     return [TopicClaim("virtual wall, encoder steps", claim, time="sampled")]
 
 
-THEOREM = Theorem(mathematics=(quantised_spring,), applies=_applies, claims=_claims, order=60)
+THEOREM = Theorem(mathematics=(quantised_spring,), claims=_claims, order=60)

@@ -27,7 +27,7 @@ from ...realise.lti import S, linear_blocks
 from ..claims.claim import Claim, Proof, Unknown
 from ..declarations import falsely_linear, is_shipped
 from ..linear.impedance import decimal, exact
-from ..linear.positive_real import positive_real
+from ..linear.judge import positive_real
 from ..linear.unseen import unseen_within
 from ..ports import drop_absent_effects, without_holders
 from ._certificates import certificate
