@@ -46,6 +46,9 @@ _BOTH_WAYS = 0.1
 _BY_SIZE = 0.8
 #: a force that depends on position counts only if it leaves less than this part of the squares
 _MOSTLY = 0.5
+#: coefficients of a cubic: one position as a function of another bends at both ends at most; and
+#: the part of the squares of a position that it leaves
+_POWERS, _OF_A_POSITION = 4, 0.01
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,25 @@ def motion_columns(position: Array, sample_time: float) -> tuple[Array, Array, A
 def explain_force(force: Array, position: Array, sample_time: float) -> FirstGuess:
     """Inertia, friction level and damping that explain a force (n,) along a position (n,)."""
     return explain_forces([(force, position)], sample_time)
+
+
+def follows(column: Array, position: Array, sample_time: float) -> bool:
+    """Whether a column (n,) follows a position as a second position behind a gear or spring does.
+
+    A cubic of the position then leaves next to nothing of it, in which no friction is certain: that
+    is part of a force. Along a motion one way everything that rises is a function of the position,
+    and nothing is said.
+    """
+    if _goes_one_way(motion_columns(position, sample_time)[2]):
+        return False
+    place = (position - position.mean()) / max(float(np.ptp(position)), np.finfo(float).tiny)
+    powers = np.vander(place, _POWERS)
+    rest = column - powers @ np.linalg.lstsq(powers, column, rcond=None)[0]
+    if np.var(rest) >= _OF_A_POSITION * np.var(column):
+        return False
+    guess = explain_force(rest, position, sample_time)
+    brakes = zip((guess.level, guess.damping), guess.errors[1:], strict=True)
+    return not any(abs(value) > _SURELY * error for value, error in brakes)
 
 
 def left_by_motion(force: Array, position: Array, sample_time: float) -> float:

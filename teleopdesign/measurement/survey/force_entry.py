@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ...base.errors import ExperimentError
 from ...base.toml import Table
 from ...base.units import is_unit, measures, unit_of
 from ..column_names import unit_in_name, why_no_unit, words_of
@@ -46,6 +47,8 @@ def _steps_of_driver(survey: Survey, name: str, unit: str) -> str:
 def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dict[str, Any]:
     """The channel table of a force: column, unit, and the motor constant of a current or the lever
     arm of a force beside an angle.
+
+    raises ExperimentError: a stated constant gives no force of this axis
     """
     axis = survey.axis
     # known as a force, a name may end with a unit of one letter: "F_cmd_N", "i_A"
@@ -85,6 +88,11 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
                 constant = stated[:2]
                 why = f"{constant[0]:g} {constant[1]}: a line of the log states {stated[2]!r}"
             survey.guesses[f"channels.{key}.torque_constant"] = why
+        elif not measures(constant[1].rpartition("/")[0], "force", axis):
+            raise ExperimentError(
+                f"--torque-constant: found {constant[1]!r} on a {axis} axis, expected "
+                f'"{unit_of("force", axis)}/{base}"'
+            )
         entry["torque_constant"] = {"value": constant[0], "unit": constant[1]}
         return entry
     if axis == "revolute" and (newton := _unit_at_lever(name, unit)):
