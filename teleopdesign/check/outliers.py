@@ -99,7 +99,7 @@ def check_jumps(signal: Signal) -> Iterator[Finding]:
         why = f"as far as it moves in {lost:.0f} samples: if samples are missing, give a `segment` "
         why += "column that changes there"
     time = signal.time(row)
-    found = signal.finding(
+    finding = signal.finding(
         "jumps",
         "warning",
         f" jumps {times}, most at {time:.6g} s (row {row + 1}), by {leap:.4g} {signal.unit}: "
@@ -107,7 +107,7 @@ def check_jumps(signal: Signal) -> Iterator[Finding]:
         {"count": float(len(events)), "time": time, "size": leap, "samples": lost},
         signal.around(row, np.array([row, row + 1]), name="before and after the jump"),
     )
-    yield replace(found, stops=wraps)
+    yield replace(finding, stops=wraps)
 
 
 def lone_samples(x: Array, step: float) -> tuple[NDArray[np.intp], Array]:

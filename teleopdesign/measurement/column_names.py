@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import re
 import unicodedata
-from collections.abc import Collection
 from functools import lru_cache
 
 from ..base.units import is_unit, measures, noun_of
@@ -123,12 +122,6 @@ DIFFERENCES = tuple(
     "error err fehler abweichung deviation erreur ecart errore 误差 誤差 偏差 오차 ошибка".split()
 )
 
-#: words of a length or a place along a line
-LENGTHS = frozenset(
-    "position pos x weg displacement displ disp stroke slider verschiebung deplacement".split()
-)
-#: parts that have a position, a speed and a force
-PARTS = frozenset("motor servo axis joint".split())
 #: units that are words as well: "x_in" is an input, "hand_ft" force and torque, "Arms" are A (rms)
 _ONLY_IN_BRACKETS = ("in", "ft", "arms")
 #: quotes at the end of a name, as dSPACE writes paths: `"Model Root"/"Plant"/"x [mm]"`
@@ -176,20 +169,6 @@ def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic"
             return unit
     whole = unit_of_text(name) if len(name) >= _WHOLE_NAME else None  # "counts", "volts"
     return whole if whole and (quantity is None or _suits(whole, quantity, axis)) else None
-
-
-def unit_in_log(name: str, names: Collection[str]) -> str | None:
-    """The unit at the end of a column's name among the names of its log.
-
-    One letter is a unit where the words before it name a length: "position_m" is in metres. Beside
-    "position_s" it is an index, as of a master.
-    """
-    unit = unit_in_name(name)
-    stem, _, letter = bare_column(name).rpartition("_")
-    if unit is not None or letter != "m" or not LENGTHS.intersection(words_of(stem)):
-        return unit
-    index = re.compile(re.escape(stem) + r"_[a-z]$", re.I)
-    return None if any(index.match(bare_column(n)) for n in names if n != name) else "m"
 
 
 def unfit_unit(name: str) -> str | None:
@@ -303,11 +282,6 @@ def likeness(name: str, quantity: str) -> float:
             if exact or ends or len(known) > 3 and word.startswith(known):
                 best = max(best, (1.0 if exact else 0.9) - 0.02 * min(rank, LAST_RANK))
     return best
-
-
-def names_part(name: str) -> bool:
-    """Whether a name tells a part of a device and no quantity of it: "motor", "Motor 2"."""
-    return bool(words_of(name)) and PARTS.issuperset(words_of(name))
 
 
 def is_another_quantity(name: str) -> bool:

@@ -19,7 +19,7 @@ FEWEST, MOST = 60, 12
 #: part by which the rate that a velocity tells may differ from the assumed one
 SAME = 0.1
 #: part by which a rate with fewer digits may be off: a derivative along rows tells it no better
-TOLD = 0.005
+ROUNDED = 0.005
 
 
 def rate_of_velocity(
@@ -44,8 +44,8 @@ def rate_of_velocity(
             best, pair = (factor * scale, agree), (place, speed)
     if not best[0] > 0 or abs(best[0] - 1.0) < SAME:
         return None
-    told = [float(f"{ASSUMED * best[0]:.{digits}g}") for digits in (1, 2, 3)]
-    rate = next((r for r in told if abs(r / (ASSUMED * best[0]) - 1.0) < TOLD), told[-1])
+    rates = [float(f"{ASSUMED * best[0]:.{digits}g}") for digits in (1, 2, 3)]
+    rate = next((r for r in rates if abs(r / (ASSUMED * best[0]) - 1.0) < ROUNDED), rates[-1])
     unit = ""
     if not all(units.get(n) for n in pair):
         if not all(likeness(n, q) > 0 for n, q in zip(pair, ("position", "velocity"), strict=True)):

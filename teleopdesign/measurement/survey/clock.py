@@ -13,7 +13,6 @@ from ..column_names import (
     bare_name,
     is_wanted,
     likeness,
-    unit_in_log,
     unit_in_name,
     unit_of_text,
     words_of,
@@ -33,7 +32,16 @@ from .candidate_clocks import (
     counts_rows,
     position_by_name,
 )
-from .content import SURE_NAME, Array, Choices, SurveyedColumn, is_unit_of, reasons, rises
+from .content import (
+    SURE_NAME,
+    Array,
+    Choices,
+    SurveyedColumn,
+    is_unit_of,
+    reasons,
+    rises,
+    unit_in_log,
+)
 from .remarks import sample_rate_in
 
 #: quantities whose units are not those of a time

@@ -6,16 +6,10 @@ import math
 from collections.abc import Mapping
 
 from ...base.units import si_factor
-from ..column_names import is_difference, is_wanted, likeness, names_part
+from ..column_names import is_difference, is_wanted, likeness
 from ..doors._log import join_names
-from ..first_guess import (
-    FirstGuess,
-    explain_force,
-    follows,
-    is_turned,
-    left_by_motion,
-)
-from .acting import current_that_acted, names_current, names_voltage
+from ..first_guess import FirstGuess, explain_force, is_turned, left_by_motion
+from .acting import current_that_acted, names_current, names_part, names_voltage
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
 from .balance import hand_by_balance, scale_by_balance
 from .content import (
@@ -31,7 +25,7 @@ from .content import (
     is_unit_of,
     sample_time_of,
 )
-from .copies import pulls_back
+from .copies import follows, pulls_back
 from .derivative import unwrap_column, wrap_of
 from .force_candidates import possible_forces
 from .force_entry import describe_force, force_to_si
