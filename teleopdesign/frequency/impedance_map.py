@@ -1,8 +1,13 @@
-"""An impedance over case, frequency and amplitude, and its deviation from a linear one."""
+"""An impedance over case, frequency and amplitude, and its deviation from a linear one.
+
+Zhat_M = Gamma^-1 (Z_M - C) holds for linear blocks; `quasi_linear_impedance` puts describing
+functions at the amplitude of the motion in place of nonlinear ones. The input of a controller that
+a force drives is reduced to its first harmonic. The simulation is compared with this approximation.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -13,6 +18,11 @@ from ..base.errors import ModelError
 from ..base.files import write_json, write_netcdf
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
+from ..base.units import unit_of
+from ..diagrams import Diagram
+from ..diagrams.units import first_axis
+from .quasi_linear import QuasiLinearForm
+from .response import cases_of
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -103,7 +113,8 @@ class ImpedanceMap(Shown, ByValue):
     def to_netcdf(self, path: str | Path) -> None:
         """Write all data with units to a netCDF file, the impedance as real and imaginary part."""
         z = self.data["impedance"]
-        parts = {f"impedance_{n}": p.assign_attrs(z.attrs) for n, p in _parts(z).items()}
+        both = {"real": z.real, "imaginary": z.imag}
+        parts = {f"impedance_{n}": p.assign_attrs(z.attrs) for n, p in both.items()}
         write_netcdf(path, self.data.drop_vars("impedance").assign(parts))
 
     def to_json(self, path: str | Path) -> None:
@@ -123,12 +134,107 @@ class ImpedanceMap(Shown, ByValue):
         write_json(path, {**written, "cases": cases})
 
 
-def _parts(z: xarray.DataArray) -> dict[str, xarray.DataArray]:
-    return {"real": z.real, "imaginary": z.imag}
-
-
 def _round_values(values: np.ndarray) -> list[object]:
     """Values with five digits, the same on every machine; None for a value that is no number."""
     numbers = [float(f"{x:.5g}") if np.isfinite(x) else None for x in values.reshape(-1)]
     entries: list[object] = np.array(numbers, dtype=object).reshape(values.shape).tolist()
     return entries
+
+
+Amplitude = float | Sequence[float] | np.ndarray | Callable[[np.ndarray], np.ndarray]
+
+
+def falling_profile(
+    amplitude: float, *, exponent: float = 0.8
+) -> Callable[[np.ndarray], np.ndarray]:
+    """The profile amplitude * (f / 1 Hz)^-exponent; 0.8 is that of figure 7 of the paper.
+
+    amplitude: at 1 Hz, m or rad;  returns: frequency (n,), Hz -> amplitude (n,), m or rad
+    """
+    return lambda frequency: amplitude * np.asarray(frequency, dtype=float) ** -exponent
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Points of a map: each amplitude with each frequency, or an amplitude for each frequency."""
+
+    frequency: np.ndarray
+    amplitude: np.ndarray
+    on_profile: bool
+
+    @staticmethod
+    def of(amplitude: Amplitude, frequency: float | Sequence[float] | np.ndarray) -> Grid:
+        """The grid for a user's numbers; raises ModelError: numbers that are not positive."""
+        f = _positive("frequency", frequency)
+        if callable(amplitude):
+            return Grid(f, _positive("amplitude", amplitude(f)), True)
+        return Grid(f, _positive("amplitude", amplitude), False)
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        return ("frequency",) if self.on_profile else ("frequency", "amplitude")
+
+    @property
+    def points(self) -> list[tuple[tuple[int, ...], float, float]]:
+        """Index, amplitude and frequency of each point."""
+        if self.on_profile:
+            both = zip(self.amplitude, self.frequency, strict=True)
+            return [((i,), float(a), float(f)) for i, (a, f) in enumerate(both)]
+        return [
+            ((i, j), float(a), float(f))
+            for i, f in enumerate(self.frequency)
+            for j, a in enumerate(self.amplitude)
+        ]
+
+    def label(
+        self, values: Mapping[str, tuple[np.ndarray, str]], *, cases: Sequence[str], length: str
+    ) -> xarray.Dataset:
+        """Values (cases, ...) with their units as a data set; length: unit of amplitude."""
+        import xarray
+
+        dims = ("case", *self.dims)
+        coordinates = {
+            "case": list(cases),
+            "frequency": ("frequency", self.frequency, {"units": "Hz"}),
+            "amplitude": (self.dims[-1], self.amplitude, {"units": length}),
+        }
+        data = {name: (dims, array, {"units": unit}) for name, (array, unit) in values.items()}
+        return xarray.Dataset(data, coordinates)
+
+
+def _positive(what: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
+    array = np.atleast_1d(np.asarray(values, dtype=float))
+    if array.ndim != 1 or not array.size or not (np.isfinite(array) & (array > 0)).all():
+        raise ModelError(f"{what}: made {values}, expected positive numbers")
+    return array
+
+
+def quasi_linear_impedance(
+    diagrams: Diagram | Mapping[str, Diagram],
+    *,
+    amplitude: Amplitude,
+    frequency: float | Sequence[float] | np.ndarray,
+    motion: str = "L",
+    force: str = "E",
+) -> ImpedanceMap:
+    """Impedance Zhat_M that a hand feels over frequency and amplitude, without simulation.
+
+    Arguments are those of `measured_impedance`, with a prescribed motion; controllers are
+    continuous.
+
+    raises ModelError: a block without laws or without describing function
+    """
+    cases = cases_of(diagrams)
+    grid = Grid.of(amplitude, frequency)
+    z = np.empty((len(cases), *(len(getattr(grid, n)) for n in grid.dims)), dtype=complex)
+    for i, diagram in enumerate(cases.values()):
+        form = QuasiLinearForm(diagram, motion, force, motion, motion)
+        places, sizes, frequencies = zip(*grid.points, strict=True)
+        made = form.values(np.array(sizes), np.array(frequencies))
+        for at, value in zip(places, made, strict=True):
+            z[(i, *at)] = value
+    axis = first_axis(next(iter(cases.values())))
+    values = {"impedance": (z, unit_of("stiffness", axis))}
+    data = grid.label(values, cases=list(cases), length=unit_of("position", axis))
+    data.attrs |= {"motion": motion, "force": force}
+    return ImpedanceMap(data)

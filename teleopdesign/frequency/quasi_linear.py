@@ -8,20 +8,18 @@ its first harmonic. This is the approximation with which the simulation is compa
 from __future__ import annotations
 
 import cmath
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..base.units import unit_of
 from ..blocks import Body
 from ..controllers import Controller
 from ..derive import block_symbol, transfer
 from ..derive.printing import dead_time_symbol, motion_controller_symbol
 from ..diagrams import Control, Diagram
-from ..diagrams.units import first_axis
 from ..realise.lti import S, linear_blocks, numerical
 from .describing_function import (
     LawExpressions,
@@ -29,44 +27,10 @@ from .describing_function import (
     describing_function,
     driven_gain,
 )
-from .grid import Amplitude, Grid, cases_of
-from .impedance_map import ImpedanceMap
 
 #: relative change at the end of the iteration for the phase of a controller's input; most
 #: iterations
 _CONVERGED, _MOST = 1e-9, 100
-
-
-def quasi_linear_impedance(
-    diagrams: Diagram | Mapping[str, Diagram],
-    *,
-    amplitude: Amplitude,
-    frequency: float | Sequence[float] | np.ndarray,
-    motion: str = "L",
-    force: str = "E",
-) -> ImpedanceMap:
-    """Impedance Zhat_M that a hand feels over frequency and amplitude, without simulation.
-
-    Arguments are those of `measured_impedance`, with a prescribed motion; controllers are
-    continuous.
-
-    raises ModelError: a block without laws or without describing function
-    """
-    cases = cases_of(diagrams)
-    grid = Grid.of(amplitude, frequency)
-    z = np.empty((len(cases), *(len(getattr(grid, n)) for n in grid.dims)), dtype=complex)
-    for i, diagram in enumerate(cases.values()):
-        form = _Form(diagram, motion, force, motion, motion)
-        places, sizes, frequencies = zip(*grid.points, strict=True)
-        for at, value in zip(
-            places, form.values(np.array(sizes), np.array(frequencies)), strict=True
-        ):
-            z[(i, *at)] = value
-    axis = first_axis(next(iter(cases.values())))
-    units = {"impedance": (z, unit_of("stiffness", axis))}
-    data = grid.label(units, cases=list(cases), length=unit_of("position", axis))
-    data.attrs |= {"motion": motion, "force": force}
-    return ImpedanceMap(data)
 
 
 def quasi_linear(
@@ -84,11 +48,11 @@ def quasi_linear(
     motion: the one along which nonlinear laws have their first harmonic, m or rad
     raises ModelError: a block without laws or without describing function
     """
-    form = _Form(diagram, motion, output, source, given)
+    form = QuasiLinearForm(diagram, motion, output, source, given)
     return form.values(np.full(len(frequency), amplitude), frequency)
 
 
-class _Form:
+class QuasiLinearForm:
     """A transfer function into which blocks are inserted, each at the amplitude of a motion."""
 
     def __init__(
