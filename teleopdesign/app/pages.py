@@ -46,14 +46,14 @@ def _name(rung: Rung) -> str:
     return "your model, re-estimated" if rung.added is None else f"+ {rung.added}"
 
 
-def _checked(bench: Workbench) -> str:
+def _name_of_error(bench: Workbench) -> str:
     """The name of the error on rows that were not fitted: of records, or of blocks in turn."""
     return "check error" if bench.search.whole.of("check") else "held-out error"
 
 
 def ladder(bench: Workbench) -> str:
     """The errors of every rung as a Markdown table, with the noise floor."""
-    lines = [f"| model | fit error | {_checked(bench)} |", "|:---|---:|---:|"]
+    lines = [f"| model | fit error | {_name_of_error(bench)} |", "|:---|---:|---:|"]
     for rung in bench.rungs:
         fit, check = (_percent(e) for e in (rung.fit.fit_error, rung.fit.check_error))
         lines.append(f"| {_name(rung)} | {fit} | {check} |")
@@ -64,7 +64,7 @@ def ladder(bench: Workbench) -> str:
 def candidate_options(bench: Workbench) -> dict[str, tuple[str, str]]:
     """Candidates, best first: name on the page -> (effect, place)."""
     return {
-        f"{r.candidate}: {_checked(bench)} {_percent(r.fit.check_error)}"
+        f"{r.candidate}: {_name_of_error(bench)} {_percent(r.fit.check_error)}"
         + (f" ({r.note})" if r.note else ""): r.candidate.key
         for r in bench.candidates
     }
@@ -101,7 +101,7 @@ def candidate_rows(bench: Workbench) -> list[dict[str, str]]:
             "effect": r.candidate.effect.name,
             "at": r.candidate.at,
             "fit error": _percent(r.fit.fit_error),
-            _checked(bench): _percent(r.fit.check_error),
+            _name_of_error(bench): _percent(r.fit.check_error),
             "supported": "yes" if r.candidate.key in supported else "no",
             "note": r.note,
         }
@@ -112,11 +112,12 @@ def candidate_rows(bench: Workbench) -> list[dict[str, str]]:
 def compare_rungs(bench: Workbench, one: int, other: int) -> str:
     """Errors and parameters of two rungs side by side, as a Markdown table."""
     first, second = bench.rungs[one].fit, bench.rungs[other].fit
+    name = _name_of_error(bench)
     lines = [
         f"| | {_name(bench.rungs[one])} | {_name(bench.rungs[other])} |",
         "|:---|---:|---:|",
         f"| fit error | {_percent(first.fit_error)} | {_percent(second.fit_error)} |",
-        f"| {_checked(bench)} | {_percent(first.check_error)} | {_percent(second.check_error)} |",
+        f"| {name} | {_percent(first.check_error)} | {_percent(second.check_error)} |",
     ]
     names = dict.fromkeys([*first.model.parameters, *second.model.parameters])
     for name in names:

@@ -111,7 +111,7 @@ def design(
         force_feedback=best.force_feedback,
         loop=best.loop,
         prediction=best.prediction,
-        expected=_expected(best, diagnosis, at, settings, reach),
+        expected=_error_to_expect(best, diagnosis, at, settings, reach),
         not_cancelled=not_cancelled(body, best.cancellation),
         impedance=felt_impedance(best.prediction.hybrid, motion, sampling_of(settings, reach)),
         residual=residual_friction(
@@ -128,7 +128,7 @@ def design(
     )
 
 
-def _expected(
+def _error_to_expect(
     best: Trial, diagnosis: Diagnosis, at: str, settings: Assumptions, reach: Reach
 ) -> ExpectedError:
     """The force error of what can be built with the recorded sensors."""

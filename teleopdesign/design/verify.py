@@ -133,10 +133,10 @@ def verify(
     if case not in cases:
         raise ModelError(f'verify: no case "{case}", has {", ".join(cases)}')
     motion = _longest_motion(experiment, plan.place)
-    counted = _counted(motion)
+    counted = _rows_that_count(motion)
     measured = _about_mean(motion.lowpassed(motion.interaction)[counted])
-    predicted = _along(cases[case], motion, plan.sampling)[:, counted]
-    without = _along(cases["none"], motion, plan.sampling, draws=1)[0, counted]
+    predicted = _force_along(cases[case], motion, plan.sampling)[:, counted]
+    without = _force_along(cases["none"], motion, plan.sampling, draws=1)[0, counted]
     sizes = np.std(predicted, axis=1)
     middle, half = float(np.mean(sizes)), 1.96 * float(np.std(sizes))
     rows = {
@@ -166,19 +166,19 @@ def _longest_motion(experiment: Experiment, place: str) -> Motion:
     return max(motions, key=lambda m: len(m.time))
 
 
-def _counted(motion: Motion) -> Array:
+def _rows_that_count(motion: Motion) -> Array:
     """Which of the simulated samples count, (n,)."""
     number = min(len(motion.time), int(LONGEST / motion.sample_time))
     at = np.arange(number) * motion.sample_time
     return np.asarray((at >= ENDS) & (at <= at[-1] - ENDS))
 
 
-def _along(diagram: Diagram, motion: Motion, sampling: Sampling, *, draws: int = 16) -> Array:
+def _force_along(diagram: Diagram, motion: Motion, sampling: Sampling, *, draws: int = 16) -> Array:
     """Force error of a diagram along a recorded motion, low-passed, (draws, n).
 
     The first draw has the estimates.
     """
-    number = len(_counted(motion))
+    number = len(_rows_that_count(motion))
     at = np.arange(number) * motion.sample_time
 
     def course(samples: Array) -> Any:

@@ -205,7 +205,7 @@ class Grid:
 def _positive(what: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
     array = np.atleast_1d(np.asarray(values, dtype=float))
     if array.ndim != 1 or not array.size or not (np.isfinite(array) & (array > 0)).all():
-        raise ModelError(f"{what}: made {values}, expected positive numbers")
+        raise ModelError(f"{what}: found {values}, expected positive numbers")
     return array
 
 

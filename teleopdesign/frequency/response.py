@@ -13,18 +13,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
-import sympy as sp
 from numpy.typing import NDArray
 
 from ..base.errors import ModelError, did_you_mean
 from ..base.files import write_netcdf
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
-from ..derive import symbol_values, with_values
-from ..derive.elimination import rows
-from ..diagrams import Diagram, Moving
-from ..realise.lti import linear_blocks, numerical
-from ..realise.parted import linear_parted
+from ..derive import with_values
+from ..diagrams import Diagram
+from ..realise.lti import numerical
 from ..realise.tips import linear_tips
 from .frozen_friction import cancellations_left_over, growing_modes, with_frozen_friction
 from .quasi_linear import quasi_linear
@@ -174,7 +171,7 @@ def bode(
     made = {
         name: _first_harmonics(one, signals, amplitude, f)
         if amplitude
-        else _frozen(one, signals, abs(speed), f)
+        else _freeze(one, signals, abs(speed), f)
         for name, one in cases.items()
     }
     diagram = next(iter(cases.values()))
@@ -215,7 +212,7 @@ def _first_harmonics(diagram: Diagram, of: _Signals, amplitude: float, f: Array)
     return _Case(quasi_linear(diagram, of.output, of.input, of.given, amplitude, f))
 
 
-def _frozen(diagram: Diagram, of: _Signals, speed: float, f: Array) -> _Case:
+def _freeze(diagram: Diagram, of: _Signals, speed: float, f: Array) -> _Case:
     frozen = with_frozen_friction(diagram, speed) if speed else diagram
     expression, linear = with_values(
         frozen, output=of.output, input=of.input, given=of.given, speed=speed, held=True
@@ -268,96 +265,3 @@ def cases_of(diagrams: Diagram | Mapping[str, Diagram]) -> dict[str, Diagram]:
     if not diagrams:
         raise ModelError("diagrams: found none, expected a diagram, or several by case")
     return dict(diagrams)
-
-
-@dataclass(frozen=True, eq=False)
-class MatrixResponse(Shown, ByValue):
-    """Response of several outputs to several inputs.
-
-    data: complex, over frequency (Hz), output and input;  left_out: names without linear form
-    left_over: controllers that cancel friction while friction is left out
-    unstable: modes of the whole diagram that grow, in words; "": none, or not known
-    """
-
-    data: xarray.DataArray
-    left_out: tuple[str, ...]
-    left_over: tuple[str, ...] = ()
-    unstable: str = ""
-
-    def singular_values(self) -> np.ndarray:
-        """Gains over all directions, (frequencies, min(outputs, inputs)), largest first."""
-        return np.linalg.svd(self.data.values, compute_uv=False)
-
-    def frd(self) -> control.FRD:
-        """The response as a python-control frequency response."""
-        from ..base import python_control as control
-
-        values = np.moveaxis(self.data.values, 0, -1)
-        return control.frd(values, 2 * np.pi * self.data["frequency"].values)
-
-
-def matrix_response(
-    diagram: Diagram,
-    outputs: Sequence[str],
-    inputs: Sequence[str],
-    frequency: np.ndarray | Sequence[float],
-    *,
-    given: Sequence[str] = (),
-    speed: float = 0.0,
-) -> MatrixResponse:
-    """Response of each output to each input, with all other inputs zero.
-
-    frequency: (n,), Hz
-    given: prescribed motions, in place of the forces that drive them; for a body with a compliant
-        transmission, the motion of its tip
-    speed: at which smoothed friction and schedules are frozen, m/s or rad/s
-    raises ModelError: an unknown signal, an input that is not free, a loop without a solution
-    """
-    import xarray
-
-    diagram, led = linear_parted(diagram, tuple(given))
-    inputs, outputs = ([led.get(n, n) for n in names] for names in (inputs, outputs))
-    given = list(led.values())
-    drivers = {b.motion: b.driver for b in diagram.blocks if isinstance(b, Moving)}
-    free = [s for s in diagram.outside if s not in {drivers.get(m) for m in given}]
-    free += given
-    for name in (*outputs, *inputs):
-        diagram.signal(name)
-    if bound := [name for name in inputs if name not in free]:
-        raise ModelError(f'{diagram.name}: signal "{bound[0]}" is not from outside')
-    unknown = [s for s in diagram.signals if s not in free]
-    form = linear_blocks(diagram, speed=speed, held=True)
-    values = symbol_values(form)
-    s = 2j * np.pi * np.asarray(frequency, dtype=float)
-    system = rows(diagram)
-    matrix = np.zeros((len(s), len(system), len(unknown)), dtype=complex)
-    right = np.zeros((len(s), len(system), len(inputs)), dtype=complex)
-    for i, row in enumerate(system):
-        for name, coefficient in row.items():
-            target, names, sign = (right, inputs, -1) if name in inputs else (matrix, unknown, 1)
-            if name in names:
-                over = numerical(sp.sympify(coefficient).xreplace(values))
-                target[:, i, names.index(name)] = sign * over(s)
-    try:
-        solved = np.linalg.solve(matrix, right)
-    except np.linalg.LinAlgError:
-        raise ModelError(f"{diagram.name}: the wiring does not determine all signals") from None
-    # a free signal responds to itself
-    chosen = [
-        solved[:, unknown.index(o)]
-        if o in unknown
-        else np.tile(np.array([complex(o == i) for i in inputs]), (len(s), 1))
-        for o in outputs
-    ]
-    data = xarray.DataArray(
-        np.stack(chosen, axis=1),
-        {
-            "frequency": ("frequency", np.asarray(frequency), {"units": "Hz"}),
-            "output": list(outputs),
-            "input": list(inputs),
-        },
-        ("frequency", "output", "input"),
-    )
-    cancelled = cancellations_left_over(diagram, form.left_out)
-    modes = None if given else growing_modes(diagram, speed=speed)
-    return MatrixResponse(data, form.left_out, cancelled, modes or "")

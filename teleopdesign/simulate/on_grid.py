@@ -106,12 +106,12 @@ def with_recorded(inputs: Mapping[str, Input], duration: float) -> dict[str, Inp
     raises ModelError: times that do not rise or do not cover the run, or another number of samples
     """
     return {
-        name: _recorded(name, value, duration) if isinstance(value, tuple) else value
+        name: _table_of_pair(name, value, duration) if isinstance(value, tuple) else value
         for name, value in inputs.items()
     }
 
 
-def _recorded(name: str, pair: Pair, duration: float) -> TableOverTime:
+def _table_of_pair(name: str, pair: Pair, duration: float) -> TableOverTime:
     expected = "a number, a function, samples, or a pair (times, samples)"
     if len(pair) != 2:
         raise ModelError(f'input "{name}": found {len(pair)} values, expected {expected}')

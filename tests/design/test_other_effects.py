@@ -97,7 +97,7 @@ def test_a_spring_is_cancelled_by_a_part_and_a_periodic_force_whole():
     assert wanted["spring"]["stiffness"] == pytest.approx(0.9 * 2.0 * (1 - 1.96 * 0.02), rel=0.01)
 
 
-def test_what_no_command_cancels_is_told_with_its_reason():
+def test_what_no_command_cancels_is_listed_with_its_reason():
     body = joint(cogging=COGGING, quadratic_drag={"drag": 0.01})
     whole = with_forces(SMOOTHED, body, SETTINGS)
     assert set(not_cancelled(body, whole)) == {"viscous", "quadratic_drag"}

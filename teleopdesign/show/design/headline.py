@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def headline(design: Design) -> list[str]:
     """What to build and with which sensors; the expected force error; passivity and its basis."""
-    return [_what_to_build(design), _expected(design), *_passive(design)]
+    return [_what_to_build(design), _error_to_expect(design), *_passive(design)]
 
 
 def _what_to_build(design: Design) -> str:
@@ -33,7 +33,7 @@ def _what_to_build(design: Design) -> str:
     return f"{what}; " + (f"found and not compensated: {left}" if left else "all found effects")
 
 
-def _expected(design: Design) -> str:
+def _error_to_expect(design: Design) -> str:
     e, unit = design.expected, unit_of("force", design.body.axis)
     line = f"expected force error: from {e.low:.3g} to {e.high:.3g} {unit} rms (95 %), without "
     line += f"compensation {e.without:.3g}"

@@ -42,10 +42,12 @@ def ladder_html(diagnosis: Diagnosis) -> str:
     rows.append(("noise floor", "", f"{100 * diagnosis.floor.value:.2f} %"))
     sentences = (f"{joint}: {sentence(one)}" for joint, one in diagnosis.joints.items())
     note = "; ".join(sentences) or sentence(diagnosis)
-    return html_table("Diagnosis", ("added", "fit error", checked(diagnosis)), rows, note=note)
+    return html_table(
+        "Diagnosis", ("added", "fit error", name_of_error(diagnosis)), rows, note=note
+    )
 
 
-def checked(diagnosis: Diagnosis) -> str:
+def name_of_error(diagnosis: Diagnosis) -> str:
     """The name of the error on rows that were not fitted: of records, or of blocks in turn."""
     return "check error" if diagnosis.check == "records" else "held-out error"
 
@@ -53,7 +55,7 @@ def checked(diagnosis: Diagnosis) -> str:
 @shows("text")
 def ladder_text(diagnosis: Diagnosis) -> str:
     """The ladder as a table, with parameters, noise floor and verdict."""
-    lines = [f"{'added':<42}{'fit error':>10}{checked(diagnosis):>15}"]
+    lines = [f"{'added':<42}{'fit error':>10}{name_of_error(diagnosis):>15}"]
     for row in diagnosis.rungs:
         name = "(your model, re-estimated)" if row.added is None else f"+ {row.title}"
         lines.append(f"{name:<42}{100 * row.fit_error:>9.2f}%{100 * row.check_error:>14.2f}%")
@@ -107,7 +109,7 @@ def _lines_of_rest(diagnosis: Diagnosis) -> list[str]:
     """What the final model leaves: near reversals, what trees learn of it, what repeats."""
     lines = []
     if (near := diagnosis.near_reversals) is not None:
-        lines.append(f"{checked(diagnosis)} {near}")
+        lines.append(f"{name_of_error(diagnosis)} {near}")
     if diagnosis.learnable is not None:
         lines.append(f"black box: {diagnosis.learnable}")
     if diagnosis.repeats is not None:
