@@ -76,15 +76,13 @@ def matrix_response(
     inputs, outputs = ([led.get(n, n) for n in names] for names in (inputs, outputs))
     given = list(led.values())
     drivers = {b.motion: b.driver for b in diagram.blocks if isinstance(b, Moving)}
-    free = [s for s in diagram.outside if s not in {drivers.get(m) for m in given}]
-    free += given
+    free = [s for s in diagram.outside if s not in {drivers.get(m) for m in given}] + given
     for name in (*outputs, *inputs):
         diagram.signal(name)
     if bound := [name for name in inputs if name not in free]:
         raise ModelError(f'{diagram.name}: signal "{bound[0]}" is not from outside')
     unknown = [s for s in diagram.signals if s not in free]
-    form = linear_blocks(diagram, speed=speed, held=True)
-    values = symbol_values(form)
+    values = symbol_values(form := linear_blocks(diagram, speed=speed, held=True))
     s = 2j * np.pi * np.asarray(frequency, dtype=float)
     system = rows(diagram)
     matrix = np.zeros((len(s), len(system), len(unknown)), dtype=complex)
@@ -112,6 +110,6 @@ def matrix_response(
         "input": list(inputs),
     }
     data = xarray.DataArray(np.stack(chosen, axis=1), places, (*places,))
-    cancelled = cancellations_left_over(diagram, form.left_out)
-    modes = None if given else growing_modes(diagram, speed=speed)
-    return MatrixResponse(data, form.left_out, cancelled, modes or "")
+    modes = "" if given else growing_modes(diagram, speed=speed) or ""
+    cancelling = cancellations_left_over(diagram, form.left_out)
+    return MatrixResponse(data, form.left_out, cancelling, modes)
