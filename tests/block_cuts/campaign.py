@@ -1,0 +1,63 @@
+"""Right and false names on drawn interfaces.
+
+    PYTHONPATH=tests python -m block_cuts.campaign FOLDER [SEED]
+
+Each hidden effect of `HIDDEN` is planted once in an interface of its own. Printed: a row a case,
+then how many are right, and how many were named falsely. About a minute a case.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from block_cuts.interface_simulator import draw_interface, write_case
+
+import teleopdesign as td
+
+HIDDEN = [
+    {}, {}, {}, {},
+    {("gain", "H"): 1.06}, {("delay", "H"): 0.004}, {("lag", "H"): 0.004},
+    {("saturation", "H"): 1.2}, {("dead_zone", "H"): 0.05}, {("velocity_filter", "H"): 0.006},
+    {("gain", "C"): 0.9}, {("delay", "C"): 0.003}, {("lag", "C"): 0.005},
+    {("velocity_filter", "C"): 0.005}, {("bias", "C"): 0.02},
+    {("gain", "computer"): 1.04}, {("delay", "computer"): 0.003}, {("lag", "computer"): 0.003},
+    {("dead_zone", "computer"): 0.06}, {("bias", "computer"): -0.015},
+    {("stribeck", "Z_M"): 0.15}, {("quadratic_drag", "Z_M"): 6.0}, {("bias", "Z_M"): 0.12},
+    {("hardening_spring", "Z_H"): 1.5e6}, {("viscous_asymmetry", "Z_H"): 0.6},
+]  # fmt: skip
+
+
+def judge(diagnosis, hidden):
+    """Whether the answer is right: the effect named, or listed in a group of its like."""
+    if not hidden:
+        return diagnosis.verdict == "model_adequate"
+    (true,) = hidden
+    listed = any(true in group for group in diagnosis.groups)
+    return diagnosis.missing == (true,) or (not diagnosis.missing and listed)
+
+
+def main(folder, seed):
+    right = false = 0
+    for number, hidden in enumerate(HIDDEN):
+        random = np.random.default_rng([seed, number])
+        interface = draw_interface(random)
+        interface.hidden = hidden
+        place = Path(folder) / f"{number:03}"
+        if not (place / "experiment.toml").exists():
+            write_case(interface, place, random)
+        diagnosis = td.find_missing(td.load_experiment(place))
+        is_right = judge(diagnosis, hidden)
+        false_names = [key for key in diagnosis.missing if key not in hidden]
+        right, false = right + is_right, false + bool(false_names)
+        left = ", ".join(f"{name} {x:.2f}" for name, x in diagnosis.left.items())
+        print(
+            f"{number:03} {'right' if is_right else 'WRONG'} planted {list(hidden)} "
+            f"verdict {diagnosis.verdict} {diagnosis.missing} groups {diagnosis.groups} "
+            f"left in floors: {left}",
+            flush=True,
+        )
+    print(f"{right} of {len(HIDDEN)} right, {false} with a false name")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 0)
