@@ -13,8 +13,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from ..base.errors import ExperimentError, ModelError
 from ..base.toml import Table
+from ..base.units import unit_of
 from ..blocks import Body
 from ..diagnose import Diagnosis
 from ..diagnose import find_missing as find_missing_in_body
@@ -24,12 +27,12 @@ from ..measurement.channel import channels_from
 from ..measurement.description import BodyDescription
 from ..measurement.experiment import Experiment
 from ..measurement.record import record_of
+from ..measurement.tables import LogColumns
 from ..model import Model
+from .computer import ComputerPart, passes_of
 from .cuts import Cut
-from .diagram_experiment import DiagramExperiment
-
-#: roles of effects that a body has which no actuator of its own moves: those of its force
-_OF_A_HAND = ("force", "friction_level", "friction_shape", "friction_factor")
+from .diagram_experiment import DiagramExperiment, RecordedLog
+from .look_alikes import OF_A_HAND
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,7 @@ class ForcesOnBody:
     motion: str
     command: tuple[str, float]
     others: tuple[tuple[str, float], ...]
-    held: bool
+    held: bool  # something holds the motion: a hand, whose rest position differs by record
 
 
 def forces_on(diagram: Diagram, cut: Cut) -> ForcesOnBody:
@@ -52,9 +55,11 @@ def forces_on(diagram: Diagram, cut: Cut) -> ForcesOnBody:
     """
     block = diagram.block(cut.name)
     if isinstance(block, Moving):
-        loads = {s: float(w) for s, w in block.loads.items()}
-        others = tuple((s, w) for s, w in loads.items() if s in cut.inputs)
-        return ForcesOnBody(block.motion, (block.command, 1.0), others, False)
+        loads: dict[str, float] = {}
+        for signal, weight in block.loads.items():
+            loads |= _known_terms(diagram, signal, float(weight), cut)
+        held = len(_bodies(diagram, cut)) > 1
+        return ForcesOnBody(block.motion, (block.command, 1.0), tuple(loads.items()), held)
     assert isinstance(block, Attached)
     # signal = w force + others, force = sign Z motion
     junction = next((j for j in diagram.junctions if j.output == cut.signal), None)
@@ -62,6 +67,17 @@ def forces_on(diagram: Diagram, cut: Cut) -> ForcesOnBody:
     weight = float(weights.pop(block.force)) * block.sign
     others = tuple((s, -float(w) / weight) for s, w in weights.items() if s in cut.inputs)
     return ForcesOnBody(block.motion, (cut.signal, 1.0 / weight), others, True)
+
+
+def _known_terms(diagram: Diagram, signal: str, weight: float, cut: Cut) -> dict[str, float]:
+    """A force as a sum of recorded ones; a body that holds the motion is none of them."""
+    if signal in cut.inputs:
+        return {signal: weight}
+    terms: dict[str, float] = {}
+    junction = next((j for j in diagram.junctions if j.output == signal), None)
+    for name, w in () if junction is None else junction.terms.items():
+        terms |= _known_terms(diagram, name, weight * float(w), cut)
+    return terms
 
 
 def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
@@ -72,10 +88,14 @@ def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
     terms, name = forces_on(experiment.diagram, cut), cut.name
     if len(terms.others) > 1 or any(abs(w) != 1.0 for _, w in (terms.command, *terms.others)):
         raise ModelError(f"{name}: several forces or levers act on it: only a sum of two is read")
-    body = _body(experiment.diagram, name)
+    body = _joined_body(experiment.diagram, cut)
     described = {name: BodyDescription(name, body.axis, None, {}, f"diagram.{name}")}
     content: dict[str, Any] = {f"{name}.position": experiment.channels[terms.motion].content}
-    content[f"{name}.actuator_force"] = _force(experiment, terms.command, measured=terms.held)
+    command = terms.command[0]
+    entry: dict[str, Any] = {"column": f"predicted {command}", "unit": unit_of("force", body.axis)}
+    if command in experiment.channels:
+        entry = _force(experiment, terms.command, measured=command == cut.signal)
+    content[f"{name}.actuator_force"] = entry
     for other in terms.others:
         content[f"{name}.interaction_force"] = _force(experiment, other)
     if experiment.sample_rate is None:
@@ -86,7 +106,7 @@ def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
     rest = frozenset({"position_zero"}) if terms.held else frozenset()
     records = tuple(
         record_of(
-            log.columns,
+            _columns(experiment, cut, command, log),
             f"{experiment.folder.name}/{log.file}",
             file=log.file,
             use=log.use,
@@ -120,11 +140,11 @@ def diagnose_body(
 
     known: effects by name;  options: those of `diagnose.find_missing`
     """
-    model = Model({cut.name: _body(experiment.diagram, cut.name)}, known)
-    if forces_on(experiment.diagram, cut).held:
+    model = Model({cut.name: _joined_body(experiment.diagram, cut)}, known)
+    if isinstance(experiment.diagram.block(cut.name), Attached):
         among = options.pop("among", None)
         names = known if among is None else among
-        options["among"] = [n for n in names if known[n].role in _OF_A_HAND]
+        options["among"] = [n for n in names if known[n].role in OF_A_HAND]
     diagnosis = find_missing_in_body(
         body_experiment(experiment, cut),
         model,
@@ -134,10 +154,43 @@ def diagnose_body(
     return replace(diagnosis, left_out=())
 
 
-def _body(diagram: Diagram, name: str) -> Body:
-    body = getattr(diagram.block(name), "body", None)
-    assert isinstance(body, Body)
-    return body
+def _bodies(diagram: Diagram, cut: Cut) -> list[Body]:
+    """The bodies of a cut, the one that gives it its name first."""
+    names = sorted(cut.blocks, key=lambda name: name != cut.name)
+    contents = [getattr(diagram.block(n), "body", None) for n in names if diagram.has(n)]
+    return [body for body in contents if isinstance(body, Body)]
+
+
+def _joined_body(diagram: Diagram, cut: Cut) -> Body:
+    """The body of a cut; of bodies that move together their sum, as a start of its estimation."""
+    whole, *others = _bodies(diagram, cut)
+    for body in others:
+        values = {"inertia": _value(whole, "inertia") + _value(body, "inertia")}
+        for effect in body.effects:
+            here = {n: _value(body, f"{effect.name}.{n}") for n in effect.parameters}
+            if not whole.has(effect.name):
+                whole = whole.with_effect(effect, here)
+                continue
+            names = {f"{effect.name}.{n}": v for n, v in here.items()}
+            values |= {n: _value(whole, n) + v for n, v in names.items()}
+        whole = whole.with_values(values)
+    return whole
+
+
+def _value(body: Body, name: str) -> float:
+    return body.parameters[name].value
+
+
+def _columns(experiment: DiagramExperiment, cut: Cut, command: str, log: RecordedLog) -> LogColumns:
+    """The columns of a log, with the command that the computer's laws give where none is there."""
+    if command in experiment.channels:
+        return log.columns
+    made = Cut(command, command, "computer", cut.blocks, cut.inputs)
+    part = ComputerPart(experiment.diagram, (made,), experiment.zero, experiment.computer)
+    passes = passes_of(experiment, log)
+    values, count = part.predict(passes)[command], len(experiment.seconds(log))
+    held = np.repeat(values, -(-count // len(values)))[:count]
+    return replace(log.columns, values={**log.columns.values, f"predicted {command}": held})
 
 
 def _force(

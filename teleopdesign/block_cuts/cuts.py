@@ -123,6 +123,7 @@ def _cut(diagram: Diagram, signal: str, made: _Traced, recorded: Collection[str]
     controls = [b for b in made.blocks if isinstance(b, Control)]
     inputs = tuple(s for s in made.inputs if s in recorded)
     inside = {s for b in made.blocks for s in b.outputs} - {signal}
+    inside |= {j.output for j in diagram.junctions if inside & set(j.terms)} - {signal, *recorded}
     separating = tuple(s for s in diagram.signals if s in inside) if len(made.blocks) > 1 else ()
     names = tuple(b.name for b in diagram.blocks if b in made.blocks)
     if not bodies:

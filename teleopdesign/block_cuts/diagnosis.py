@@ -19,12 +19,14 @@ from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
 from ..diagnose import Diagnosis
 from ..diagnose.answer import answer
+from ..diagnose.candidates import Candidate
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.verdict import VerdictName
 from .computer_fit import ControlData
 from .computer_search import Attempt, ComputerLadder
 from .cuts import Cuts
 from .diagram_experiment import DiagramExperiment
+from .look_alikes import same_effects
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -128,8 +130,9 @@ class BlockDiagnosis(Shown, ByValue):
     def missing(self) -> tuple[Key, ...]:
         """Effects that are missing, with their places, in the order of the ladder."""
         named = {t.added.key for t in self.named_in_computer}
-        for d in self.bodies.values():
-            named |= {(one.effect.name, one.at) for one in d.missing}
+        for name, d in self.bodies.items():
+            alone = (one for one in d.missing if not self._same(name, one))
+            named |= {(one.effect.name, one.at) for one in alone}
         return tuple(r.added for r in self.rows if r.added in named and r.added is not None)
 
     @property
@@ -152,16 +155,24 @@ class BlockDiagnosis(Shown, ByValue):
     @property
     def groups(self) -> tuple[tuple[Key, ...], ...]:
         """Effects that explain the records equally well, the accepted one first."""
-        groups = [
-            tuple((c.effect.name, c.at) for c in group)
-            for d in self.bodies.values()
-            for group in d.indistinguishable
-        ]
+        groups = []
+        for name, d in self.bodies.items():
+            listed = [list(group) for group in d.indistinguishable]
+            alone = [[one] for one in d.missing if not any(one in group for group in listed)]
+            for group in listed + [one for one in alone if self._same(name, one[0])]:
+                keys = [(c.effect.name, c.at) for c in group]
+                keys += [key for c in group for key in self._same(name, c)]
+                groups.append(tuple(dict.fromkeys(keys)))
         steps = () if self.computer is None else self.computer.steps
         for s in steps:
             if s.accepted is not None and s.alike:
                 groups.append((s.accepted.added.key, *(one.added.key for one in s.alike)))
         return tuple(groups)
+
+    def _same(self, cut: str, one: Candidate) -> tuple[Key, ...]:
+        """Effects at other blocks of a body's cut that are the same by the wiring."""
+        place = next(c for c in self.cuts.tested if c.name == cut)
+        return same_effects(self.experiment.diagram, place, one.effect)
 
     @property
     def left(self) -> dict[str, float]:
@@ -172,7 +183,7 @@ class BlockDiagnosis(Shown, ByValue):
     def answer(self) -> dict[str, Any]:
         """The answer as plain data, in the format of a diagnosis; SI units."""
         bodies = {name: answer(d) for name, d in self.bodies.items()}
-        candidates = [c for one in bodies.values() for c in one["candidates"]]
+        candidates = [c for name, one in bodies.items() for c in self._shared(name, one)]
         candidates += self._candidates_of_computer()
         parameters = {n: v for one in bodies.values() for n, v in one["model_parameters"].items()}
         shifts = {n: v for one in bodies.values() for n, v in one["record_shift"].items()}
@@ -201,6 +212,17 @@ class BlockDiagnosis(Shown, ByValue):
             "record_shift": shifts | self._shift_of_computer(),
             "bodies": bodies,
         }
+
+    def _shared(self, cut: str, body: Mapping[str, Any]) -> list[dict[str, Any]]:
+        """The candidates of a body; what is the same at other blocks shares its probability."""
+        shared = []
+        effects = {one.candidate.key: one.candidate for one in self.bodies[cut].candidates}
+        for one in body["candidates"]:
+            same = self._same(cut, effects[one["effect"], one["at"]])
+            for key in ((one["effect"], one["at"]), *same):
+                part = one["probability"] / (1 + len(same))
+                shared.append({**one, **_place(key), "probability": part})
+        return shared
 
     def _shift_of_computer(self) -> dict[str, Any]:
         if self.computer is None or self.data is None or not self.computer.last.shift:

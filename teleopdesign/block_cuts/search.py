@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.errors import ExperimentError, ModelError
+from ..base.errors import ExperimentError, ModelError, unknown
 from ..diagnose import Diagnosis
 from ..diagnose import find_missing as find_missing_in_bodies
 from ..diagnose.search_plan import PLAN, SearchPlan
@@ -39,12 +39,14 @@ def find_missing(
     seed: int = 0,
     plan: SearchPlan = PLAN,
     among: Collection[str] | None = None,
+    at: Collection[str] | None = None,
 ) -> Diagnosis | BlockDiagnosis:
     """Find the effects that a model of bodies, or a whole diagram, lacks.
 
     experiment: of bodies, as `diagnose.find_missing` takes it, or of a whole diagram
     model: of bodies only; a diagram's values stand in its file
     among: names of candidate effects of bodies; all effects of controller blocks are tried
+    at: names of the cuts of a diagram that are compared, such as ("R_A",); None: all
     raises ExperimentError, ModelError: the records lack what the comparison needs
     """
     if isinstance(experiment, Experiment):
@@ -54,7 +56,7 @@ def find_missing(
     if model is not None:
         raise ModelError("find_missing: found a model beside a diagram, which has its own values")
     report = progress or (lambda _: None)
-    cuts, bodies = experiment.cuts, {}
+    cuts, bodies = _select(experiment.cuts, at), {}
     options: dict[str, Any] = {"seed": seed, "plan": plan}
     if among is not None:
         options["among"] = among
@@ -76,6 +78,21 @@ def find_missing(
         why = "; ".join(f"{block}: {text}" for block, text in cuts.untested.items())
         raise ExperimentError(f"{experiment.title}: no block can be tested: {why}")
     return BlockDiagnosis(experiment, cuts, bodies, ladder, _wiring(experiment, cuts), data)
+
+
+def _select(cuts: Cuts, at: Collection[str] | None) -> Cuts:
+    """The cuts with these names.
+
+    raises ExperimentError: no such cut
+    """
+    names = [c.name for c in cuts.tested]
+    for name in at or ():
+        if name not in names:
+            raise ExperimentError(f"find_missing: at: {unknown('cut', name, names)}")
+    for name in names if at is not None else ():
+        if name not in (at or ()):
+            cuts = _without_cut(cuts, name, "its cut was left out")
+    return cuts
 
 
 def _of_computer(
