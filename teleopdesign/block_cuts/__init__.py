@@ -13,5 +13,7 @@ if TYPE_CHECKING:
     from .reading import diagram_experiment as diagram_experiment
     from .reading import load_experiment as load_experiment
     from .search import find_missing as find_missing
+    from .what_to_log import LoggingPlan as LoggingPlan
+    from .what_to_log import what_to_log as what_to_log
 
 __getattr__, __dir__, __all__ = lazy_face(__name__)

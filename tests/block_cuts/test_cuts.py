@@ -3,7 +3,7 @@
 import pytest
 from devices import body
 
-from teleopdesign.block_cuts import cuts_of
+from teleopdesign.block_cuts import cuts_of, what_to_log
 from teleopdesign.blocks import hand
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface, teleoperator
@@ -76,3 +76,17 @@ def test_every_block_has_a_cut_or_a_reason(recorded):
     done = {name for cut in cuts.tested for name in cut.blocks}
     assert done | set(cuts.untested) >= {"Z_M", "Z_H", "H", "C"}
     assert all(cuts.untested.values())
+
+
+def test_a_diagram_says_what_must_be_logged_to_test_every_block():
+    plan = what_to_log(interface(position_loop=K))
+    assert not plan.cuts.untested and plan.zero == ("R_V",)
+    names = {one.name for one in plan.signals}
+    assert {"L_D", "R_D", "R_A", "R_M", "L"} <= names
+    assert all(name in plan.code and f'"{name}"' in plan.channels for name in names)
+
+
+def test_a_force_that_no_block_needs_may_have_any_value():
+    law = controller("spring_damper", {"stiffness": 1000.0, "damping": 5.0})
+    plan = what_to_log(teleoperator(RIGID, RIGID, coupling=law))
+    assert plan.zero == () and not plan.cuts.untested
