@@ -174,6 +174,21 @@ class _Evaluation:
 
     def _control(self, block: Control) -> Array:
         source = self.value(block.input)
+        filters = [p for p in self.placed if p.at == block.name and p.effect.on_velocity]
+        same = not filters and not self.changed & {block.input, block.motion}
+        key = (self.rows.file, block.name)
+        law = self.part.kept.get(key) if same else None
+        if law is None:
+            law = self._law_along(block, source)
+        if same:
+            self.part.kept[key] = law
+        out = apply(law, block.name, self.placed, self.rows.period)
+        if out is not law or not same:
+            self.changed.add(block.output)
+        return out
+
+    def _law_along(self, block: Control, source: Array) -> Array:
+        """Output of the law of a block, with the velocity that the computer has."""
         period, computer = self.rows.period, self.part.computer
         velocity = travel = np.zeros_like(source)
         if block.motion:
@@ -186,26 +201,11 @@ class _Evaluation:
 
             keeps = velocity_smoothing(computer.velocity_bandwidth, period)
             velocity = np.asarray(lfilter([1.0 - keeps], [1.0, -keeps], travel))
-        filtered = apply(velocity, block.name, self.placed, period, on_velocity=True)
-        key = (self.rows.file, block.name)
-        same = filtered is velocity and block.input not in self.changed
-        if same and key in self.part.kept:
-            law = self.part.kept[key]
-        else:
-            assert isinstance(block.controller, Controller)
-            law = controller_along(
-                block.controller,
-                input=source,
-                velocity=filtered,
-                travel_rate=travel,
-                period=period,
-            )
-            if same:
-                self.part.kept[key] = law
-        out = apply(law, block.name, self.placed, period)
-        if out is not law or not same:
-            self.changed.add(block.output)
-        return out
+        velocity = apply(velocity, block.name, self.placed, period, on_velocity=True)
+        assert isinstance(block.controller, Controller)
+        return controller_along(
+            block.controller, input=source, velocity=velocity, travel_rate=travel, period=period
+        )
 
 
 def _symbols(controller: Controller) -> set:  # type: ignore[type-arg]  # of sympy symbols

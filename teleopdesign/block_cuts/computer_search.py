@@ -69,13 +69,18 @@ class ComputerLadder:
 
     @property
     def floor(self) -> float:
-        return float(np.sqrt(np.mean(np.square(list(self.floors.values())))))
+        return _floor(self.floors)
 
     @property
     def is_adequate(self) -> bool:
         """Whether every cut leaves only rounding."""
         errors = self.last.errors["check"]
         return all(e <= CRITERIA.adequate * self.floors[name] for name, e in errors.items())
+
+
+def _floor(floors: dict[str, float]) -> float:
+    """Root mean square of the floors of all cuts."""
+    return float(np.sqrt(np.mean(np.square(list(floors.values())))))
 
 
 def climb(
@@ -92,6 +97,8 @@ def climb(
         if step.accepted is None:
             break
         here = step.accepted.fit
+        if here.error("check") ** 2 < (1.0 + CRITERIA.of_floor) * _floor(floors) ** 2:
+            break  # what counts as a gain would leave less than rounding alone
     ladder = ComputerLadder(base, tuple(steps), floors)
     return replace(ladder, steps=tuple(_with_probabilities(s, ladder) for s in steps))
 
@@ -138,7 +145,7 @@ def _reason_against(
     data: ControlData, before: ControlFit, one: Attempt, floors: dict[str, float]
 ) -> str:
     """Why a candidate cannot be accepted; "": it can."""
-    floor = float(np.sqrt(np.mean(np.square(list(floors.values())))))
+    floor = _floor(floors)
     old, new = before.error("check"), one.fit.error("check")
     gain = old**2 - new**2
     if one.score < CRITERIA.sure:
