@@ -177,7 +177,9 @@ def _run(
             clock.count(outcome)
 
     units = units_of(task, todo)
-    if not units:
+    if not units:  # all were kept by a run that was stopped before it wrote its file
+        if progress is not None:
+            progress(clock.now())
         return
     if scheduler:
         from .cluster import run_on_cluster

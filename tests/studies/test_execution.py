@@ -149,6 +149,22 @@ def test_what_an_interrupted_study_has_finished_is_not_computed_again(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["s.nc"]
 
 
+def test_a_study_that_was_stopped_before_its_file_was_written_says_what_it_kept(tmp_path):
+    out, axes = tmp_path / "s.nc", {"x": np.arange(10.0), "y": 0.5}
+
+    def stopped(progress):
+        if progress.done == progress.total:
+            raise KeyboardInterrupt
+
+    settings = {"measures": models.value, "out": out, "workers": 1}
+    with pytest.raises(KeyboardInterrupt):
+        td.study(models.product, axes, progress=stopped, **settings)
+    assert not out.exists()
+    reports = []
+    td.study(models.product, axes, progress=reports.append, **settings)
+    assert [(r.done, r.kept) for r in reports] == [(10, 10)] and out.exists()
+
+
 def damaged_journal(tmp_path, damage):
     """A study of 10 points, of which 6 stand in a journal whose last line is damaged."""
     out = tmp_path / "s.nc"
