@@ -274,9 +274,11 @@ def _reading(
     if name not in experiment.read_by_computer:
         noise = (channel.noise or 0.0) * random.standard_normal(n)
         return noise + random.uniform(-0.5, 0.5, n) * (channel.resolution or 0.0)
-    if channel.resolution is not None:  # the column holds whole steps
-        return np.zeros(n)
-    return random.uniform(-0.5, 0.5, n) * _digit(experiment, log, name)
+    if channel.resolution is not None and name in experiment.diagram.measured:
+        return np.zeros(n)  # whole steps of a sensor, as the computer read them
+    # a number of the computer, which was rounded for the log
+    step = max(_digit(experiment, log, name), channel.resolution or 0.0)
+    return random.uniform(-0.5, 0.5, n) * step
 
 
 def _digit(experiment: DiagramExperiment, log: RecordedLog, name: str) -> float:

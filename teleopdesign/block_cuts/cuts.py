@@ -119,6 +119,8 @@ def _cut(diagram: Diagram, signal: str, made: _Traced, recorded: Collection[str]
         return f"{lacks} is neither recorded nor zero: record {lacks}, or state it as zero"
     if unstated := [b.name for b in made.blocks if _content(b) is ANY]:
         return f"{unstated[0]} has no values to compare"
+    if analog := [b.name for b in made.blocks if isinstance(b, Control) and b.analog]:
+        return f"{analog[0]} is analog: only laws in a computer are predicted"
     bodies = [b for b in made.blocks if isinstance(b, Moving | Attached | Linked)]
     controls = [b for b in made.blocks if isinstance(b, Control)]
     inputs = tuple(s for s in made.inputs if s in recorded)

@@ -259,6 +259,10 @@ class BlockDiagnosis(Shown, ByValue):
         """The block diagram, each block coloured by the error of its cut."""
         return figure_of(self)
 
+    def plot_residuals(self) -> Figure:
+        """What is left at the computer's cuts, over time and the variables of their blocks."""
+        return figure_of(self, kind="panels")
+
 
 def write_answer(diagnosis: BlockDiagnosis, path: str | Path) -> None:
     """Write the answer as JSON."""

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..block_cuts import DiagramExperiment
 
 #: options of `diagnose` that ask for what only an experiment of bodies has
-_OF_BODIES = ("predictions", "simulate", "loop", "report")
+_OF_BODIES = ("predictions", "simulate", "loop")
 
 
 def diagnose_diagram(experiment: DiagramExperiment, options: argparse.Namespace) -> int:
@@ -50,7 +50,11 @@ def diagnose_diagram(experiment: DiagramExperiment, options: argparse.Namespace)
     if options.figure is not None:
         with write_beside(options.figure) as part:
             diagnosis.plot().savefig(part)
-    say_written(options.json, options.figure)
+    if options.report is not None:
+        from ..show.block_cuts.report import write_block_report
+
+        write_block_report(diagnosis, options.report)
+    say_written(options.report, options.json, options.figure)
     return 0
 
 

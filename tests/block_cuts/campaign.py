@@ -1,9 +1,9 @@
 """Right and false names on drawn interfaces.
 
-    PYTHONPATH=tests python -m block_cuts.campaign FOLDER [SEED]
+    PYTHONPATH=tests python -m block_cuts.campaign FOLDER [SEED [SIZE]]
 
 Each hidden effect of `HIDDEN` is planted once in an interface of its own. Printed: a row a case,
-then how many are right, and how many were named falsely. Of effects in the
+then how many are right, and how many were named falsely. SIZE: of the effects, 1 by default. Of effects in the
 computer only the cut of the command is compared: bodies take longest.
 """
 
@@ -37,9 +37,22 @@ def judge(diagnosis, hidden):
     return diagnosis.missing == (true,) or (not diagnosis.missing and listed)
 
 
-def main(folder, seed):
+def shrink(hidden, size):
+    """The hidden effect at a part of its size; a limit keeps its value."""
+    if size == 1.0:
+        return hidden
+    made = {}
+    for (effect, at), value in hidden.items():
+        absent = 1.0 if effect == "gain" else 0.0
+        less = absent + size * (value - absent)
+        made[effect, at] = value if effect == "saturation" else less
+    return made
+
+
+def main(folder, seed, size):
     right = false = 0
     for number, hidden in enumerate(HIDDEN):
+        hidden = shrink(hidden, size)
         random = np.random.default_rng([seed, number])
         interface = draw_interface(random)
         interface.hidden = hidden
@@ -63,4 +76,5 @@ def main(folder, seed):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 0)
+    seed, size = (*map(float, sys.argv[2:4]), *(0.0, 1.0)[len(sys.argv[2:4]) :])
+    main(sys.argv[1], int(seed), size)

@@ -83,7 +83,7 @@ def _floors_of_blocks(diagnosis: BlockDiagnosis) -> dict[str, float]:
 def _table(diagnosis: BlockDiagnosis) -> list[tuple[str, ...]]:
     """A row a cut: name, blocks, errors before and after, noise floor, what was added."""
     head = ("cut", "tests", "error", "at the end", "noise floor", "missing")
-    rows = [head]
+    rows: list[tuple[str, ...]] = [head]
     groups = {key: group for group in diagnosis.groups for key in group}
     for cut in diagnosis.cuts.tested:
         if cut.name not in diagnosis.floors:
