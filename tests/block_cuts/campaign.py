@@ -3,8 +3,8 @@
     PYTHONPATH=tests python -m block_cuts.campaign FOLDER [SEED [SIZE]]
 
 Each hidden effect of `HIDDEN` is planted once in an interface of its own. Printed: a row a case,
-then how many are right, and how many were named falsely. SIZE: of the effects, 1 by default. Of effects in the
-computer only the cut of the command is compared: bodies take longest.
+then how many are right, and how many were named falsely. SIZE: of the effects, 1 by default. Of
+effects in the computer only the cut of the command is compared: bodies take longest.
 """
 
 import sys

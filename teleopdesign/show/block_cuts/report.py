@@ -25,18 +25,18 @@ svg {{ max-width: 100%; height: auto; }} pre {{ white-space: pre-wrap; }}</style
 
 def write_block_report(diagnosis: BlockDiagnosis, path: str | Path) -> None:
     """Write the page: the diagram in colours, the text, and the residuals before and after."""
-    sections = [_drawn(diagnosis.plot()), f"<pre>{escape(repr(diagnosis))}</pre>"]
+    sections = [_as_svg(diagnosis.plot()), f"<pre>{escape(repr(diagnosis))}</pre>"]
     if diagnosis.data is not None:
         sections += ["<h2>The computer</h2>", "<p>Grey: the stated laws; blue: at the end.</p>"]
-        sections.append(_drawn(diagnosis.plot_residuals()))
+        sections.append(_as_svg(diagnosis.plot_residuals()))
     for name, body in diagnosis.bodies.items():
-        sections += [f"<h2>{escape(name)}</h2>", _drawn(body.plot())]
+        sections += [f"<h2>{escape(name)}</h2>", _as_svg(body.plot())]
         sections.append(f"<pre>{escape(repr(body))}</pre>")
     title = escape(diagnosis.experiment.title)
     write_text(path, _PAGE.format(title=title, sections="\n".join(sections)))
 
 
-def _drawn(figure: Figure) -> str:
+def _as_svg(figure: Figure) -> str:
     """A figure as SVG inside a page."""
     import matplotlib.pyplot as plt
 

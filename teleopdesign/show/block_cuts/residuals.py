@@ -70,7 +70,9 @@ def _variables(diagnosis: BlockDiagnosis, record: int, name: str) -> dict[str, A
     rows, diagram = diagnosis.data.rows[record], diagnosis.experiment.diagram
     cut = next(c for c in diagnosis.data.part.cuts if c.name == name)
     count = len(next(iter(rows.signals.values())))
-    variables: dict[str, Array] = {"t [s]": np.arange(count) * rows.period}
+    variables: dict[str, Array] = {
+        "t [s]": np.asarray(np.arange(count) * rows.period, dtype=np.float64)
+    }
     for signal in cut.inputs:
         values = rows.signals[signal]
         motion = diagram.is_position(signal)
