@@ -131,7 +131,7 @@ class BlockDiagnosis(Shown, ByValue):
         """Effects that are missing, with their places, in the order of the ladder."""
         named = {t.added.key for t in self.named_in_computer}
         for name, d in self.bodies.items():
-            alone = (one for one in d.missing if not self._same(name, one))
+            alone = (one for one in d.missing if not self._equal_effects(name, one))
             named |= {(one.effect.name, one.at) for one in alone}
         return tuple(r.added for r in self.rows if r.added in named and r.added is not None)
 
@@ -159,9 +159,9 @@ class BlockDiagnosis(Shown, ByValue):
         for name, d in self.bodies.items():
             listed = [list(group) for group in d.indistinguishable]
             alone = [[one] for one in d.missing if not any(one in group for group in listed)]
-            for group in listed + [one for one in alone if self._same(name, one[0])]:
+            for group in listed + [one for one in alone if self._equal_effects(name, one[0])]:
                 keys = [(c.effect.name, c.at) for c in group]
-                keys += [key for c in group for key in self._same(name, c)]
+                keys += [key for c in group for key in self._equal_effects(name, c)]
                 groups.append(tuple(dict.fromkeys(keys)))
         steps = () if self.computer is None else self.computer.steps
         for s in steps:
@@ -169,7 +169,7 @@ class BlockDiagnosis(Shown, ByValue):
                 groups.append((s.accepted.added.key, *(one.added.key for one in s.alike)))
         return tuple(groups)
 
-    def _same(self, cut: str, one: Candidate) -> tuple[Key, ...]:
+    def _equal_effects(self, cut: str, one: Candidate) -> tuple[Key, ...]:
         """Effects at other blocks of a body's cut that are the same by the wiring."""
         place = next(c for c in self.cuts.tested if c.name == cut)
         return same_effects(self.experiment.diagram, place, one.effect)
@@ -183,7 +183,7 @@ class BlockDiagnosis(Shown, ByValue):
     def answer(self) -> dict[str, Any]:
         """The answer as plain data, in the format of a diagnosis; SI units."""
         bodies = {name: answer(d) for name, d in self.bodies.items()}
-        candidates = [c for name, one in bodies.items() for c in self._shared(name, one)]
+        candidates = [c for name, one in bodies.items() for c in self._share_candidates(name, one)]
         candidates += self._candidates_of_computer()
         parameters = {n: v for one in bodies.values() for n, v in one["model_parameters"].items()}
         shifts = {n: v for one in bodies.values() for n, v in one["record_shift"].items()}
@@ -213,12 +213,12 @@ class BlockDiagnosis(Shown, ByValue):
             "bodies": bodies,
         }
 
-    def _shared(self, cut: str, body: Mapping[str, Any]) -> list[dict[str, Any]]:
+    def _share_candidates(self, cut: str, body: Mapping[str, Any]) -> list[dict[str, Any]]:
         """The candidates of a body; what is the same at other blocks shares its probability."""
         shared = []
         effects = {one.candidate.key: one.candidate for one in self.bodies[cut].candidates}
         for one in body["candidates"]:
-            same = self._same(cut, effects[one["effect"], one["at"]])
+            same = self._equal_effects(cut, effects[one["effect"], one["at"]])
             for key in ((one["effect"], one["at"]), *same):
                 part = one["probability"] / (1 + len(same))
                 shared.append({**one, **_place(key), "probability": part})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +14,7 @@ from ..diagnose import Diagnosis
 from ..diagnose import find_missing as find_missing_in_bodies
 from ..diagnose.search_plan import PLAN, SearchPlan
 from ..diagrams import Junction
-from ..effects import EFFECTS
+from ..effects import EFFECTS, Effect
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .body import diagnose_body
@@ -40,6 +40,7 @@ def find_missing(
     plan: SearchPlan = PLAN,
     among: Collection[str] | None = None,
     at: Collection[str] | None = None,
+    known: Mapping[str, Effect] = EFFECTS,
 ) -> Diagnosis | BlockDiagnosis:
     """Find the effects that a model of bodies, or a whole diagram, lacks.
 
@@ -47,6 +48,7 @@ def find_missing(
     model: of bodies only; a diagram's values stand in its file
     among: names of candidate effects of bodies; all effects of controller blocks are tried
     at: names of the cuts of a diagram that are compared, such as ("R_A",); None: all
+    known: effects of bodies by name, with those of the user; of a diagram only
     raises ExperimentError, ModelError: the records lack what the comparison needs
     """
     if isinstance(experiment, Experiment):
@@ -62,9 +64,7 @@ def find_missing(
         options["among"] = among
     for cut in cuts.of("body"):
         try:
-            bodies[cut.name] = diagnose_body(
-                experiment, cut, known=EFFECTS, report=report, **options
-            )
+            bodies[cut.name] = diagnose_body(experiment, cut, known=known, report=report, **options)
         except (ModelError, ExperimentError) as error:
             cuts = _without_cut(cuts, cut.name, str(error))
     data, ladder = None, None

@@ -41,6 +41,7 @@ def diagnose_diagram(experiment: DiagramExperiment, options: argparse.Namespace)
         progress=reporter,
         plan=QUICK if options.quick else PLAN,
         among=candidate_effects(known, options.only, options.exclude),
+        known=known,
     )
     reporter.clear()
     assert isinstance(diagnosis, BlockDiagnosis)
