@@ -117,6 +117,12 @@ class BlockDiagnosis(Shown, ByValue):
         return {c.name: errors[c.name] for c in self.cuts.tested if c.name in errors}
 
     @property
+    def check(self) -> str:
+        """What the check errors are of: "records", or "blocks of fit" where none is for checks."""
+        logs = self.experiment.logs
+        return "records" if any(log.use == "check" for log in logs) else "blocks of fit"
+
+    @property
     def named_in_computer(self) -> tuple[Attempt, ...]:
         """Accepted effects of the computer that are probable enough, without look-alikes."""
         steps = () if self.computer is None else self.computer.steps
@@ -201,6 +207,7 @@ class BlockDiagnosis(Shown, ByValue):
             ],
             "noise_floor": float(np.sqrt(np.mean(np.square(list(self.floors.values()))))),
             "floors": self.floors,
+            "check": self.check,
             "candidates": sorted(candidates, key=lambda c: -c["probability"]),
             "indistinguishable": [[_place(key) for key in group] for group in self.groups],
             "model_parameters": parameters,

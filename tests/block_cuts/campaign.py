@@ -1,13 +1,13 @@
 """Right and false names on drawn interfaces.
 
-    PYTHONPATH=tests python -m block_cuts.campaign FOLDER [SEED [SIZE]]
+    PYTHONPATH=tests python -m block_cuts.campaign FOLDER [--seed 1] [--size 0.25] [--averages]
 
 Each hidden effect of `HIDDEN` is planted once in an interface of its own. Printed: a row a case,
-then how many are right, and how many were named falsely. SIZE: of the effects, 1 by default. Of
-effects in the computer only the cut of the command is compared: bodies take longest.
+then how many are right, and how many were named falsely. Of effects in the
+computer only the cut of the command is compared: bodies take longest.
 """
 
-import sys
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -49,13 +49,13 @@ def shrink(hidden, size):
     return made
 
 
-def main(folder, seed, size):
+def main(folder, seed, size, averages, first):
     right = false = 0
-    for number, hidden in enumerate(HIDDEN):
+    for number, hidden in list(enumerate(HIDDEN))[first:]:
         hidden = shrink(hidden, size)
         random = np.random.default_rng([seed, number])
         interface = draw_interface(random)
-        interface.hidden = hidden
+        interface.hidden, interface.averages = hidden, averages
         place = Path(folder) / f"{number:03}"
         if not (place / "experiment.toml").exists():
             write_case(interface, place, random)
@@ -72,9 +72,15 @@ def main(folder, seed, size):
             f"left in floors: {left}",
             flush=True,
         )
-    print(f"{right} of {len(HIDDEN)} right, {false} with a false name")
+    print(f"{right} of {len(HIDDEN) - first} right, {false} with a false name")
 
 
 if __name__ == "__main__":
-    seed, size = (*map(float, sys.argv[2:4]), *(0.0, 1.0)[len(sys.argv[2:4]) :])
-    main(sys.argv[1], int(seed), size)
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--size", type=float, default=1.0, help="part of the effects' sizes")
+    parser.add_argument("--averages", action="store_true", help="the force sensor averages")
+    parser.add_argument("--first", type=int, default=0, help="number of the first case")
+    options = parser.parse_args()
+    main(options.folder, options.seed, options.size, options.averages, options.first)
