@@ -20,6 +20,8 @@ from .computer import Placed
 from .computer_fit import ControlData, ControlFit
 from .cuts import COMPUTER
 
+#: why an effect of which too many rows say nothing is refused
+BLIND = "more than a quarter of the moving rows is blind"
 #: most effects that are added: more than three at once were never told apart
 _MOST = 3
 
@@ -165,7 +167,7 @@ def _reason_against(
         ):
             return "a shift of a row belongs to the record"
     if data.blind(one.added, one.fit.placed) > CRITERIA.blind:
-        return "more than a quarter of the moving rows is blind"
+        return BLIND
     return ""
 
 
@@ -182,9 +184,14 @@ def _with_probabilities(step: ComputerStep, ladder: ComputerLadder) -> ComputerS
     total = sum(weights.values()) or 1.0
     trusted = 1.0
     if accepted is not None and not ladder.is_adequate:
-        # more than rounding is left: what the whole ladder explains tells whether forms are right
+        # a law without hidden parts leaves rounding alone; where much more is left, the accepted
+        # effects stand in for another one
         ends = ladder.base.error("check"), ladder.last.error("check")
-        trusted = removed_share(ends, floor) ** CRITERIA.believing
+        explains = ends[1] <= CRITERIA.hidden * ends[0]
+        trusted = removed_share(ends, floor) ** CRITERIA.believing if explains else 0.0
+        blind = [one for one in step.attempts if one.refused == BLIND]
+        if any(one.fit.error("check") < accepted.fit.error("check") for one in blind):
+            trusted = 0.0  # a form that does not count explains more
 
     def probability(one: Attempt) -> float:
         real = weights.get(one.added.key, 0.0) / total * (1.0 - chance(one.score))

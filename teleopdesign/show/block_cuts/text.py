@@ -5,6 +5,7 @@ from __future__ import annotations
 from ...base.sentences import with_standard_error
 from ...block_cuts.cuts import Cut
 from ...block_cuts.diagnosis import BlockDiagnosis, Key
+from ...diagnose.criteria import CRITERIA
 from ..registry import shows
 
 
@@ -81,7 +82,8 @@ def _verdict(diagnosis: BlockDiagnosis) -> str:
     tested = ", ".join(dict.fromkeys(b for c in diagnosis.cuts.tested for b in c.blocks))
     if diagnosis.verdict == "model_adequate":
         return f"verdict: model_adequate. What is left of {tested} is noise."
-    if diagnosis.groups:
+    loud = [name for name, left in diagnosis.left.items() if left > CRITERIA.adequate]
+    if diagnosis.groups and not loud:
         return "verdict: undecided. One effect of a group above is missing; no signal tells which."
-    open_cuts = [n for n, fine in diagnosis.adequate.items() if not fine]
+    open_cuts = loud or [n for n, fine in diagnosis.adequate.items() if not fine]
     return f"verdict: undecided. More than noise is left at {', '.join(open_cuts)}."
