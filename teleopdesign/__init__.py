@@ -54,6 +54,7 @@ The folders, each importing only from those before it:
     measurement   experiment, record, motion, prepared for comparison
     diagnose      residual, noise floor, ladder, answer
     identify      Coulomb level and largest stiffness by the papers' experiments
+    block_cuts    a whole diagram against its recording: which block is wrong, by which effect
     fitted_checks  what a recording tells with a fit: signs, units, timing, visible effects
     unexplained   where a model fails, and on which variables the residual depends
     next_experiment  the motion that distinguishes the effects that a diagnosis leaves open
@@ -78,6 +79,7 @@ from .base.folders import let_folders_be_called
 if TYPE_CHECKING:
     from . import app as app
     from . import arms as arms
+    from . import block_cuts as block_cuts
     from . import blocks as blocks
     from . import check as check
     from . import controllers as controllers
@@ -100,6 +102,11 @@ if TYPE_CHECKING:
     from .base.errors import ExperimentError as ExperimentError
     from .base.errors import ModelError as ModelError
     from .base.errors import TeleopDesignError as TeleopDesignError
+    from .block_cuts import BlockDiagnosis as BlockDiagnosis
+    from .block_cuts import DiagramExperiment as DiagramExperiment
+    from .block_cuts import diagram_experiment as diagram_experiment
+    from .block_cuts import find_missing as find_missing
+    from .block_cuts import load_experiment as load_experiment
     from .blocks import Body as Body
     from .blocks import Value as Value
     from .blocks import hand as hand
@@ -119,7 +126,6 @@ if TYPE_CHECKING:
     from .diagnose import Diagnosis as Diagnosis
     from .diagnose import Ranking as Ranking
     from .diagnose import compare as compare
-    from .diagnose import find_missing as find_missing
     from .diagnose import fit as fit
     from .diagnose import load_answer as load_answer
     from .diagnose import rank as rank
@@ -141,7 +147,6 @@ if TYPE_CHECKING:
     from .frequency import measured_impedance as measured_impedance
     from .measurement import Experiment as Experiment
     from .measurement import Record as Record
-    from .measurement import load_experiment as load_experiment
     from .measurement.from_arrays import experiment as experiment
     from .measurement.recordings import fetch as fetch
     from .model import Model as Model
@@ -199,7 +204,7 @@ GROUPS = {
 #: recordings
 FURTHER = {
     "results": (
-        "Comparison", "Ranking", "Diagnosis", "Simulation", "Design", "Study",
+        "Comparison", "Ranking", "Diagnosis", "BlockDiagnosis", "Simulation", "Design", "Study",
         "Claim", "Certificate",
     ),
     "parts of definitions": (
@@ -210,7 +215,10 @@ FURTHER = {
         "read_study", "MEASURES", "latin_hypercube", "sobol", "random_samples",
         "sensitivity_samples", "limit", "trade_off", "sensitivities", "fit_simulation",
     ),
-    "recordings": ("Record", "fetch", "measured_impedance", "verify"),
+    "recordings": (
+        "Record", "DiagramExperiment", "diagram_experiment", "fetch", "measured_impedance",
+        "verify",
+    ),
     "exchange": ("to_iosystem", "from_control"),
 }
 #: these have another name in their folders; type checkers see all others by their imports

@@ -44,7 +44,7 @@ Target = TypeVar("Target", bound=Callable[..., Any])
 
 _PACKAGE = __name__.partition(".")[0]
 #: folders whose functions raise ExperimentError for a wrong argument
-_OF_EXPERIMENTS = ("measurement", "examples")
+_OF_EXPERIMENTS = ("measurement", "examples", "block_cuts")
 
 
 def check_types(target: Target) -> Target:

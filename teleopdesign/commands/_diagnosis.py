@@ -19,6 +19,7 @@ from ._progress import Reporter
 from ._terminal import print_styled
 
 if TYPE_CHECKING:
+    from ..block_cuts import BlockDiagnosis, DiagramExperiment
     from ..blocks import Body
     from ..diagnose import Diagnosis
     from ..effects import Effect
@@ -63,6 +64,13 @@ def experiment_of(folder: Path) -> Experiment:
     from ..measurement import load_experiment
 
     return load_experiment(folder_of(folder))
+
+
+def experiment_or_diagram(folder: Path) -> Experiment | DiagramExperiment:
+    """The experiment in a folder, of bodies or of a whole diagram."""
+    from ..block_cuts import load_experiment
+
+    return load_experiment(folder)
 
 
 def folder_of(path: Path) -> Path:
@@ -153,7 +161,7 @@ _STYLES = {
 }
 
 
-def print_diagnosis(diagnosis: Diagnosis) -> None:
+def print_diagnosis(diagnosis: Diagnosis | BlockDiagnosis) -> None:
     """Print the ladder and the verdict, in colours on a terminal."""
 
     def style(line: str) -> str:

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError
 from ..base.files import write_json
-from ._diagnosis import experiment_of, folder_of, stated_model
+from ._diagnosis import experiment_or_diagram, folder_of, stated_model
 from ._options import add_experiment, add_output, say_written
 from ._paths import shell_word
+from ._whole_diagram import check_diagram
 
 if TYPE_CHECKING:
     from ..base.finding import Finding
@@ -39,16 +40,20 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print the findings, warnings first; write the requested file."""
     from ..fitted_checks import check_experiment
+    from ..measurement import Experiment
     from ..measurement.experiment import describe_content
 
     folder = folder_of(options.folder)
     try:
-        experiment = experiment_of(folder)
+        whole = experiment_or_diagram(folder)
     except ExperimentError as problem:
         findings = _unreadable(folder, problem)
         if not findings:
             raise
     else:
+        if not isinstance(whole, Experiment):
+            return check_diagram(whole, options)
+        experiment = whole
         print(describe_content(experiment))  # how the logs were read is among the findings
         print()
         findings = check_experiment(experiment, _model_of(experiment, options))

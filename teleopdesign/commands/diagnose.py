@@ -10,7 +10,7 @@ from ..base.errors import ModelError
 from ..base.files import write_beside
 from ._diagnosis import (
     diagnose_experiment,
-    experiment_of,
+    experiment_or_diagram,
     folder_of,
     print_diagnosis,
 )
@@ -18,6 +18,7 @@ from ._folders import diagnose_all
 from ._options import add_effect_files, add_output, add_search, count_argument, say, say_written
 from ._paths import shell_word
 from ._report import write_page
+from ._whole_diagram import diagnose_diagram
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis, SimulationComparison
@@ -85,9 +86,13 @@ def run(options: argparse.Namespace) -> int:
         return diagnose_all(options)
     from ..diagnose import write_answer
     from ..diagnose.predictions import write_predictions
+    from ..measurement import Experiment
 
     folder = folder_of(*options.folder)
-    experiment = experiment_of(folder)
+    whole = experiment_or_diagram(folder)
+    if not isinstance(whole, Experiment):
+        return diagnose_diagram(whole, options)
+    experiment = whole
     print(experiment)
     print()
     diagnosis = diagnose_experiment(experiment, options)

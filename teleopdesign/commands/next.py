@@ -18,6 +18,7 @@ from ._diagnosis import (
     print_diagnosis,
 )
 from ._options import add_experiment, add_output, say, value_from
+from ._whole_diagram import is_diagram, print_what_to_log
 
 if TYPE_CHECKING:
     from ..measurement import Experiment
@@ -38,6 +39,7 @@ QUANTITY = {
 
 EXAMPLES = """
   teleopdesign next answer.json --output next.csv
+  teleopdesign next interface.toml
   teleopdesign next rod --limit speed=0.2m/s --limit force=3N --duration 30
 """
 
@@ -80,6 +82,8 @@ def run(options: argparse.Namespace) -> int:
     """Print the proposed experiment and what it will show; write the requested files."""
     if not (math.isfinite(options.duration) and options.duration > 0):
         raise ExperimentError(f"--duration: found {options.duration:g}, expected more than 0 s")
+    if is_diagram(options.folder):
+        return print_what_to_log(options.folder)
     from ..next_experiment import propose, show_in_simulation, write_reference
 
     experiment = experiment_and_answer(options)

@@ -81,7 +81,7 @@ def channels_from(table: Table, bodies: Mapping[str, BodyDescription]) -> dict[s
         name = known[key]
         if name in channels:
             raise ExperimentError(f"{table.where(key)}: {quote(name)} is given twice")
-        channels[name] = _channel(table.table(key), name, bodies)
+        channels[name] = channel_from(table.table(key), name, bodies)
     _refuse_missing(table, channels, bodies)
     _refuse_shared_columns(table, channels)
     return channels
@@ -160,7 +160,8 @@ def _known_names(bodies: Mapping[str, BodyDescription]) -> dict[str, str]:
     return of_the_record | (short | names if tuple(bodies) == ONE_BODY else names)
 
 
-def _channel(table: Table, name: str, bodies: Mapping[str, BodyDescription]) -> Channel:
+def channel_from(table: Table, name: str, bodies: Mapping[str, BodyDescription]) -> Channel:
+    """The channel that a table describes;  name: in the package, such as "device.position"."""
     body, _, quantity = name.rpartition(".")
     if quantity in _OF_THE_RECORD:
         table.allow(("column", "unit"))

@@ -116,8 +116,13 @@ def load_experiment(folder: str | Path) -> Experiment:
     folder: the folder of experiment.toml (the path of the file is also accepted)
     raises ExperimentError: anything missing, unknown, of the wrong type or unit, in one line
     """
-    folder = _folder_of(Path(folder))
+    folder = folder_of_experiment(Path(folder))
     experiment = read_toml(folder / _FILE, f"{folder.name}/{_FILE}")
+    if "diagram" in experiment.content:
+        raise ExperimentError(
+            f"{experiment.where('diagram')}: found a whole diagram, expected [model]: it is "
+            "compared by `teleopdesign diagnose` and td.find_missing"
+        )
     experiment.allow(
         ("title", "model", "channels", "comparison", "records", "sample_rate", "guessed")
     )
@@ -141,7 +146,7 @@ def load_experiment(folder: str | Path) -> Experiment:
             sample_rate=sample_rate,
             span=span,
         )
-        for file, use, offset_names, span in _record_entries(experiment, folder)
+        for file, use, offset_names, span in record_entries(experiment, folder)
     )
     _check_bandwidth(bandwidth, records, comparison)
     guessed = experiment.table("guessed")
@@ -151,7 +156,11 @@ def load_experiment(folder: str | Path) -> Experiment:
     )
 
 
-def _folder_of(path: Path) -> Path:
+def folder_of_experiment(path: Path) -> Path:
+    """The folder of an experiment, by its own path or that of a file in it.
+
+    raises ExperimentError: there is no such folder, or it holds no experiment.toml
+    """
     try:
         if path.is_file() and (path.parent / _FILE).is_file():
             path = path.parent
@@ -181,7 +190,7 @@ def _folder_of(path: Path) -> Path:
     return path
 
 
-def _record_entries(
+def record_entries(
     experiment: Table, folder: Path
 ) -> list[tuple[str, str, frozenset[str], tuple[float, ...] | None]]:
     """(file, use, separate offsets, span) of each [[records]], checked before any file is read."""

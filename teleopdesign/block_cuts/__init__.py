@@ -1,0 +1,19 @@
+"""A whole diagram against its recording: cuts at recorded signals, and the block that is wrong."""
+
+from typing import TYPE_CHECKING
+
+from ..base.folders import lazy_face
+
+if TYPE_CHECKING:
+    from .cuts import Cut as Cut
+    from .cuts import Cuts as Cuts
+    from .cuts import cuts_of as cuts_of
+    from .diagnosis import BlockDiagnosis as BlockDiagnosis
+    from .diagram_experiment import DiagramExperiment as DiagramExperiment
+    from .reading import diagram_experiment as diagram_experiment
+    from .reading import load_experiment as load_experiment
+    from .search import find_missing as find_missing
+    from .what_to_log import LoggingPlan as LoggingPlan
+    from .what_to_log import what_to_log as what_to_log
+
+__getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -1,0 +1,205 @@
+"""The cut of a body: a one-body experiment made of recorded signals, diagnosed like any other.
+
+    Z_M L = R_A - R_M            a body that moves: command and loads as recorded
+    Z_H L = R_M + R_V            a body that is held: the force at its cut, and what acts beside
+
+Its forces, thresholds, candidates and probabilities are those of `diagnose`; nothing is computed
+here. Where the command is not recorded, the one that the computer's laws give takes its place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..base.errors import ExperimentError, ModelError
+from ..base.toml import Table
+from ..base.units import unit_of
+from ..blocks import Body
+from ..diagnose import Diagnosis
+from ..diagnose import find_missing as find_missing_in_body
+from ..diagrams import Attached, Diagram, Moving
+from ..effects import EFFECTS, Effect
+from ..measurement.channel import channels_from
+from ..measurement.description import BodyDescription
+from ..measurement.experiment import Experiment
+from ..measurement.record import record_of
+from ..measurement.tables import LogColumns
+from ..model import Model
+from .computer import ComputerPart, passes_of
+from .cuts import Cut
+from .diagram_experiment import DiagramExperiment, RecordedLog
+from .look_alikes import OF_A_HAND
+
+
+@dataclass(frozen=True)
+class ForcesOnBody:
+    """Signals that act on a body, each with its weight: along its motion, N or N m.
+
+    command: held between rows;  others: read at the rows
+    """
+
+    motion: str
+    command: tuple[str, float]
+    others: tuple[tuple[str, float], ...]
+    held: bool  # something holds the motion: a hand, whose rest position differs by record
+
+
+def forces_on(diagram: Diagram, cut: Cut) -> ForcesOnBody:
+    """The recorded forces that act on the body of a cut.
+
+    raises ModelError: more forces than an experiment of one body holds
+    """
+    block = diagram.block(cut.name)
+    if isinstance(block, Moving):
+        loads: dict[str, float] = {}
+        for signal, weight in block.loads.items():
+            loads |= _known_terms(diagram, signal, float(weight), cut)
+        held = len(_bodies(diagram, cut)) > 1
+        return ForcesOnBody(block.motion, (block.command, 1.0), tuple(loads.items()), held)
+    assert isinstance(block, Attached)
+    # signal = w force + others, force = sign Z motion
+    junction = next((j for j in diagram.junctions if j.output == cut.signal), None)
+    weights = {block.force: 1.0} if junction is None else dict(junction.terms)
+    weight = float(weights.pop(block.force)) * block.sign
+    others = tuple((s, -float(w) / weight) for s, w in weights.items() if s in cut.inputs)
+    return ForcesOnBody(block.motion, (cut.signal, 1.0 / weight), others, True)
+
+
+def _known_terms(diagram: Diagram, signal: str, weight: float, cut: Cut) -> dict[str, float]:
+    """A force as a sum of recorded ones; a body that holds the motion is none of them."""
+    if signal in cut.inputs:
+        return {signal: weight}
+    terms: dict[str, float] = {}
+    junction = next((j for j in diagram.junctions if j.output == signal), None)
+    for name, w in () if junction is None else junction.terms.items():
+        terms |= _known_terms(diagram, name, weight * float(w), cut)
+    return terms
+
+
+def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
+    """The experiment of one body that a cut is, under the name of its block.
+
+    raises ExperimentError, ModelError: a channel cannot be read as one of a body
+    """
+    terms, name = forces_on(experiment.diagram, cut), cut.name
+    if len(terms.others) > 1 or any(abs(w) != 1.0 for _, w in (terms.command, *terms.others)):
+        raise ModelError(f"{name}: several forces or levers act on it: only a sum of two is read")
+    body = _joined_body(experiment.diagram, cut)
+    described = {name: BodyDescription(name, body.axis, None, {}, f"diagram.{name}")}
+    content: dict[str, Any] = {f"{name}.position": experiment.channels[terms.motion].content}
+    command = terms.command[0]
+    entry: dict[str, Any] = {"column": f"predicted {command}", "unit": unit_of("force", body.axis)}
+    if command in experiment.channels:
+        entry = _force(experiment, terms.command, measured=command == cut.signal)
+    content[f"{name}.actuator_force"] = entry
+    for other in terms.others:
+        content[f"{name}.interaction_force"] = _force(experiment, other)
+    if experiment.sample_rate is None:
+        content["time"] = experiment.channels["time"].content
+    table = next(iter(experiment.channels.values()))
+    channels = channels_from(Table(content, table.file, "channels"), described)
+    # the rest position of a hand is free in each record
+    rest = frozenset({"position_zero"}) if terms.held else frozenset()
+    records = tuple(
+        record_of(
+            _columns(experiment, cut, command, log),
+            f"{experiment.folder.name}/{log.file}",
+            file=log.file,
+            use=log.use,
+            offset_names=log.offset_names | rest,
+            channels=channels,
+            bodies=described,
+            sample_rate=experiment.sample_rate,
+        )
+        for log in experiment.logs
+    )
+    return Experiment(
+        experiment.folder,
+        f"{experiment.title}: {name}",
+        described,
+        None,
+        channels,
+        experiment.bandwidth,
+        records,
+    )
+
+
+def diagnose_body(
+    experiment: DiagramExperiment,
+    cut: Cut,
+    *,
+    known: Mapping[str, Effect] = EFFECTS,
+    report: Callable[[str], None],
+    **options: Any,
+) -> Diagnosis:
+    """The diagnosis of the body of a cut.
+
+    known: effects by name;  options: those of `diagnose.find_missing`
+    """
+    model = Model({cut.name: _joined_body(experiment.diagram, cut)}, known)
+    if isinstance(experiment.diagram.block(cut.name), Attached):
+        among = options.pop("among", None)
+        names = known if among is None else among
+        options["among"] = [n for n in names if known[n].role in OF_A_HAND]
+    diagnosis = find_missing_in_body(
+        body_experiment(experiment, cut),
+        model,
+        progress=lambda line: report(f"{cut.name}: {line}"),
+        **options,
+    )
+    return replace(diagnosis, left_out=())
+
+
+def _bodies(diagram: Diagram, cut: Cut) -> list[Body]:
+    """The bodies of a cut, the one that gives it its name first."""
+    names = sorted(cut.blocks, key=lambda name: name != cut.name)
+    contents = [getattr(diagram.block(n), "body", None) for n in names if diagram.has(n)]
+    return [body for body in contents if isinstance(body, Body)]
+
+
+def _joined_body(diagram: Diagram, cut: Cut) -> Body:
+    """The body of a cut; of bodies that move together their sum, as a start of its estimation."""
+    whole, *others = _bodies(diagram, cut)
+    for body in others:
+        values = {"inertia": _value(whole, "inertia") + _value(body, "inertia")}
+        for effect in body.effects:
+            here = {n: _value(body, f"{effect.name}.{n}") for n in effect.parameters}
+            if not whole.has(effect.name):
+                whole = whole.with_effect(effect, here)
+                continue
+            names = {f"{effect.name}.{n}": v for n, v in here.items()}
+            values |= {n: _value(whole, n) + v for n, v in names.items()}
+        whole = whole.with_values(values)
+    return whole
+
+
+def _value(body: Body, name: str) -> float:
+    return body.parameters[name].value
+
+
+def _columns(experiment: DiagramExperiment, cut: Cut, command: str, log: RecordedLog) -> LogColumns:
+    """The columns of a log, with the command that the computer's laws give where none is there."""
+    if command in experiment.channels:
+        return log.columns
+    made = Cut(command, command, "computer", cut.blocks, cut.inputs)
+    part = ComputerPart(experiment.diagram, (made,), experiment.zero, experiment.computer)
+    passes = passes_of(experiment, log)
+    values, count = part.predict(passes)[command], len(experiment.seconds(log))
+    held = np.repeat(values, -(-count // len(values)))[:count]
+    return replace(log.columns, values={**log.columns.values, f"predicted {command}": held})
+
+
+def _force(
+    experiment: DiagramExperiment, term: tuple[str, float], *, measured: bool = False
+) -> dict[str, Any]:
+    """The table of a force's channel, with the sign with which it acts along the motion."""
+    signal, weight = term
+    if signal not in experiment.channels:
+        raise ExperimentError(f"{experiment.title}: {signal} is not recorded")
+    content = dict(experiment.channels[signal].content)
+    content["sign"] = content.get("sign", 1) * (1 if weight > 0 else -1)
+    return content | ({"measured": True} if measured else {})

@@ -1,0 +1,293 @@
+"""Fits of the computer's effects: residuals at its cuts, least squares over few values.
+
+The residual of a cut is the recorded signal less the predicted one, low-passed, over the rms of the
+recorded signal. A shift of the command's log by a row belongs to the record: it is chosen for each
+fit among -1, 0 and 1 rows, the smaller one where both leave the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..diagnose.evidence import SAME
+from ..diagnose.fit import standard_errors
+from ..diagnose.solve import BLOCK
+from ..effects.of_blocks.controllers import ControlEffect
+from ..measurement.filtering import Array, spectrum
+from .computer import ComputerPart, Passes, Placed, velocity_of
+from .cuts import COMPUTER
+from .diagram_experiment import DiagramExperiment, RecordedLog
+
+#: s left out at each end of a record, as in every force error
+TRIM = 0.25
+#: s of a block that is held out where no record is for checks only
+HELD_OUT = 1.0
+#: draws of the rounding: the floor is then known to a few percent
+DRAWS = 8
+#: decimals of a column; with more the rounding is none that counts
+_MOST_DIGITS = 13
+#: squares over those of the signal below which two shifts leave the same: rounding
+TINY = 1e-16
+
+
+@dataclass(frozen=True)
+class ControlFit:
+    """Effects of the computer with their values, and what they leave.
+
+    shift: rows by which the log of the command is late
+    residual: use -> residual over the rms of the signal, so that its squares add up to those of
+        the errors;  blocks: use -> number of the block of each row
+    errors: use -> cut -> relative error;  stderr: of each value, SI
+    """
+
+    placed: tuple[Placed, ...]
+    shift: int
+    residual: dict[str, Array]
+    errors: dict[str, dict[str, float]]
+    stderr: tuple[float, ...] = ()
+
+    def error(self, use: str) -> float:
+        """Root mean square of the errors of the cuts."""
+        return float(np.sqrt(np.mean(np.square(list(self.errors[use].values())))))
+
+    @property
+    def squares(self) -> float:
+        return float(np.sum(self.residual["fit"] ** 2))
+
+
+class ControlData:
+    """The recorded signals of the computer's cuts, low-passed, and the rows that count."""
+
+    def __init__(self, part: ComputerPart, rows: Sequence[Passes], bandwidth: float) -> None:
+        self.part, self.rows = part, tuple(rows)
+        self.spectra = [spectrum(_count(r), r.period) for r in self.rows]
+        self.gains = [s.lowpass(bandwidth) for s in self.spectra]
+        held_out = all(r.use == "fit" for r in self.rows)
+        self.masks = [_masks(r, held_out) for r in self.rows]
+        self.held_out = held_out
+        self.recorded = [
+            {c.signal: self.low(i, r.signals[c.signal]) for c in part.cuts}
+            for i, r in enumerate(self.rows)
+        ]
+        self.scale = {
+            (use, c.signal): float(
+                np.sqrt(sum(np.sum(z[c.signal][m[use]] ** 2) for z, m in self._pairs()))
+            )
+            or 1.0
+            for use in ("fit", "check")
+            for c in part.cuts
+        }
+        self.shifts = (0,) if part.computer.one_pass else (0, -1, 1)
+
+    def _pairs(self) -> list[tuple[dict[str, Array], dict[str, NDArray[np.bool_]]]]:
+        return list(zip(self.recorded, self.masks, strict=True))
+
+    def low(self, record: int, samples: Array) -> Array:
+        """The samples of a record through the low-pass of the comparison."""
+        return self.spectra[record].multiply(samples, self.gains[record])
+
+    @cached_property
+    def blocks(self) -> dict[str, NDArray[np.intp]]:
+        """Number of the block of each row of the residuals, cuts one after the other."""
+        numbers: dict[str, NDArray[np.intp]] = {}
+        for use in ("fit", "check"):
+            parts, first = [], 0
+            for r, m in zip(self.rows, self.masks, strict=True):
+                at = (np.flatnonzero(m[use]) * r.period / BLOCK).astype(np.intp) + first
+                parts.append(at)
+                first = int(at.max(initial=first)) + 1
+            one = np.concatenate(parts)
+            numbers[use] = np.concatenate([one] * len(self.part.cuts))
+        return numbers
+
+    def predictions(self, placed: Sequence[Placed]) -> list[dict[str, Array]]:
+        """Low-passed prediction of each record's signals."""
+        made = [self.part.predict(r, placed) for r in self.rows]
+        return [{s: self.low(i, x) for s, x in one.items()} for i, one in enumerate(made)]
+
+    def residuals(
+        self, predicted: Sequence[dict[str, Array]], shift: int, use: str
+    ) -> dict[str, Array]:
+        """Residual of each cut on the rows of a use, over the rms of its signal there."""
+        left = {}
+        for cut in self.part.cuts:
+            s = cut.signal
+            parts = [
+                (z[s] - np.roll(p[s], shift))[m[use]]
+                for (z, m), p in zip(self._pairs(), predicted, strict=True)
+            ]
+            left[cut.name] = np.concatenate(parts) / self.scale[use, s]
+        return left
+
+    def squares(self, placed: Sequence[Placed]) -> dict[int, float]:
+        """Sum of squares on the fit rows at each shift."""
+        made = self.predictions(placed)
+        return {
+            s: sum(float(np.sum(r**2)) for r in self.residuals(made, s, "fit").values())
+            for s in self.shifts
+        }
+
+    def at(
+        self, placed: Sequence[Placed], shift: int | None = None, stderr: Sequence[float] = ()
+    ) -> ControlFit:
+        """The fit at these values;  shift: None: the best one."""
+        if shift is None:
+            shift = _least(self.squares(placed))
+        made = self.predictions(placed)
+        left = {use: self.residuals(made, shift, use) for use in ("fit", "check")}
+        return ControlFit(
+            tuple(placed),
+            shift,
+            {use: np.concatenate(list(one.values())) for use, one in left.items()},
+            {
+                use: {name: float(np.sqrt(np.sum(r**2))) for name, r in one.items()}
+                for use, one in left.items()
+            },
+            tuple(stderr),
+        )
+
+    def estimate(self, before: ControlFit, effect: ControlEffect, at: str) -> ControlFit:
+        """The best values of an effect and those before it, from its best start at each shift."""
+        starts = [
+            (*before.placed, Placed(effect, at, float(value)))
+            for value in effect.starts(self._samples(at), self.rows[0].period)
+        ]
+        sums = [self.squares(one) for one in starts]
+        fits = {}
+        for shift in self.shifts:
+            best = min(range(len(starts)), key=lambda i: sums[i][shift])
+            fits[shift] = self._refine(starts[best], shift)
+        return fits[_least({shift: fit.squares for shift, fit in fits.items()})]
+
+    def _refine(self, placed: Sequence[Placed], shift: int) -> ControlFit:
+        """Least squares over the values, from these ones."""
+        from scipy.optimize import least_squares
+
+        unit = np.array([self._unit(p) for p in placed])
+
+        def placed_at(x: Array) -> list[Placed]:
+            values = (x * unit).tolist()
+            return [Placed(p.effect, p.at, v) for p, v in zip(placed, values, strict=True)]
+
+        def left(x: Array) -> Array:
+            one = self.residuals(self.predictions(placed_at(x)), shift, "fit")
+            return np.concatenate(list(one.values()))
+
+        lower = np.array([p.effect.declared.lower for p in placed]) / unit
+        start = np.maximum(np.array([p.value for p in placed]) / unit, lower + 1e-9)
+        solved = least_squares(
+            left, start, bounds=(lower, np.inf), diff_step=[1e-4] * len(start), xtol=1e-6
+        )
+        errors = standard_errors(np.asarray(solved.jac), solved.fun, self.blocks["fit"]) * unit
+        return self.at(placed_at(solved.x), shift, errors)
+
+    def _unit(self, placed: Placed) -> float:
+        """Scale of a value in a fit: its own size, or a hundredth of what the effect acts on."""
+        return abs(placed.value) or 0.01 * float(np.abs(self._samples(placed.at)).max(initial=1e-9))
+
+    def _samples(self, at: str) -> Array:
+        """Samples on which an effect acts: the command, or what a block makes of recorded rows."""
+        name = self._signal(at)
+        return np.concatenate([self.part.value(r, name) for r in self.rows])
+
+    def _signal(self, at: str) -> str:
+        if at == COMPUTER:
+            return next(c.signal for c in self.part.cuts if COMPUTER in c.blocks)
+        return self.part.diagram.block(at).outputs[0]
+
+    def blind(self, one: Placed, placed: Sequence[Placed]) -> float:
+        """Share of the moving rows in which the law behind an effect has no influence."""
+        if one.effect.passes is None:
+            return 0.0
+        others = [p for p in placed if p.key != one.key]
+        moving, passing = [], []
+        for r in self.rows:
+            samples = self.part.value(r, self._signal(one.at), others)
+            motions = [s for s in r.signals if self.part.diagram.is_position(s)]
+            moves = np.any([velocity_of(r.signals[s], r.period) != 0 for s in motions], axis=0)
+            moving.append(moves | (not motions))
+            passing.append(one.effect.passes(samples, one.value))
+        where = np.concatenate(moving)
+        return 1.0 - float(np.mean(np.concatenate(passing)[where])) if where.any() else 0.0
+
+
+def _least(squares: dict[int, float]) -> int:
+    """The shift that leaves least; the smallest one where several leave the same."""
+    least = min(squares.values())
+    alike = [s for s, left in squares.items() if left <= least * (1.0 + SAME) + TINY]
+    return min(alike, key=abs)
+
+
+def _count(rows: Passes) -> int:
+    return len(next(iter(rows.signals.values())))
+
+
+def _masks(rows: Passes, held_out: bool) -> dict[str, NDArray[np.bool_]]:
+    """Passes of each use: without the ends; blocks in turn where no record is for checks only."""
+    time = np.arange(_count(rows)) * rows.period
+    counted = (time >= TRIM) & (time < time[-1] + rows.period - TRIM)
+    if not held_out:
+        return {use: counted & (rows.use == use) for use in ("fit", "check")}
+    odd = (time / HELD_OUT).astype(int) % 2 == 1
+    return {"fit": counted & ~odd, "check": counted & odd}
+
+
+def floors(data: ControlData, experiment: DiagramExperiment, seed: int = 0) -> dict[str, float]:
+    """Error of each cut that rounding alone leaves, on the check rows, by drawn readings.
+
+    The computer read the same numbers, so that only the last digit of a column counts; of a sensor
+    that it does not read, resolution and noise. The predicted signal is rounded anew, beside the
+    steps that the log has: at rest the rounding is a constant, which no low-pass takes away.
+    """
+    random = np.random.default_rng(seed)
+    sums = dict.fromkeys((c.signal for c in data.part.cuts), 0.0)
+    for i, (rows, log) in enumerate(zip(data.rows, experiment.logs, strict=True)):
+        drawn = {
+            s: x + _reading(experiment, log, s, len(x), random) for s, x in rows.signals.items()
+        }
+        again = Passes(rows.file + " drawn", rows.use, rows.period, drawn)
+        before, after = data.part.predict(rows), data.part.predict(again)
+        for cut in data.part.cuts:
+            s = cut.signal
+            step = max(_digit(experiment, log, s), experiment.channel[s].resolution or 0.0)
+            for beside in random.uniform(0.0, step, DRAWS):
+                made = _round_to(after[s] + beside, step) - before[s] - beside
+                left = data.low(i, made)[data.masks[i]["check"]]
+                sums[s] += float(np.sum(left**2)) / data.scale["check", s] ** 2 / DRAWS
+    return {c.name: float(np.sqrt(sums[c.signal])) for c in data.part.cuts}
+
+
+def _round_to(samples: Array, step: float) -> Array:
+    return np.round(samples / step) * step if step else samples
+
+
+def _reading(
+    experiment: DiagramExperiment, log: RecordedLog, name: str, n: int, random: np.random.Generator
+) -> Array:
+    """Drawn difference between what the computer read and what the log holds."""
+    channel = experiment.channel[name]
+    if name not in experiment.read_by_computer:
+        noise = (channel.noise or 0.0) * random.standard_normal(n)
+        return noise + random.uniform(-0.5, 0.5, n) * (channel.resolution or 0.0)
+    if channel.resolution is not None and name in experiment.diagram.measured:
+        return np.zeros(n)  # whole steps of a sensor, as the computer read them
+    # a number of the computer, which was rounded for the log
+    step = max(_digit(experiment, log, name), channel.resolution or 0.0)
+    return random.uniform(-0.5, 0.5, n) * step
+
+
+def _digit(experiment: DiagramExperiment, log: RecordedLog, name: str) -> float:
+    """The last digit of a column, SI; 0: as many digits as a number has."""
+    channel = experiment.channel[name]
+    values = np.concatenate([log.columns.values[c] for c in channel.columns])
+    signal = np.ptp(experiment.signal(name, log))
+    factor = signal / np.ptp(values) if np.ptp(values) else 0.0
+    for digits in range(_MOST_DIGITS):
+        if np.abs(np.round(values, digits) - values).max() < 1e-3 * 10.0**-digits:
+            return float(10.0**-digits * abs(factor))
+    return 0.0

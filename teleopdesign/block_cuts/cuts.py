@@ -1,0 +1,161 @@
+"""Cuts of a diagram, from its wiring alone: which recorded signal tests which blocks.
+
+A recorded signal that a block or a junction makes cuts the diagram. Upstream of the cut, other
+recorded signals are known inputs. The prediction of the signal from them is compared with the
+record, so the cut tests the blocks between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from ..diagrams import ANY, Attached, Control, Diagram, Linked, Moving
+from ..diagrams.parts import Part
+
+#: place of an effect that acts on the whole command
+COMPUTER = "computer"
+
+
+@dataclass(frozen=True)
+class Cut:
+    """One recorded signal and the blocks that make it of other recorded signals.
+
+    name: of its error: the signal of a computer's force, the block of a body
+    kind: "computer": forces that a computer makes;  "body": a body, or a body that is held;
+        "wiring": a junction all of whose terms are recorded
+    blocks: that it tests, with `COMPUTER` where the signal is a command
+    inputs: recorded signals of which it is predicted
+    separating: signals whose recording would test its blocks one by one
+    """
+
+    name: str
+    signal: str
+    kind: Literal["computer", "body", "wiring"]
+    blocks: tuple[str, ...]
+    inputs: tuple[str, ...]
+    separating: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Cuts:
+    """All cuts of a diagram;  untested: block -> why no cut tests it."""
+
+    tested: tuple[Cut, ...]
+    untested: Mapping[str, str]
+
+    def of(self, kind: str) -> tuple[Cut, ...]:
+        """The cuts of one kind."""
+        return tuple(cut for cut in self.tested if cut.kind == kind)
+
+    def __repr__(self) -> str:
+        lines = []
+        for cut in self.tested:
+            what = ", ".join(cut.blocks) or "the wiring"
+            lines.append(f"cut {cut.name}: {cut.signal} from {', '.join(cut.inputs)} tests {what}")
+            if cut.separating:
+                lines.append(f"    to tell them apart: record {', '.join(cut.separating)}")
+        lines += [f"untested: {block}: {why}" for block, why in self.untested.items()]
+        return "\n".join(lines)
+
+
+def cuts_of(diagram: Diagram, recorded: Collection[str], zero: Collection[str] = ()) -> Cuts:
+    """The cuts of a diagram.
+
+    recorded: names of recorded signals;  zero: outside signals that are known to be zero
+    """
+    known = {*recorded, *zero}
+    tested: list[Cut] = []
+    reasons: dict[str, str] = {}
+    for signal in recorded:
+        if signal in diagram.outside:
+            continue
+        made = _trace(diagram, signal, known)
+        cut = _cut(diagram, signal, made, recorded)
+        if isinstance(cut, Cut):
+            tested.append(cut)
+        else:
+            reasons |= {p.name: cut for p in made.blocks if p.name not in reasons}
+    done = {name for cut in tested for name in cut.blocks}
+    names = [block.name for block in diagram.blocks if block.name not in done]
+    untested = {n: reasons.get(n) or _why_untested(diagram, n, recorded) for n in names}
+    return Cuts(tuple(tested), untested)
+
+
+@dataclass
+class _Traced:
+    """What makes a signal of known ones: blocks, known signals and unknown outside ones."""
+
+    blocks: list[Part]
+    inputs: list[str]
+    unknown: list[str]
+
+
+def _trace(diagram: Diagram, signal: str, known: Collection[str]) -> _Traced:
+    makers = {s: part for part in diagram.parts for s in part.outputs}
+    made, todo, visited = _Traced([], [], []), [makers[signal]], set()
+    while todo:
+        part = todo.pop(0)
+        if part.name in visited:
+            continue
+        visited.add(part.name)
+        if isinstance(part, Moving | Attached | Linked | Control):
+            made.blocks.append(part)
+        for s in part.inputs:
+            if s in known:
+                made.inputs += [s] if s not in made.inputs else []
+            elif s in diagram.outside:
+                made.unknown.append(s)
+            else:
+                todo.append(makers[s])
+    return made
+
+
+def _cut(diagram: Diagram, signal: str, made: _Traced, recorded: Collection[str]) -> Cut | str:
+    """The cut at a signal, or why there is none."""
+    if made.unknown:
+        lacks = made.unknown[0]
+        return f"{lacks} is neither recorded nor zero: record {lacks}, or state it as zero"
+    if unstated := [b.name for b in made.blocks if _content(b) is ANY]:
+        return f"{unstated[0]} has no values to compare"
+    if analog := [b.name for b in made.blocks if isinstance(b, Control) and b.analog]:
+        return f"{analog[0]} is analog: only laws in a computer are predicted"
+    bodies = [b for b in made.blocks if isinstance(b, Moving | Attached | Linked)]
+    controls = [b for b in made.blocks if isinstance(b, Control)]
+    inputs = tuple(s for s in made.inputs if s in recorded)
+    inside = {s for b in made.blocks for s in b.outputs} - {signal}
+    inside |= {j.output for j in diagram.junctions if inside & set(j.terms)} - {signal, *recorded}
+    separating = tuple(s for s in diagram.signals if s in inside) if len(made.blocks) > 1 else ()
+    names = tuple(b.name for b in diagram.blocks if b in made.blocks)
+    if not bodies:
+        commands = {b.command for b in diagram.blocks if isinstance(b, Moving)}
+        whole = (COMPUTER,) if signal in commands else ()
+        if not (controls or whole):
+            return Cut(signal, signal, "wiring", (), inputs)
+        return Cut(signal, signal, "computer", (*names, *whole), inputs, separating)
+    moving = [b for b in bodies if isinstance(b, Moving)]
+    if any(isinstance(b, Linked) for b in bodies):
+        return "an impedance matrix has no force residual yet"
+    if any(b.motion != signal for b in moving):
+        lacks = next(b.motion for b in moving if b.motion != signal)
+        return f"the motion {lacks} is not recorded: record {lacks}"
+    if not moving and (controls or len(bodies) > 1):
+        return f"it is tested only with others: record {', '.join(separating)}"
+    if any(isinstance(b, Attached) and b.motion != signal for b in bodies if moving):
+        return "it is attached to a motion that is not recorded"
+    name = moving[0].name if moving else bodies[0].name
+    whole = (COMPUTER,) if controls else ()
+    return Cut(name, signal, "body", (*names, *whole), inputs, separating)
+
+
+def _content(block: Part) -> object:
+    return block.controller if isinstance(block, Control) else getattr(block, "body", None)
+
+
+def _why_untested(diagram: Diagram, name: str, recorded: Collection[str]) -> str:
+    """Why no recorded signal tests a block: none follows from it, or only through others."""
+    block = diagram.block(name)
+    behind = [j.output for j in diagram.junctions if set(block.outputs) & set(j.terms)]
+    wanted = [s for s in (*block.outputs, *behind) if s not in recorded]
+    return f"no recorded signal follows from it: record {' or '.join(wanted) or 'its output'}"

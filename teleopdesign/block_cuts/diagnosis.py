@@ -1,0 +1,280 @@
+"""The result: every block against the measurement, as one ladder over all cuts.
+
+The cuts share no unknown: all that stands between two of them was recorded. So the ladder of the
+whole joins their ladders, the largest fall of the error first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..base.files import write_json
+from ..base.frozen import ByValue
+from ..base.shown import Shown, figure_of
+from ..diagnose import Diagnosis
+from ..diagnose.answer import answer
+from ..diagnose.candidates import Candidate
+from ..diagnose.criteria import CRITERIA
+from ..diagnose.verdict import VerdictName
+from .computer_fit import ControlData
+from .computer_search import Attempt, ComputerLadder
+from .cuts import Cuts
+from .diagram_experiment import DiagramExperiment
+from .look_alikes import same_effects
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: an effect and the place where it acts
+Key = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class CutsRow:
+    """One row of the ladder.
+
+    added: effect and place; None: the diagram as stated, bodies re-estimated
+    fit, check: cut -> error
+    """
+
+    added: Key | None
+    fit: Mapping[str, float]
+    check: Mapping[str, float]
+
+    @property
+    def fit_error(self) -> float:
+        """Root mean square over the cuts."""
+        return float(np.sqrt(np.mean(np.square(list(self.fit.values())))))
+
+    @property
+    def check_error(self) -> float:
+        return float(np.sqrt(np.mean(np.square(list(self.check.values())))))
+
+
+@dataclass(frozen=True, eq=False)
+class BlockDiagnosis(Shown, ByValue):
+    """Which block of a diagram differs from the recording, and by which effect.
+
+    cuts: what is tested, and what is not
+    bodies: cut -> diagnosis of its body;  computer: ladder of the computer's cuts; None: none
+    wiring: cut -> error of a junction all of whose terms are recorded
+    data: of the computer's cuts
+    """
+
+    experiment: DiagramExperiment
+    cuts: Cuts
+    bodies: Mapping[str, Diagnosis]
+    computer: ComputerLadder | None
+    wiring: Mapping[str, float] = field(default_factory=dict)
+    data: ControlData | None = None
+
+    @cached_property
+    def floors(self) -> dict[str, float]:
+        """Cut -> error that sensors and rounding alone would leave."""
+        made = {name: d.floor.value for name, d in self.bodies.items()}
+        made |= self.computer.floors if self.computer is not None else {}
+        return {c.name: made[c.name] for c in self.cuts.tested if c.name in made}
+
+    @cached_property
+    def rows(self) -> tuple[CutsRow, ...]:
+        """The ladder of all cuts together; no row raises its error."""
+        fit = {name: d.before.fit_error for name, d in self.bodies.items()}
+        check = {name: d.before.check_error for name, d in self.bodies.items()}
+        waiting: list[list[tuple[Key, dict[str, float], dict[str, float]]]] = []
+        for name, d in self.bodies.items():
+            waiting.append(
+                [
+                    ((r.added.effect.name, r.added.at), {name: r.fit_error}, {name: r.check_error})
+                    for r in d.rungs[1:]
+                    if r.added is not None
+                ]
+            )
+        if self.computer is not None:
+            fit |= self.computer.base.errors["fit"]
+            check |= self.computer.base.errors["check"]
+            accepted = [s.accepted for s in self.computer.steps if s.accepted is not None]
+            waiting.append(
+                [(a.added.key, a.fit.errors["fit"], a.fit.errors["check"]) for a in accepted]
+            )
+        rows = [CutsRow(None, self._in_order(fit), self._in_order(check))]
+        while any(waiting):
+            falls = [
+                sum(check[n] ** 2 - e**2 for n, e in steps[0][2].items()) if steps else -np.inf
+                for steps in waiting
+            ]
+            added, new_fit, new_check = waiting[int(np.argmax(falls))].pop(0)
+            fit, check = fit | new_fit, check | new_check
+            rows.append(CutsRow(added, self._in_order(fit), self._in_order(check)))
+        return tuple(rows)
+
+    def _in_order(self, errors: Mapping[str, float]) -> dict[str, float]:
+        return {c.name: errors[c.name] for c in self.cuts.tested if c.name in errors}
+
+    @property
+    def check(self) -> str:
+        """What the check errors are of: "records", or "blocks of fit" where none is for checks."""
+        logs = self.experiment.logs
+        return "records" if any(log.use == "check" for log in logs) else "blocks of fit"
+
+    @property
+    def named_in_computer(self) -> tuple[Attempt, ...]:
+        """Accepted effects of the computer that are probable enough, without look-alikes."""
+        steps = () if self.computer is None else self.computer.steps
+        return tuple(
+            s.accepted
+            for s in steps
+            if s.accepted is not None and not s.alike and s.accepted.probability >= CRITERIA.named
+        )
+
+    @property
+    def missing(self) -> tuple[Key, ...]:
+        """Effects that are missing, with their places, in the order of the ladder."""
+        named = {t.added.key for t in self.named_in_computer}
+        for name, d in self.bodies.items():
+            alone = (one for one in d.missing if not self._equal_effects(name, one))
+            named |= {(one.effect.name, one.at) for one in alone}
+        return tuple(r.added for r in self.rows if r.added in named and r.added is not None)
+
+    @property
+    def adequate(self) -> dict[str, bool]:
+        """Cut -> whether what is left of it is noise."""
+        made = {name: d.verdict == "model_adequate" for name, d in self.bodies.items()}
+        if self.computer is not None:
+            added = any(s.accepted for s in self.computer.steps)
+            fine = self.computer.is_adequate and not added
+            made |= dict.fromkeys(self.computer.floors, fine)
+        return made
+
+    @property
+    def verdict(self) -> VerdictName:
+        """Of the tested cuts only."""
+        if self.missing:
+            return "effects_missing"
+        return "model_adequate" if all(self.adequate.values()) else "undecided"
+
+    @property
+    def groups(self) -> tuple[tuple[Key, ...], ...]:
+        """Effects that explain the records equally well, the accepted one first."""
+        groups = []
+        for name, d in self.bodies.items():
+            listed = [list(group) for group in d.indistinguishable]
+            alone = [[one] for one in d.missing if not any(one in group for group in listed)]
+            for group in listed + [one for one in alone if self._equal_effects(name, one[0])]:
+                keys = [(c.effect.name, c.at) for c in group]
+                keys += [key for c in group for key in self._equal_effects(name, c)]
+                groups.append(tuple(dict.fromkeys(keys)))
+        steps = () if self.computer is None else self.computer.steps
+        for s in steps:
+            if s.accepted is not None and s.alike:
+                groups.append((s.accepted.added.key, *(one.added.key for one in s.alike)))
+        return tuple(groups)
+
+    def _equal_effects(self, cut: str, one: Candidate) -> tuple[Key, ...]:
+        """Effects at other blocks of a body's cut that are the same by the wiring."""
+        place = next(c for c in self.cuts.tested if c.name == cut)
+        return same_effects(self.experiment.diagram, place, one.effect)
+
+    @property
+    def left(self) -> dict[str, float]:
+        """Cut -> last check error over its floor."""
+        last = self.rows[-1].check
+        return {n: last[n] / f if f else float("inf") for n, f in self.floors.items()}
+
+    def answer(self) -> dict[str, Any]:
+        """The answer as plain data, in the format of a diagnosis; SI units."""
+        bodies = {name: answer(d) for name, d in self.bodies.items()}
+        candidates = [c for name, one in bodies.items() for c in self._share_candidates(name, one)]
+        candidates += self._candidates_of_computer()
+        parameters = {n: v for one in bodies.values() for n, v in one["model_parameters"].items()}
+        shifts = {n: v for one in bodies.values() for n, v in one["record_shift"].items()}
+        return {
+            "verdict": self.verdict,
+            "missing": [_place(key) for key in self.missing],
+            "ladder": [
+                {
+                    "added": None if r.added is None else _place(r.added),
+                    "fit_error": r.fit_error,
+                    "check_error": r.check_error,
+                    "cuts": dict(r.check),
+                }
+                for r in self.rows
+            ],
+            "noise_floor": float(np.sqrt(np.mean(np.square(list(self.floors.values()))))),
+            "floors": self.floors,
+            "check": self.check,
+            "candidates": sorted(candidates, key=lambda c: -c["probability"]),
+            "indistinguishable": [[_place(key) for key in group] for group in self.groups],
+            "model_parameters": parameters,
+            "tested": {c.name: list(c.blocks) for c in self.cuts.tested},
+            "untested": dict(self.cuts.untested),
+            "to_separate": {c.name: list(c.separating) for c in self.cuts.tested if c.separating},
+            "assumed": self.experiment.assumed,
+            "wiring": dict(self.wiring),
+            "record_shift": shifts | self._shift_of_computer(),
+            "bodies": bodies,
+        }
+
+    def _share_candidates(self, cut: str, body: Mapping[str, Any]) -> list[dict[str, Any]]:
+        """The candidates of a body; what is the same at other blocks shares its probability."""
+        shared = []
+        effects = {one.candidate.key: one.candidate for one in self.bodies[cut].candidates}
+        for one in body["candidates"]:
+            same = self._equal_effects(cut, effects[one["effect"], one["at"]])
+            for key in ((one["effect"], one["at"]), *same):
+                part = one["probability"] / (1 + len(same))
+                shared.append({**one, **_place(key), "probability": part})
+        return shared
+
+    def _shift_of_computer(self) -> dict[str, Any]:
+        if self.computer is None or self.data is None or not self.computer.last.shift:
+            return {}
+        late = self.computer.last.shift * self.data.rows[0].period
+        return {name: {"value": late, "unit": "s"} for name in self.computer.floors}
+
+    def _candidates_of_computer(self) -> list[dict[str, Any]]:
+        """Every effect of a controller tried, by the step at which it was most probable."""
+        best: dict[Key, Attempt] = {}
+        for step in () if self.computer is None else self.computer.steps:
+            for one in step.attempts:
+                if one.added.key not in best or one.probability > best[one.added.key].probability:
+                    best[one.added.key] = one
+        return [
+            {
+                **_place(key),
+                "probability": one.probability,
+                "check_error": one.fit.error("check"),
+                "cuts": one.fit.errors["check"],
+                "refused": one.refused,
+                "parameters": {
+                    one.added.effect.parameter: {
+                        "value": one.added.value,
+                        "stderr": one.fit.stderr[-1],
+                        "unit": self.experiment.unit(one.added.effect, one.added.at),
+                    }
+                },
+            }
+            for key, one in best.items()
+        ]
+
+    def plot(self) -> Figure:
+        """The block diagram, each block coloured by the error of its cut."""
+        return figure_of(self)
+
+    def plot_residuals(self) -> Figure:
+        """What is left at the computer's cuts, over time and the variables of their blocks."""
+        return figure_of(self, kind="panels")
+
+
+def write_answer(diagnosis: BlockDiagnosis, path: str | Path) -> None:
+    """Write the answer as JSON."""
+    write_json(path, diagnosis.answer())
+
+
+def _place(key: Key) -> dict[str, str]:
+    return {"effect": key[0], "at": key[1]}

@@ -1,0 +1,126 @@
+"""An experiment of a whole diagram: its file, its signals by name, and the rows of its logs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..base.errors import quote
+from ..base.frozen import ByValue
+from ..base.toml import Table
+from ..base.units import unit_of
+from ..diagrams import Attached, Diagram, Moving
+from ..effects.of_blocks.controllers import ControlEffect
+from ..measurement.channel import Channel, conversion_to_si
+from ..measurement.description import BodyDescription
+from ..measurement.filtering import Array
+from ..measurement.tables import LogColumns
+from .cuts import Cuts, cuts_of
+
+
+@dataclass(frozen=True)
+class StatedComputer:
+    """How the computer reads and acts, SI; what is not stated is that of the diagram's laws.
+
+    sample_period: s; None: that of the rows;  velocity_bandwidth: Hz, inf: no low-pass
+    one_pass: all columns of a row were written in one pass of the computer
+    """
+
+    sample_period: float | None = None
+    velocity_bandwidth: float = float("inf")
+    delay: float = 0.0
+    encoder_step: float = 0.0
+    one_pass: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedLog(ByValue):
+    """The columns of one record as written;  offset_names: as of a `Record`."""
+
+    file: str
+    use: str
+    offset_names: frozenset[str]
+    columns: LogColumns
+
+
+@dataclass(frozen=True, eq=False)
+class DiagramExperiment(ByValue):
+    """A diagram with values, and records of its signals.
+
+    channels: signal -> its table in the file;  channel: signal -> the channel, SI
+    zero: outside signals that are known to be zero
+    read_by_computer: signals whose column holds the number that the computer read
+    """
+
+    folder: Path
+    title: str
+    diagram: Diagram
+    channels: Mapping[str, Table]
+    channel: Mapping[str, Channel]
+    zero: tuple[str, ...]
+    computer: StatedComputer
+    bandwidth: float | None
+    logs: tuple[RecordedLog, ...]
+    sample_rate: float | None = None
+    read_by_computer: frozenset[str] = field(default_factory=frozenset)
+
+    @property
+    def recorded(self) -> tuple[str, ...]:
+        """Signals of the diagram that the records hold, in the order of the file."""
+        return tuple(name for name in self.channels if name != "time")
+
+    @property
+    def cuts(self) -> Cuts:
+        """What the recorded signals test."""
+        return cuts_of(self.diagram, self.recorded, self.zero)
+
+    @property
+    def assumed(self) -> dict[str, Any]:
+        """What was taken as given: outside signals at zero, and the period where none is stated."""
+        assumed: dict[str, Any] = dict.fromkeys(self.zero, 0.0)
+        if self.computer.sample_period is None and self.cuts.of("computer"):
+            assumed["sample_period"] = "that of the rows"
+        return assumed
+
+    def axis(self, signal: str) -> str:
+        """Axis of a signal, "prismatic" or "revolute": that of the body that it moves or holds."""
+        bodies = [b for b in self.diagram.blocks if isinstance(b, Moving | Attached)]
+        near = [b for b in bodies if signal in (*b.inputs, *b.outputs)]
+        return str(getattr((near or bodies)[0].body, "axis", "prismatic"))
+
+    def unit(self, effect: ControlEffect, at: str) -> str:
+        """Unit of the parameter of an effect at a block: a force is that of the block's output."""
+        blocks = self.diagram.blocks
+        outputs = [s for b in blocks if b.name == at for s in b.outputs]
+        commands = [b.command for b in blocks if isinstance(b, Moving)]
+        return unit_of(effect.declared.quantity, self.axis((outputs or commands)[0]))
+
+    def signal(self, name: str, log: RecordedLog) -> Array:
+        """A recorded signal as written, SI, (n,)."""
+        channel = self.channel[name]
+        bodies = body_of_axis(self.axis(name))
+        return conversion_to_si(channel, bodies, f"channels.{name}").signal(log.columns.values)
+
+    def seconds(self, log: RecordedLog) -> Array:
+        """Time of the rows, s, (n,)."""
+        if self.sample_rate is not None:
+            return np.arange(len(next(iter(log.columns.values.values())))) / self.sample_rate
+        return self.signal("time", log)
+
+    def __repr__(self) -> str:
+        lines = [f"Experiment {quote(self.title)} of the diagram {self.diagram.name}"]
+        lines += [f"  {name}: {self.diagram.texts.get(name, name)}" for name in self.recorded]
+        rows = [len(next(iter(log.columns.values.values()))) for log in self.logs]
+        lines += [
+            f"  {log.file} ({log.use}): {n} rows" for log, n in zip(self.logs, rows, strict=True)
+        ]
+        return "\n".join([*lines, *(f"  {line}" for line in repr(self.cuts).splitlines())])
+
+
+def body_of_axis(axis: str) -> dict[str, BodyDescription]:
+    """A body of this axis, by which the units of a signal are read."""
+    return {"any": BodyDescription("any", axis, None, {}, "diagram")}

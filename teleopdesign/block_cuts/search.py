@@ -1,0 +1,145 @@
+"""Every block of a diagram against its recording: the cuts, one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..base.arguments import check_types
+from ..base.errors import ExperimentError, ModelError, unknown
+from ..diagnose import Diagnosis
+from ..diagnose import find_missing as find_missing_in_bodies
+from ..diagnose.search_plan import PLAN, SearchPlan
+from ..diagrams import Junction
+from ..effects import EFFECTS, Effect
+from ..measurement.experiment import Experiment
+from ..model import Model
+from .body import diagnose_body
+from .computer import ComputerPart, passes_of
+from .computer_fit import ControlData, floors
+from .computer_search import ComputerLadder, climb
+from .cuts import Cuts
+from .diagnosis import BlockDiagnosis
+from .diagram_experiment import DiagramExperiment
+
+#: part of the sample rate up to which the computer's signals are compared where no bandwidth is
+#: stated: a tenth of it, as far as a difference of two readings is a velocity
+_BAND = 0.1
+
+
+@check_types
+def find_missing(
+    experiment: Experiment | DiagramExperiment,
+    model: Model | None = None,
+    *,
+    progress: Callable[[str], None] | None = None,
+    seed: int = 0,
+    plan: SearchPlan = PLAN,
+    among: Collection[str] | None = None,
+    at: Collection[str] | None = None,
+    known: Mapping[str, Effect] = EFFECTS,
+) -> Diagnosis | BlockDiagnosis:
+    """Find the effects that a model of bodies, or a whole diagram, lacks.
+
+    experiment: of bodies, as `diagnose.find_missing` takes it, or of a whole diagram
+    model: of bodies only; a diagram's values stand in its file
+    among: names of candidate effects of bodies; all effects of controller blocks are tried
+    at: names of the cuts of a diagram that are compared, such as ("R_A",); None: all
+    known: effects of bodies by name, with those of the user; of a diagram only
+    raises ExperimentError, ModelError: the records lack what the comparison needs
+    """
+    if isinstance(experiment, Experiment):
+        return find_missing_in_bodies(
+            experiment, model, progress=progress, seed=seed, plan=plan, among=among
+        )
+    if model is not None:
+        raise ModelError("find_missing: found a model beside a diagram, which has its own values")
+    report = progress or (lambda _: None)
+    cuts, bodies = _select(experiment.cuts, at), {}
+    options: dict[str, Any] = {"seed": seed, "plan": plan}
+    if among is not None:
+        options["among"] = among
+    for cut in cuts.of("body"):
+        try:
+            bodies[cut.name] = diagnose_body(experiment, cut, known=known, report=report, **options)
+        except (ModelError, ExperimentError) as error:
+            cuts = _without_cut(cuts, cut.name, str(error))
+    data, ladder = None, None
+    if cuts.of("computer"):
+        try:
+            data, ladder = _of_computer(experiment, cuts, bodies, report, seed)
+        except ModelError as error:
+            for cut in cuts.of("computer"):
+                cuts = _without_cut(cuts, cut.name, str(error))
+    if not (bodies or ladder):
+        why = "; ".join(f"{block}: {text}" for block, text in cuts.untested.items())
+        raise ExperimentError(f"{experiment.title}: no block can be tested: {why}")
+    return BlockDiagnosis(experiment, cuts, bodies, ladder, _wiring(experiment, cuts), data)
+
+
+def _select(cuts: Cuts, at: Collection[str] | None) -> Cuts:
+    """The cuts with these names.
+
+    raises ExperimentError: no such cut
+    """
+    names = [c.name for c in cuts.tested]
+    for name in at or ():
+        if name not in names:
+            raise ExperimentError(f"find_missing: at: {unknown('cut', name, names)}")
+    for name in names if at is not None else ():
+        if name not in (at or ()):
+            cuts = _without_cut(cuts, name, "its cut was left out")
+    return cuts
+
+
+def _of_computer(
+    experiment: DiagramExperiment,
+    cuts: Cuts,
+    bodies: dict[str, Diagnosis],
+    report: Callable[[str], None],
+    seed: int,
+) -> tuple[ControlData, ComputerLadder]:
+    part = ComputerPart(
+        experiment.diagram, cuts.of("computer"), experiment.zero, experiment.computer
+    )
+    rows = [passes_of(experiment, log) for log in experiment.logs]
+    bandwidth = experiment.bandwidth or min(
+        [d.bandwidth for d in bodies.values()] or [_BAND / rows[0].period]
+    )
+    data = ControlData(part, rows, bandwidth)
+    return data, climb(data, floors(data, experiment, seed), report)
+
+
+def _without_cut(cuts: Cuts, name: str, why: str) -> Cuts:
+    """The cuts without one of them, whose blocks are then untested."""
+    cut = next(c for c in cuts.tested if c.name == name)
+    left = tuple(c for c in cuts.tested if c is not cut)
+    done = {block for c in left for block in c.blocks}
+    return replace(
+        cuts,
+        tested=left,
+        untested={**cuts.untested, **{b: why for b in cut.blocks if b not in done}},
+    )
+
+
+def _wiring(experiment: DiagramExperiment, cuts: Cuts) -> dict[str, float]:
+    """Error of each junction all of whose terms are recorded, over all rows."""
+    errors = {}
+    for cut in cuts.of("wiring"):
+        junction = next(j for j in experiment.diagram.junctions if j.output == cut.signal)
+        assert isinstance(junction, Junction)
+        left = whole = 0.0
+        for log in experiment.logs:
+            recorded = experiment.signal(cut.signal, log)
+            terms = [
+                float(w) * experiment.signal(s, log)
+                for s, w in junction.terms.items()
+                if s in cut.inputs
+            ]
+            left += float(np.nansum((recorded - np.sum(terms, axis=0)) ** 2))
+            whole += float(np.nansum(recorded**2))
+        errors[cut.name] = float(np.sqrt(left / whole)) if whole else 0.0
+    return errors

@@ -1,0 +1,1 @@
+"""How a whole diagram's comparison is worded and drawn."""

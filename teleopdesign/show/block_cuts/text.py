@@ -1,0 +1,89 @@
+"""A comparison of a whole diagram in a terminal: the ladder by cuts, what is missing, untested."""
+
+from __future__ import annotations
+
+from ...base.sentences import with_standard_error
+from ...block_cuts.cuts import Cut
+from ...block_cuts.diagnosis import BlockDiagnosis, Key
+from ...diagnose.criteria import CRITERIA
+from ..registry import shows
+
+
+@shows("text")
+def block_diagnosis_text(diagnosis: BlockDiagnosis) -> str:
+    """The ladder with a column a cut, values of added effects, verdict, and what is untested."""
+    cuts = [c for c in diagnosis.cuts.tested if c.name in diagnosis.floors]
+    lines = [_line("check error of each cut", [c.name for c in cuts], "all")]
+    for row in diagnosis.rows:
+        errors = [f"{100 * row.check[c.name]:.3g}%" for c in cuts]
+        label = f"+ {_words(row.added)}" if row.added else "(your diagram, bodies re-estimated)"
+        lines.append(_line(label, errors, f"{100 * row.check_error:.3g}%"))
+        if row.added is not None:
+            lines += [f"      {text}" for text in _parameters(diagnosis, row.added)]
+    floors = [f"{100 * diagnosis.floors[c.name]:.3g}%" for c in cuts]
+    lines.append(_line("noise floor", floors, ""))
+    lines += [f"wiring at {name}: {100 * e:.3g}% is left" for name, e in diagnosis.wiring.items()]
+    lines += ["", *(_tests(c) for c in diagnosis.cuts.tested)]
+    lines += [f"untested: {block}: {why}" for block, why in diagnosis.cuts.untested.items()]
+    for name, value in diagnosis.experiment.assumed.items():
+        lines.append(f"assumed: {name} = {value}")
+    for group in diagnosis.groups:
+        lines.append(f"explain the records equally well: {', '.join(map(_words, group))}")
+        lines += [f"    {text}" for text in _how_to_tell(diagnosis, group)]
+    return "\n".join([*lines, "", _verdict(diagnosis)])
+
+
+def _line(label: str, cells: list[str], last: str) -> str:
+    return f"{label:<38}" + "".join(f"{cell:>10}" for cell in (*cells, last)).rstrip()
+
+
+def _words(key: Key) -> str:
+    return f"{key[0]} at {key[1]}"
+
+
+def _tests(cut: Cut) -> str:
+    what = ", ".join(cut.blocks) or "the wiring"
+    return f"cut {cut.name}: {cut.signal} from {', '.join(cut.inputs)} tests {what}"
+
+
+def _how_to_tell(diagnosis: BlockDiagnosis, group: tuple[Key, ...]) -> list[str]:
+    """Which further signals would separate the members of a group."""
+    places = {at for _, at in group}
+    if len(places) < 2:
+        return []
+    signals = [s for c in diagnosis.cuts.tested if places & set(c.blocks) for s in c.separating]
+    return [f"to tell them apart: record {', '.join(dict.fromkeys(signals))}"] if signals else []
+
+
+def _parameters(diagnosis: BlockDiagnosis, key: Key) -> list[str]:
+    """Values of an added effect in the final models."""
+    name, at = key
+    if at in diagnosis.bodies:
+        model = diagnosis.bodies[at].model
+        rows = [
+            (n.rpartition(".")[2], v.value, v.stderr, model.unit(n))
+            for n, v in model.parameters.items()
+            if n.startswith(f"{at}.{name}.")
+        ]
+    else:
+        assert diagnosis.computer is not None
+        last = diagnosis.computer.last
+        rows = [
+            (p.effect.parameter, p.value, e, diagnosis.experiment.unit(p.effect, p.at))
+            for p, e in zip(last.placed, last.stderr, strict=True)
+            if p.key == key
+        ]
+    return [f"{n} = {with_standard_error(v, e)} {u}".rstrip(" 1") for n, v, e, u in rows]
+
+
+def _verdict(diagnosis: BlockDiagnosis) -> str:
+    if diagnosis.verdict == "effects_missing":
+        return f"verdict: effects_missing: {', '.join(map(_words, diagnosis.missing))}."
+    tested = ", ".join(dict.fromkeys(b for c in diagnosis.cuts.tested for b in c.blocks))
+    if diagnosis.verdict == "model_adequate":
+        return f"verdict: model_adequate. What is left of {tested} is noise."
+    loud = [name for name, left in diagnosis.left.items() if left > CRITERIA.adequate]
+    if diagnosis.groups and not loud:
+        return "verdict: undecided. One effect of a group above is missing; no signal tells which."
+    open_cuts = loud or [n for n, fine in diagnosis.adequate.items() if not fine]
+    return f"verdict: undecided. More than noise is left at {', '.join(open_cuts)}."

@@ -1,0 +1,76 @@
+"""What is planted in a simulated interface is named at its block, and nothing else is."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from block_cuts.interface_simulator import draw_interface, write_case
+
+import teleopdesign as td
+from teleopdesign.block_cuts.diagnosis import write_answer
+
+
+def diagnosis_of(folder, hidden, seed, **options):
+    random = np.random.default_rng(seed)
+    interface = replace(draw_interface(random), hidden=hidden)
+    write_case(interface, folder, random, durations=(3.0, 2.5))
+    return td.find_missing(td.load_experiment(folder), at=["R_A"], **options)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("effect", "at", "value"),
+    [("delay", "H", 0.004), ("gain", "computer", 1.05), ("velocity_filter", "C", 0.006)],
+)
+def test_an_effect_of_the_computer_is_named_at_its_block_with_its_value(
+    effect, at, value, tmp_path
+):
+    diagnosis = diagnosis_of(tmp_path, {(effect, at): value}, seed=5)
+    assert diagnosis.missing == ((effect, at),)
+    # rounding of the command to 4 mN is all that is left
+    assert diagnosis.left["R_A"] < 1.3
+    (candidate,) = [
+        c for c in diagnosis.answer()["candidates"] if (c["effect"], c["at"]) == (effect, at)
+    ]
+    (parameter,) = candidate["parameters"].values()
+    assert parameter["value"] == pytest.approx(value, rel=0.02)
+    assert candidate["probability"] > 0.9
+
+
+@pytest.fixture(scope="module")
+def adequate(tmp_path_factory):
+    return diagnosis_of(tmp_path_factory.mktemp("adequate"), {}, seed=6)
+
+
+@pytest.mark.slow
+def test_nothing_is_named_where_nothing_is_planted(adequate):
+    assert adequate.verdict == "model_adequate" and not adequate.missing
+
+
+@pytest.mark.slow
+def test_a_constant_that_any_block_may_have_added_is_listed_at_all_of_them(tmp_path):
+    diagnosis = diagnosis_of(tmp_path / "case", {("bias", "H"): 0.02}, seed=7)
+    assert diagnosis.verdict == "undecided"
+    (group,) = diagnosis.groups
+    assert set(group) == {("bias", "H"), ("bias", "C"), ("bias", "computer")}
+    write_answer(diagnosis, tmp_path / "answer.json")
+    answer = json.loads((tmp_path / "answer.json").read_text())
+    errors = [row["check_error"] for row in answer["ladder"]]
+    assert errors == sorted(errors, reverse=True)
+    assert set(answer["ladder"][-1]["cuts"]) == set(answer["floors"]) == {"R_A"}
+    assert answer["assumed"] == {"R_V": 0.0} and answer["check"] == "records"
+    assert set(answer["untested"]) == {"Z_M", "Z_H"}
+
+
+@pytest.mark.slow
+def test_the_picture_has_every_block_and_every_cut(adequate):
+    words = {text.get_text() for text in adequate.plot().axes[0].texts}
+    assert {"H", "C", "R_A", "untested"} <= words
+
+
+@pytest.mark.slow
+def test_a_law_that_is_blind_most_of_the_time_names_no_stand_in(tmp_path):
+    """H is at its limit in more than half of the rows: what it says there has no influence."""
+    diagnosis = diagnosis_of(tmp_path, {("saturation", "H"): 0.1}, seed=5)
+    assert diagnosis.verdict == "undecided" and not diagnosis.missing
