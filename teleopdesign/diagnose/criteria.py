@@ -7,8 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..check.hidden_motion import FOR_EACH
-
 
 @dataclass(frozen=True)
 class Criteria:
@@ -45,16 +43,9 @@ class Criteria:
     #: relative difference of two check errors below which they may be equal (with `close`): what a
     #: reader sees as the same figure
     near: float = 0.02
-    #: independent values for each free parameter, at which the smaller model fails, from which a
-    #: larger one counts; as many check a model (`check.hidden_motion`)
-    for_each: float = FOR_EACH
     #: noise floors (in quadrature) by which the check errors of two models must differ, or they are
     #: left open: a right model's error lies between one and about one and a half floors
     open: float = 1.0
-    #: part of the excess of a force over all acting forces that must stay in the sum of the model's
-    #: forces, or others cancel it: none stays where they cancel all of it, all where nothing does.
-    #: Lower: forces are named of which only a sum is known; higher: strong ones are refused
-    stays: float = 0.5
     #: share of the samples where the body slides that may be blind. A quarter: of more, a model
     #: says too little; less would refuse every saturation that was really reached
     blind: float = 0.25

@@ -91,15 +91,11 @@ class LadderState:
     floors: noise floors of the last rung;  first: limited noise floor of the user's model
     ranking: all candidates beside the last rung;  tone: the best external tone in its residual
     supported: candidates that the records support, in the order of the ranking
-    exchanges: number of exchanges made;  replaced: whether a pair once replaced all rungs
     straightened: whether a straight line once replaced effects of the position
-    together: whether many effects at once replaced all rungs
-    came_back: effects (name, place) that were replaced once, or were added again beside their
-        replacement: none of them is replaced again, so that two effects cannot take turns
     set_aside: accepted effects that the final errors do not support: none is added again
     barred: supported effects that explain nothing: other values of the model do as much, or the
         effect only weakens errors of the readings. None is added again
-    visited: effects of all earlier models: a ladder that returned to such a set would not end
+    visited: effects of all earlier models: no move leads to such a set again
     """
 
     rungs: tuple[Rung, ...]
@@ -108,11 +104,7 @@ class LadderState:
     ranking: Ranking
     tone: Tone
     supported: tuple[Ranked, ...]
-    exchanges: int = 0
-    replaced: bool = False
     straightened: bool = False
-    together: bool = False
-    came_back: frozenset[tuple[str, str]] = frozenset()
     set_aside: tuple[SetAside, ...] = ()
     barred: tuple[SetAside, ...] = ()
     visited: frozenset[frozenset[tuple[str, str]]] = frozenset()
@@ -239,7 +231,8 @@ def look(
         # a late log is no effect: all effects are ranked again with it
         return look(search, (*rungs[:-1], replace(rungs[-1], fit=late)), before)
     if before is None:
-        return LadderState(rungs, floors, first, ranking, tone, supported)
+        there = frozenset({frozenset(here.model.effects)})
+        return LadderState(rungs, floors, first, ranking, tone, supported, visited=there)
     state = replace(
         before, rungs=rungs, floors=floors, ranking=ranking, tone=tone, supported=supported
     )

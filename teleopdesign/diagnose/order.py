@@ -70,19 +70,6 @@ def alternatives_of(
     )
 
 
-def look_alikes_of(
-    one: Ranked, ranking: Ranking, *, criteria: Criteria = CRITERIA
-) -> tuple[Candidate, ...]:
-    """Candidates that explain as much as this one, whether or not it is the best, or supported."""
-    parameters = simplicity(one.candidate)[0]
-    return tuple(
-        r.candidate
-        for r in ranking.ranked
-        if r is not one and r.counts and _is_equal(r, one, criteria)
-        if simplicity(r.candidate)[0] == parameters
-    )
-
-
 def select_other_helpers(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...]:
     """Other effects that remove at least half as many check squares as the best, by chance or not.
 
@@ -93,27 +80,6 @@ def select_other_helpers(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...
     least = 0.5 * (whole - check_squares(best.fit))
     others = (r for r in ranking.ranked if r.counts and r.candidate != best.candidate)
     return tuple(r.candidate for r in others if whole - check_squares(r.fit) >= least)
-
-
-def is_simpler(
-    ranked: Ranked, dropped: Candidate, present: Fit, *, criteria: Criteria = CRITERIA
-) -> bool:
-    """Whether a candidate of the same role is simpler than an effect and leaves no more.
-
-    The role must be the same: a transmission may leave as little as friction only because it
-        transmits less of the sensor errors. A rarer look-alike of the effect does not replace it.
-
-    dropped: the effect that the candidate replaces;  present: the fit with that effect
-    """
-    if ranked.candidate.effect.commoner == dropped.effect.name:
-        return False
-    no_more = ranked.fit.check_error < (1.0 + criteria.near) * present.check_error
-    return (
-        ranked.candidate.effect.role == dropped.effect.role
-        and simplicity(ranked.candidate) < simplicity(dropped)
-        and no_more
-        and whole_score(ranked.fit, present) < criteria.close
-    )
 
 
 def simplicity(candidate: Candidate) -> tuple[int, int, int]:

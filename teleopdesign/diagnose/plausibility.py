@@ -1,7 +1,6 @@
 """Plausible parameters: whether a fitted effect deserves its name, by the rules in its file.
 
-Two rules hold for every force, also for a user's effects: along the motion it cannot vary by more
-than the acting forces, unless another effect cancels it, and a force of the position cannot be told
+One rule holds for every force, also for a user's effects: a force of the position cannot be told
 where a controller computes the command from the position.
 """
 
@@ -20,14 +19,10 @@ from ..check.computed_command import describe_computed
 from ..effects import CONTACT_ROLES, SIGNALS, Effect, RecordFacts
 from ..measurement.experiment import Experiment
 from ..measurement.motion import Motion
-from ..measurement.prepare import Prepared, Stretch, measured_force
+from ..measurement.prepare import Prepared, Stretch
 from ..measurement.repeated_rows import runs_of
 from ..measurement.reversals import count_reversals
 from ..model import Model
-from ..realise.along_motion import measured_along
-from ..realise.traced import Along
-from .criteria import CRITERIA
-from .residual import residuals
 
 
 def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str], str]:
@@ -44,16 +39,12 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
         ]
         if not effects:
             continue
-        stretches = [s for s in prepared.stretches if s.motion.body == place]
         numbers = {n: v.value for n, v in body.parameters.items()}
         facts = record_facts(model, place, prepared, numbers)
-        alongs = [(measured_along(body, s.motion), s) for s in stretches]
         for effect in effects:
             reason = _ask_effect(effect, "plausible", facts)
             if reason is None:
                 reason = _explain_computed(effect, prepared.experiment, place)
-            if reason is None and effect.role == "force":
-                reason = _explain_cancelled(effect, alongs, facts, model)
             if reason is not None:
                 meanings[effect.name, place] = reason
     return meanings
@@ -80,39 +71,6 @@ def _explain_computed(effect: Effect, experiment: Experiment, body: str) -> str 
     if not is_of_place(effect) or not (computed := describe_computed(experiment, body)):
         return None
     return f"the command is {computed}; a controller computes it, and the effect repeats this law"
-
-
-def _explain_cancelled(
-    effect: Effect, alongs: Sequence[tuple[Along, Stretch]], facts: RecordFacts, model: Model
-) -> str | None:
-    """A sentence where a force varies by more than all acting forces, and others cancel it.
-
-    Half of its range is compared with the largest acting force, and with half of the range of all
-    forces of the model together: a force that is too large beyond the motion of the fit records
-    stays in the residual, and nothing cancels it.
-    """
-    law = effect.expression()
-    if effect.states or law.has(SIGNALS["acting_force"]):
-        return None
-    half = _half_range([along.evaluate(law).value[s.keep] for along, s in alongs])
-    if not half > facts.acting:
-        return None
-    stretches = [s for _, s in alongs]
-    left = residuals(model, stretches)
-    together = _half_range(
-        [measured_force(s) - r for s, (r, _) in zip(stretches, left, strict=True)]
-    )
-    if together - facts.acting > CRITERIA.stays * (half - facts.acting):
-        return None
-    return (
-        f"this force varies by +-{facts.text(half, 'force')} along the motion, where no more than "
-        f"{facts.text(facts.acting, 'force')} act: another effect cancels it, and only the sum of "
-        "the two is known"
-    )
-
-
-def _half_range(forces: Sequence[np.ndarray]) -> float:
-    return 0.5 * float(max(f.max() for f in forces) - min(f.min() for f in forces))
 
 
 def _force_of_motion(inertia: float, stretches: Sequence[Stretch]) -> float:

@@ -19,34 +19,13 @@ class SearchPlan:
     long: int = 200_000
     #: samples of the windows together
     windows: int = 60_000
-    #: candidates that are added on trial where none is supported alone, for each may mask another:
-    #: one ranking each
-    trials: int = 3
-    #: most exchanges of an accepted effect for another: few, so that two effects cannot take turns
-    exchanges: int = 2
-    #: joints up to which as many are tried as first of a pair at each joint of an arm; beyond,
-    #: `pairs_beyond`: a real arm always leaves more than noise, so at each joint they are sought,
-    #: and with three trials six joints took over twice the time
-    whole_at: int = 3
-    pairs_beyond: int = 1
-    #: whether a pair that takes the place of all added effects may leave more than noise, and hold
-    #: an effect that explains nothing alone. Not at a joint of an arm: there the errors of others
-    #: are in what is left, and on a real arm it took 183 in place of 154 s and changed no answer
-    partial_pairs: bool = True
     #: whether the errors of the readings are taken out of the last fit. Not at a joint of an arm:
     #: its readings are drawn with those of all joints
     corrected: bool = True
     #: whether an effect is barred that stands in for other values of the model, for the noise of
     #: readings or for a few moments. Not at a joint of an arm: its effects are tested on all joints
     stand_ins: bool = True
-    #: most effects that are added at once where no other move leads on; 0: none, as at a joint of
-    #: an arm. Eight: friction of the speed, of the direction, and forces of the place, one of each
-    together: int = 8
-    #: relative difference of squares below which two effects do the same: what a search resolves
-    same: float = 1e-6
-    #: parameters of an effect from which it is searched from more starts, and two simpler ones are
-    #: held against it though it leaves only noise. Five: `maxwell_slip`, which turns as a spring
-    #: and a bristle do together
+    #: parameters of an effect from which it is searched from more starts. Five: `maxwell_slip`
     many_parameters: int = 5
     #: part of the squares of an arm's joint that its first effect takes away where the links were
     #: led astray by its absence: what is left is partly theirs. Lower: more joints are ranked twice
@@ -107,9 +86,6 @@ class SearchPlan:
     #: part of the squares by which two fits must differ to count as two places: ten times what a
     #: rough fit leaves open
     elsewhere: float = 1e-3
-    #: part of a new effect's gain that the model without it regains from the other values, from
-    #: which on it is searched anew: below this the effect explains four fifths of its gain itself
-    regained: float = 0.2
     #: squares on the fit records above the least that a rough fit leaves, as a part of these, up to
     #: which another candidate is fitted finely at once
     leading: float = 0.05
@@ -146,22 +122,18 @@ class SearchPlan:
     #: most models that one open question holds: an experiment separates each from the others
     rivals: int = 4
 
-    def for_joints(self, count: int) -> SearchPlan:
-        """The plan for each joint of an arm with `count` joints.
+    def for_joints(self) -> SearchPlan:
+        """The plan for each joint of an arm.
 
         An arm's records are searched whole, so the plan has the default sizes of windows.
         """
         plan = replace(self, long=SearchPlan.long, windows=SearchPlan.windows)
-        most = self.trials if count <= self.whole_at else self.pairs_beyond
         return replace(
             plan,
-            trials=min(self.trials, most),
-            partial_pairs=False,
             corrected=False,
             stand_ins=False,
             tip_starts=0,
             draws=0,
-            together=0,
         )
 
     def omissions(self) -> tuple[str, ...]:
@@ -169,13 +141,6 @@ class SearchPlan:
         words = []
         if self.most_effects < PLAN.most_effects:
             words.append(f"no more than {self.most_effects} effects were added")
-        if self.trials == 0:
-            words.append("pairs of effects that mask each other were not searched")
-        elif self.trials < PLAN.trials:
-            best = "the best candidate" if self.trials == 1 else f"the best {self.trials}"
-            words.append(f"pairs of effects that mask each other were searched with {best} only")
-        if self.exchanges < PLAN.exchanges:
-            words.append("accepted effects were not compared with their rivals again")
         if self.long < PLAN.long:
             words.append(
                 f"records of more than {self.long} samples were searched on {self.windows} samples "
@@ -186,17 +151,13 @@ class SearchPlan:
 
 #: the sizes in use
 PLAN = SearchPlan()
-#: sizes of a quick first search. It may miss a weak effect, a third or later one, and two effects
-#: that mask each other
+#: sizes of a quick first search. It may miss a weak effect, and a third or later one
 QUICK = SearchPlan(
     most_effects=2,
     long=8_000,
     windows=8_000,
-    trials=0,
-    exchanges=0,
     tip_starts=0,
     draws=0,
-    together=0,
 )
 
 

@@ -19,7 +19,6 @@ from teleopdesign.diagnose.ladder_state import LadderState
 from teleopdesign.diagnose.part_search import PartSearch
 from teleopdesign.diagnose.parts_fit import PartsRung
 from teleopdesign.diagnose.rung import Rung
-from teleopdesign.diagnose.search_plan import PLAN
 from teleopdesign.effects import EFFECTS
 
 
@@ -145,14 +144,6 @@ def test_what_only_weakens_noise_does_not_limit_the_noise_floor(monkeypatch):
     assert joint.state.weakening == {("transmission_compliance", "joint1")}
     *_, joint = climbed(monkeypatch, ladders, tip, NO_HELP)
     assert not joint.state.weakening
-
-
-def test_joints_of_larger_arms_seek_pairs_and_exchanges_too():
-    for count in (2, 3, 6, 7):
-        plan = PLAN.for_joints(count)
-        assert plan.exchanges == PLAN.exchanges and plan.trials > 0
-    assert PLAN.for_joints(3).omissions() == ()
-    assert len(PLAN.for_joints(6).omissions()) == 1
 
 
 @pytest.mark.slow

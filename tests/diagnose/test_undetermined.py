@@ -15,7 +15,6 @@ from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.conclusion import find_doubtful_rung, find_hidden_rung
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.identifiability import doubt, explains_most, is_identifiable
-from teleopdesign.diagnose.plausibility import implausible_effects, record_facts
 from teleopdesign.diagnose.products import Product, best_product
 from teleopdesign.diagnose.statements import SetAside, Undetermined
 from teleopdesign.diagnose.undetermined import alike_on_records, find_undetermined, known_together
@@ -178,21 +177,6 @@ def prepared_case(experiment):
     from teleopdesign.measurement.prepare import prepare
 
     return prepare(experiment)
-
-
-def test_two_forces_that_take_each_other_away_are_neither_of_them(end, prepared_case):
-    """Any force, a user's too: where it varies by more than all that act, another cancels it."""
-    model = end.before.model
-    there = model.with_effect(EFFECTS["spring"], at="device", values={"stiffness": 5.0})
-    assert implausible_effects(there, prepared_case) == {}
-    acting = record_facts(model, "device", prepared_case).acting
-    stiff = {"device.spring.stiffness": 60.0 * acting}
-    assert implausible_effects(there.with_values(stiff), prepared_case) == {}
-    much = there.with_effect(EFFECTS["gravity"], at="device")
-    pendulum = {"device.gravity.amplitude": -60.0 * acting, "device.gravity.phase": 0.0}
-    sentence = implausible_effects(much.with_values({**stiff, **pendulum}), prepared_case)
-    assert "only the sum of the two is known" in sentence["spring", "device"]
-    assert ("gravity", "device") in sentence
 
 
 def product(*errors, known):
