@@ -67,12 +67,6 @@ class Criteria:
     #: part of the squares that one linear step must promise, from which a start is worth a step.
     #: Higher: faster, and effects that are linear in no strength are missed
     worth: float = 0.01
-    #: times that an effect may make sensors count for more than in the user's model: above, what it
-    #: leaves would hide in their noise. As `adequate`: so much more would pass for noise
-    louder: float = 1.8
-    #: part of what the user's model leaves up to which the floor may rise nonetheless: so small a
-    #: rest is explained, whatever its source
-    hidden: float = 0.1
     #: part of the squares of velocity near a tone above which the motion itself may have brought it
     tone_in_motion: float = 0.01
     #: the same at a frequency of the mains: a hum moves the machine by itself (0.03 to 0.12 of the

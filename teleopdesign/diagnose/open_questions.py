@@ -39,7 +39,7 @@ def _rivals(ranked: list[Ranked]) -> tuple[OpenRival, ...]:
 
 def _is_short(end: LadderEnd) -> bool:
     """Whether more than noise is surely left."""
-    return end.more_is_missing and not end.may_be_noise
+    return end.more_is_missing
 
 
 def _question_of_rung(end: LadderEnd, rung: Rung) -> OpenQuestion:

@@ -11,7 +11,6 @@ from arms.arm_simulator import random_arm, write_experiment
 import teleopdesign as td
 from teleopdesign.diagnose import held_against_others as refusal
 from teleopdesign.diagnose import parts_ladder as ladder
-from teleopdesign.diagnose.adequacy import Floors
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.held_against_others import NO_HELP, NO_MORE_THAN_NOISE
@@ -103,7 +102,7 @@ def climbed(monkeypatch, ladders, refused, why="no"):
         refusal, "refusal", lambda joint, before, after: why if after.name in refused else ""
     )
     first = PartsRung(None, arm_fit_of("user's"))
-    nothing = dict(floors=Floors(None, None), first=None, ranking=None, tone=None, supported=())
+    nothing = dict(floor=None, ranking=None, tone=None, supported=())
     state = LadderState(rungs=(Rung(None, fit_of("user's")),), **nothing)
     joint = PartSearch("joint1", SimpleNamespace(criteria=CRITERIA), state)
     prepared = SimpleNamespace(joints={"joint1": None})

@@ -9,7 +9,6 @@ from diagnose.stub_models import Table, candidate
 
 from teleopdesign.diagnose import moves as module
 from teleopdesign.diagnose import rungs as rungs_module
-from teleopdesign.diagnose.adequacy import Floors
 from teleopdesign.diagnose.moves import swap
 from teleopdesign.diagnose.older_answers import Place, _is_named
 from teleopdesign.diagnose.probability import list_rarer, shares
@@ -67,7 +66,7 @@ def test_a_spring_stays_where_only_noise_is_left(use):
     table = use()
     state = table.state(table.rungs("spring"))
     noise = floor(0.25)
-    assert swap(table.search(), replace(state, floors=Floors(noise, noise))) is None
+    assert swap(table.search(), replace(state, floor=noise)) is None
 
 
 def test_a_spring_takes_the_place_of_gravity_where_only_noise_is_left_in_the_end(use):
@@ -75,7 +74,7 @@ def test_a_spring_takes_the_place_of_gravity_where_only_noise_is_left_in_the_end
     table = use()
     state = table.state(table.rungs("gravity", "bias"))
     noise = floor(0.25)
-    there = replace(state, floors=Floors(noise, noise))
+    there = replace(state, floor=noise)
     assert names(swap(table.search(), there)) == ["spring", "bias"]
     been = frozenset({frozenset({("spring", "device"), ("bias", "device")})})
     assert swap(table.search(), replace(there, visited=been)) is None
@@ -84,7 +83,7 @@ def test_a_spring_takes_the_place_of_gravity_where_only_noise_is_left_in_the_end
 def test_gravity_stays_where_only_noise_is_left_and_the_records_tell_it_from_a_spring(use):
     table = use(lambda names: rule(names, spring=0.4, gravity=0.3))
     noise = floor(0.25)
-    there = replace(table.state(table.rungs("gravity", "bias")), floors=Floors(noise, noise))
+    there = replace(table.state(table.rungs("gravity", "bias")), floor=noise)
     assert swap(table.search(), there) is None
 
 

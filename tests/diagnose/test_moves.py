@@ -123,7 +123,7 @@ def test_what_is_added_to_a_model_that_leaves_noise_says_what_else_it_could_be(l
     search, state = ladder
     assert add(search, state).rungs[-1].could_be is None
     noise = replace(state.floor, value=state.fit.check_error)
-    quiet = replace(state, floors=replace(state.floors, allowed=noise))
+    quiet = replace(state, floor=noise)
     assert is_adequate(quiet.fit, quiet.floor)
     rung = add(search, quiet).rungs[-1]
     gain = state.fit.check_error**2 - rung.fit.check_error**2

@@ -58,10 +58,10 @@ def test_the_simplest_of_those_that_explain_as_well_is_added_with_its_alternativ
 def test_beside_a_model_that_leaves_noise_what_else_helps_is_reported(use):
     table = use(shares(spring=0.5, bias=0.4, quadratic_drag=0.1))
     state = looked(table, table.state(table.rungs()), SPRING, BIAS, DRAG)
-    noise = replace(state.floors, allowed=floor(0.6))
-    assert add(table.search(), replace(state, floors=noise)).rungs[-1].could_be == (BIAS,)
-    louder = replace(state.floors, allowed=floor(0.5))
-    assert add(table.search(), replace(state, floors=louder)).rungs[-1].could_be is None
+    noise = floor(0.6)
+    assert add(table.search(), replace(state, floor=noise)).rungs[-1].could_be == (BIAS,)
+    louder = floor(0.5)
+    assert add(table.search(), replace(state, floor=louder)).rungs[-1].could_be is None
 
 
 def in_place_of(ranked, effect, fit):

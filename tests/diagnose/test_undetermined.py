@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from teleopdesign.diagnose import undetermined as undetermined_module
 from teleopdesign.diagnose.answer import answer, load_answer, write_answer
 from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.conclusion import find_doubtful_rung, find_hidden_rung
-from teleopdesign.diagnose.criteria import CRITERIA
+from teleopdesign.diagnose.conclusion import find_doubtful_rung
 from teleopdesign.diagnose.identifiability import doubt, explains_most, is_identifiable
 from teleopdesign.diagnose.products import Product, best_product
 from teleopdesign.diagnose.statements import SetAside, Undetermined
@@ -101,30 +100,6 @@ def test_simulated_readings_leave_an_effect_that_explains_most_and_is_known_by_t
     assert find_doubtful_rung((first, replace(last, fit=wide)), prepared_case, estimated) is None
     little = (little_more_left(first, last.fit), replace(last, fit=wide))
     assert find_doubtful_rung(little, prepared_case, estimated) is not None, "explains too little"
-
-
-def with_command_error(rung, **changed):
-    return replace(rung, fit=replace(rung.fit, at_command=replace(rung.fit.at_command, **changed)))
-
-
-def test_a_rung_that_the_last_fit_leaves_blind_or_weak_is_not_kept(end):
-    """A limit that moves by a little may hide more of the motion than when it was ranked."""
-    *before, last = end.rungs
-    assert find_hidden_rung(end.rungs) is None
-    assert (
-        find_hidden_rung((*before, with_command_error(last, blind=CRITERIA.blind - 1e-6))) is None
-    )
-    hidden = with_command_error(last, blind=CRITERIA.blind + 1e-6)
-    assert find_hidden_rung((*before, hidden)) == (
-        hidden, "the command has no influence in more than a quarter of the motion"
-    )  # fmt: skip
-    weak = with_command_error(last, weak=True)
-    assert find_hidden_rung((*before, weak))[0] is weak
-    # what the user's model hides already is no charge against what is added to it
-    assert (
-        find_hidden_rung((*(with_command_error(r, blind=0.3, weak=True) for r in before), weak))
-        is None
-    )
 
 
 def in_a_valley(fit, little):
