@@ -7,7 +7,7 @@ where a controller computes the command from the position.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -23,6 +23,7 @@ from ..measurement.prepare import Prepared, Stretch
 from ..measurement.repeated_rows import runs_of
 from ..measurement.reversals import count_reversals
 from ..model import Model
+from ..realise.along_motion import friction_level_along
 
 
 def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str], str]:
@@ -126,6 +127,7 @@ def record_facts(
         acting=float(max(measured)) + _force_of_motion(numbers["inertia"], stretches),
         speed=speed,
         film=_film(body, speed, numbers),
+        levels=partial(_sliding_levels, body, motions),
         body=numbers,
         duration=max(float(np.ptp(m.time)) for m in motions),
         stuck=max(_longest_hold(m, numbers.get("coulomb.level", 0.0)) for m in motions),
@@ -133,6 +135,11 @@ def record_facts(
         places=np.concatenate([m.position[m.direction != 0] for m in motions]),
         speeds=np.concatenate([m.velocity[m.direction != 0] for m in motions]),
     )
+
+
+def _sliding_levels(body: Body, motions: Sequence[Motion]) -> np.ndarray:
+    """Friction levels (n,) where a body slides, whatever effects make them."""
+    return np.concatenate([friction_level_along(body, m)[m.direction != 0] for m in motions])
 
 
 def _longest_hold(motion: Motion, level: float) -> float:
