@@ -24,7 +24,7 @@ from .rank import rank_candidates
 from .ranking import Ranked, Ranking
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan, cut_to_windows
-from .stated_fit import estimate_stated
+from .stated_fit import estimate_values
 from .statements import SetAside
 
 
@@ -179,7 +179,7 @@ def restrict_candidates(among: Collection[str], model: Model) -> Model:
 def begin(search: LadderSearch) -> LadderState:
     """The ladder that holds the user's model alone, re-estimated."""
     search.progress("re-estimating the model")
-    fit = estimate_stated(search.stated, search.prepared)
+    fit = estimate_values(search.stated, search.prepared)
     return look(search, (Rung(None, with_late_starts(fit, search.stated, search.prepared)),))
 
 
