@@ -76,8 +76,6 @@ class Criteria:
     #: part by which a tone may lie beside the mains: frequencies of networks and clocks of loggers
     #: are off by less. Higher: a resonance near by passes for a hum
     mains_within: float = 0.004
-    #: part of the check squares that a tone must explain to be a candidate force: as `relevant`
-    tone_heard: float = 0.03
     #: probability of an effect that was accepted with nothing but noise left: of 74 on simulated
     #: cases 73 were true, (73 + 1)/(74 + 2)
     true_of_accepted: float = 0.97
@@ -108,8 +106,6 @@ class Criteria:
     #: squares at most. Lower: less than half of the rows that are compared; higher: a missing force
     #: is said to differ from pass to pass
     ahead: float = 0.1
-    #: standard errors of the squares that repeat, below which they may be chance
-    chance: float = 2.0
     #: periods of the bandwidth that a pass holds at least, beside one cycle of the motion. Lower:
     #: the state of hidden parts, such as a bristle, comes from another past; higher: short logs
     #: have no two passes

@@ -91,7 +91,6 @@ class LadderState:
     floor: noise floor of the last rung, at most the error that the records themselves leave
     ranking: all candidates beside the last rung;  tone: the best external tone in its residual
     supported: candidates that the records support, in the order of the ranking
-    straightened: whether a straight line once replaced effects of the position
     set_aside: accepted effects that the final errors do not support: none is added again
     barred: supported effects that explain nothing: other values of the model do as much, or the
         effect only weakens errors of the readings. None is added again
@@ -103,7 +102,6 @@ class LadderState:
     ranking: Ranking
     tone: Tone
     supported: tuple[Ranked, ...]
-    straightened: bool = False
     set_aside: tuple[SetAside, ...] = ()
     barred: tuple[SetAside, ...] = ()
     visited: frozenset[frozenset[tuple[str, str]]] = frozenset()

@@ -33,10 +33,9 @@ class SearchPlan:
     #: effects that may be set aside with the search going on without them. One: each asks for all
     #: candidates to be ranked again, and what comes in its place is often as little there
     searched_on: int = 1
-    #: starts kept after the prediction by one linear step, of an effect linear in its strength
+    #: starts kept after the prediction by one linear step, of an effect linear in its strength; of
+    #: these one is kept after the first real steps
     predicted: int = 2
-    #: of these, starts kept after the first real steps
-    stepped: int = 1
     #: part of the force below which the strength of an effect that a new one needs counts as taken
     #: away. Of 30 simulated springs that slip late in a stroke, a bristle left 86 to 88 % of four
     #: from the usual starts, and leaves 9 to 15 % with the further ones; no error grew by 0.2 %
@@ -52,8 +51,7 @@ class SearchPlan:
     #: of step, and squares are rugged. All are followed: the first steps from a good start may all
     #: fail (one search of a gap ended at 43 % with three, at 4 % with six; one of slipping springs
     #: at 6.5 % with two, at 2.5 % with four)
-    wide_predicted: int = 6
-    wide_stepped: int = 6
+    wide: int = 6
     #: parts of the time by which a log may be late at which the user's model begins, too: 12 and
     #: 35 ms of 50. From none alone, a log late by 8 rows of 2 ms ended at one row
     late_starts: tuple[float, ...] = (0.25, 0.7)
