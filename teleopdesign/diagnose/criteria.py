@@ -22,8 +22,9 @@ class Criteria:
     #: standard deviations of its chance part from which a gain counts (one in 30 000 by a normal
     #: law; residuals are not quite normal). Lower: chance gains; higher: short records say nothing
     sure: float = 4.0
-    #: probability of a gain by chance, over the whole catalogue, up to which it counts: one
-    #: catalogue in a hundred. It rules where an adequate model is made of one that is not
+    #: probability by chance up to which moments of one log that agree on an effect count: six agree
+    #: once in 64, seven once in 128. Higher: what acts at a few starts is named; lower: short logs
+    #: say nothing
     by_chance: float = 0.01
     #: part of the noise floor's square from which a gain counts: while a body is stuck or turns,
     #: its friction is known no better. Lower: the method's errors count; higher: weak effects

@@ -10,7 +10,6 @@ from .adequacy import is_adequate
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .evidence import (
-    chance,
     check_score,
     check_squares,
     gain_at_command,
@@ -54,10 +53,9 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = 
     def is_enough(gain: float, score: float) -> bool:
         """Whether a gain of this share of the squares, at this score, is more than chance."""
         return (
-            (score > criteria.sure or _makes_adequate(base, other, floor, criteria))
+            score > criteria.sure
             and gain > criteria.relevant
             and gain > criteria.of_floor * (floor.value / base.check_error) ** 2
-            and chance(score) * len(base.model.known) < criteria.by_chance
         )
 
     return (
