@@ -21,7 +21,7 @@ GOLDEN_PARTS ?=
 WHOLE ?=
 PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input
 
-.PHONY: help demo test slow lint types imports docs studies golden size benchmarks fuzz mutants faults lowest lock licences wheel ci clean
+.PHONY: help demo test slow lint types imports docs studies golden size benchmarks fuzz faults lowest lock licences wheel ci clean
 # what one process has compiled to bytecode, hundreds of others need not compile again: collecting the
 # tests takes each process 5.6 s of processor time, 9.5 s without
 unexport PYTHONDONTWRITEBYTECODE
@@ -67,10 +67,6 @@ fuzz: $(VENV)/installed-test $(VENV)/installed-fuzz  ## spoilt files for every r
 	@FUZZ=$(FUZZ) $(BIN)/pytest tests/trust/test_fuzz.py $(PYTEST_ARGS)
 	@echo "== $(FUZZ) more for each, led by the branches that they reach"
 	@$(BIN)/python tests/trust/guided_fuzz.py --runs $(FUZZ)
-
-mutants: $(VENV)/installed-test  ## small changes that no test notices (MUTATE="FOLDER TESTS --number N")
-	@echo "== Mutants: $(MUTATE)"
-	@$(BIN)/python tests/trust/mutants.py $(MUTATE)
 
 golden: $(VENV)/installed-test  ## what the package answers against golden/frozen (GOLDEN_PARTS, WHOLE=1; see golden/README.md)
 	@echo "== Golden files"

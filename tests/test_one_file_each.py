@@ -1,4 +1,4 @@
-"""An effect, control law, diagram, command, check or theorem is one added file."""
+"""An effect, control law, diagram, command, check, theorem or shape of logs is one added file."""
 
 import os
 import shutil
@@ -115,6 +115,26 @@ def find_remarkable_recordings(recording):
 CHECK = RecordingCheck(order=5, find=find_remarkable_recordings)
 '''
 
+SHAPE = '''"""Throw-away: columns whose names all begin with "zz "."""
+
+from __future__ import annotations
+
+from ._table import CellTable, LongSignal, LongTable, time_of
+
+
+def throw_away(table: CellTable) -> LongTable | None:
+    """Signals named without their first letters."""
+    if not all(name.startswith("zz ") for name in table.names):
+        return None
+    clock, numeric = time_of(table), table.numeric
+    signals = [
+        LongSignal(name[3:], values, clock[3:], numeric[clock], "", "s")
+        for name, values in numeric.items()
+        if name != clock
+    ]
+    return LongTable(tuple(signals), 0, "a throw-away")
+'''
+
 ASK = """
 from teleopdesign import Body, EFFECTS
 from teleopdesign.passivity.identified import identify_device
@@ -213,3 +233,24 @@ def test_a_theorem_is_one_file(copy, add_file):
     assert "throw-away" not in topics()
     add_file("passivity/theorems/throw_away.py", THEOREM)
     assert "throw-away" in topics()
+
+
+def test_a_shape_of_logs_is_one_file_and_its_line_in_the_list(copy, add_file, tmp_path):
+    rows = [f"{0.01 * k:.2f},{0.1 * (k % 7)},{k % 5}" for k in range(300)]
+    log = tmp_path / "log.csv"
+    log.write_text("\n".join(["zz time,zz pos_rad,zz torque_Nm", *rows]), encoding="utf-8")
+    command = ("new", str(log), "--yes", "--output", str(tmp_path / "made"), "--overwrite")
+    assert '"zz pos_rad"' in run(copy, *command)
+    add_file("measurement/doors/shapes/throw_away.py", SHAPE)
+    listing = copy / ROOT.name / "measurement/doors/shapes/__init__.py"
+    before = listing.read_text(encoding="utf-8")
+    line = "from .throw_away import throw_away\n"
+    added = before.replace("from .two_part_time", f"{line}from .two_part_time")
+    try:
+        added = added.replace(
+            "    reading_in_each_row,\n)", "    reading_in_each_row, throw_away,\n)"
+        )
+        listing.write_text(added, encoding="utf-8")
+        assert '"pos_rad"' in run(copy, *command)
+    finally:
+        listing.write_text(before, encoding="utf-8")

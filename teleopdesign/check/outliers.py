@@ -7,6 +7,7 @@ deviation. It is a jump if shifting all later samples does. Steps, impacts and c
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +42,7 @@ def find_odd_samples(recording: CheckedRecording) -> Iterator[Finding]:
             yield from check_jumps(signal)
 
 
-CHECK = RecordingCheck(order=20, find=find_odd_samples, in_order="no outliers")
+CHECK = RecordingCheck(order=20, find=find_odd_samples, in_order="no outliers", may_stop=True)
 
 
 def check_outliers(signal: Signal) -> Iterator[Finding]:
@@ -91,13 +92,14 @@ def check_jumps(signal: Signal) -> Iterator[Finding]:
     times = "once" if len(events) == 1 else f"{len(events)} times"
     why = "no body does that: look at the encoder or the log"
     # an angle wraps by whole turns, within the motion of a sample
-    if signal.unit == "rad" and abs(abs(leap) / (2 * np.pi) - 1.0) < 0.05:
-        why = "a whole turn: unwrap the angle"
+    wraps = signal.unit == "rad" and abs(abs(leap) / (2 * np.pi) - 1.0) < 0.05
+    if wraps:
+        why = "a whole turn: the angle wraps, `unwrap = true` in its channel mends that"
     elif 0.5 < lost < 1000:
         why = f"as far as it moves in {lost:.0f} samples: if samples are missing, give a `segment` "
         why += "column that changes there"
     time = signal.time(row)
-    yield signal.finding(
+    finding = signal.finding(
         "jumps",
         "warning",
         f" jumps {times}, most at {time:.6g} s (row {row + 1}), by {leap:.4g} {signal.unit}: "
@@ -105,6 +107,7 @@ def check_jumps(signal: Signal) -> Iterator[Finding]:
         {"count": float(len(events)), "time": time, "size": leap, "samples": lost},
         signal.around(row, np.array([row, row + 1]), name="before and after the jump"),
     )
+    yield replace(finding, stops=wraps)
 
 
 def lone_samples(x: Array, step: float) -> tuple[NDArray[np.intp], Array]:

@@ -89,7 +89,7 @@ def run(options: argparse.Namespace) -> int:
     from ..check import CheckedRecording, stopping_findings
     from ..measurement import load_experiment
     from ..measurement.new_folder import make_folder, require_new
-    from ..measurement.survey import require_same_columns, survey_log
+    from ..measurement.survey import require_same_columns, survey_logs
     from ..measurement.tables import open_log
 
     for path in options.logs:
@@ -101,12 +101,13 @@ def run(options: argparse.Namespace) -> int:
     if not options.overwrite:
         require_new(folder)
     logs = [open_log(path, path.name) for path in options.logs]
-    require_same_columns(logs, [path.name for path in options.logs])
-    survey = survey_log(logs[0], options.logs[0].name, choices)
+    files = [path.name for path in options.logs]
+    require_same_columns(logs, files)
+    survey = survey_logs(logs, files, choices)
     ask = not options.yes and sys.stdin.isatty()
     if ask:
         choices = _ask_about(survey, choices, input)
-        survey = survey_log(logs[0], options.logs[0].name, choices)
+        survey = survey_logs(logs, files, choices)
     make_folder(
         survey,
         options.logs,

@@ -30,7 +30,7 @@ _SLOW = 0.02
 _AT_REST, _REACH = 0.1, 0.05
 #: standard errors from which the sign of a part of the force counts as known; three: wrong by
 #: chance once in 700
-_SURELY = 3.0
+SURELY = 3.0
 #: a motion is in one direction if its direction or speed varies by less than this part of its rms:
 #: noise and the ends of the low-pass make about as much variation
 _ONE_WAY = 0.05
@@ -74,7 +74,7 @@ class FirstGuess:
         if self.inertia > 0.0:
             return self.inertia
         error = self.errors[0]
-        return error if np.isfinite(error) and self.inertia + _SURELY * error > 0.0 else 0.0
+        return error if np.isfinite(error) and self.inertia + SURELY * error > 0.0 else 0.0
 
 
 _NOTHING = FirstGuess(0.0, 0.0, 0.0, 0.0, (np.inf, np.inf, np.inf))
@@ -148,7 +148,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     place = place - place.mean()
     force = target - target.mean()
     parts: list[tuple[float, float, float]] = []  # size of the force, value, remaining error
-    one_way = _goes_one_way(direction)
+    one_way = goes_one_way(direction)
     inertia: list[tuple[float, float]] = []
     for braked in (direction, velocity):
         apart = braked - braked.mean()  # without the part that a constant force explains
@@ -159,12 +159,12 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
         if fit is None:
             return False
         solution, errors, left = fit
-        if not one_way and np.abs(solution[1]) > _SURELY * errors[1]:
+        if not one_way and np.abs(solution[1]) > SURELY * errors[1]:
             parts.append((float(np.abs(solution[1]) * np.std(braked)), float(solution[1]), left))
-        if np.abs(solution[0]) > _SURELY * errors[0]:
+        if np.abs(solution[0]) > SURELY * errors[0]:
             size = float(np.abs(solution[0]) * np.std(acceleration))
             inertia.append((size, float(solution[0])))
-        brakes = solution[1] > _SURELY * errors[1]
+        brakes = solution[1] > SURELY * errors[1]
         if (
             inertia
             and inertia[-1][1] < 0.0
@@ -176,7 +176,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     return bool(sizes) and max(sizes)[1] < 0.0
 
 
-def _goes_one_way(direction: Array) -> bool:
+def goes_one_way(direction: Array) -> bool:
     """Whether a body rests or moves in one direction, to the part that a low-pass leaves."""
     ways = [float(np.mean(way * direction > 0.5)) for way in (1.0, -1.0)]
     return min(ways) < _ONE_WAY * max(ways)
@@ -185,7 +185,7 @@ def _goes_one_way(direction: Array) -> bool:
 def _may_be_spring(columns: Array, place: Array, force: Array, sample_time: float) -> bool:
     """Whether the sign of the first column's factor is open beside a force of the position."""
     held = _least_squares(np.vstack([columns, place]), force, sample_time)
-    return held is not None and bool(np.abs(held[0][0]) <= _SURELY * held[1][0])
+    return held is not None and bool(np.abs(held[0][0]) <= SURELY * held[1][0])
 
 
 def is_size(force: Array, position: Array, sample_time: float) -> bool:

@@ -29,6 +29,8 @@ FitAndCheck = tuple[tuple[float, float], tuple[float, float]]
 
 #: steps of the survey's grid between two rows, from which a pause lies there: the grid is even
 PAUSE = 1.5
+#: durations of a log within which a stated span may end: its rounded end is meant
+BEYOND = 1.1
 #: digits of first values: they are starts, not results
 _DIGITS = 3
 _FILE = "experiment.toml"
@@ -104,7 +106,7 @@ def check_spans(spans: FitAndCheck, duration: float, names: Sequence[str]) -> No
             "last is the check record"
         )
     for use, (begin, end) in zip(("fit", "check"), spans, strict=True):
-        if not 0 <= begin < end or begin >= duration:
+        if not 0 <= begin < end or begin >= duration or end > BEYOND * duration:
             raise ExperimentError(
                 f"{names[0]}: {use} span: found {begin:g} to {end:g} s, expected two instants in "
                 f"order within the log's {duration:.4g} s"
@@ -162,7 +164,8 @@ def _usual_spans(survey: Survey) -> FitAndCheck:
 
 def _shortest(survey: Survey) -> float:
     """The shortest record that can be read, s."""
-    return max(FEWEST * sample_time_of(survey), SHORTEST)
+    h = sample_time_of(survey)
+    return max(FEWEST * h, SHORTEST) + h  # the row at a cut belongs to the other part
 
 
 def _lasting(survey: Survey, begin: float, end: float) -> float:

@@ -46,8 +46,7 @@ def record(angle=1, push=1, command=1, pause=False):
     )
 
 
-@pytest.mark.parametrize("every", [2, 5, 8])
-@pytest.mark.parametrize("pause", [False, True])
+@pytest.mark.parametrize(("every", "pause"), [(2, False), (8, True)])
 def test_a_position_is_read_at_its_readings_and_between_them(every, pause):
     slow = record(angle=every, pause=pause)
     error = (

@@ -32,6 +32,7 @@ def chain(count, laws):
     return Diagram("chain", tuple(blocks), tuple(junctions), outside, ())
 
 
+@pytest.mark.slow
 def test_five_bodies_with_four_laws_of_order_two_are_proved():
     claims = diagram_claims(chain(5, 4), rng=0).claims
     assert [one.claim.status for one in claims] == ["proved", "proved"]
@@ -46,7 +47,7 @@ def test_eight_intervals_on_four_bodies_are_proved():
 
 
 @pytest.mark.parametrize("claim", ["passive", "absolutely stable", "stable"])
-@pytest.mark.parametrize("most", [10, 1000, 30_000])
+@pytest.mark.parametrize("most", [10, 1000])
 def test_too_much_effort_is_no_answer_and_no_error(claim, most):
     """Wherever in a proof the bound is reached; what is decided before it stays decided."""
     diagram = chain(3, 1)

@@ -156,12 +156,12 @@ def test_a_study_that_was_stopped_before_its_file_was_written_says_what_it_kept(
         if progress.done == progress.total:
             raise KeyboardInterrupt
 
-    given = {"measures": models.value, "out": out, "workers": 1}
+    settings = {"measures": models.value, "out": out, "workers": 1}
     with pytest.raises(KeyboardInterrupt):
-        td.study(models.product, axes, progress=stopped, **given)
+        td.study(models.product, axes, progress=stopped, **settings)
     assert not out.exists()
     reports = []
-    td.study(models.product, axes, progress=reports.append, **given)
+    td.study(models.product, axes, progress=reports.append, **settings)
     assert [(r.done, r.kept) for r in reports] == [(10, 10)] and out.exists()
 
 

@@ -199,7 +199,7 @@ def test_a_limit_on_a_claim_without_a_margin_says_so():
 
     for least, held in ((0.0, True), (0.5, False)):
         limits = [td.limit("passive", least=least)]
-        tuned = td.tune(diagram, levels, most_level, subject_to=limits, evaluations=10)
+        tuned = td.tune(diagram, levels, most_level, subject_to=limits, evaluations=4)
         (passive,) = tuned.limits
         assert passive.holds is held
         if np.isnan(passive.value):

@@ -12,18 +12,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePath
 
+import numpy as np
+
 from ...base.errors import ExperimentError, did_you_mean
 from ...base.units import is_several_times, is_unit
-from ..column_names import as_unit, unit_in_name
+from ..column_names import as_unit
 from ..doors._log import Log, join_names
 from ..doors.folder import are_quantities
+from ..numbers_in_cells import numbers_of
 from ..record_clock import FEWEST
 from ..wrapped_stamps import unwrap_stamps
-from .assumed_rate import explain_rate
+from .assumed_rate import ASSUMED
 from .axis_kind import axis_of
 from .candidate_clocks import counts_rows
 from .clock import duration_of, interpolate_columns, numeric_columns, rate_without_time, time_column
 from .content import NONE, Array, Choices, Survey, SurveyedColumn
+from .derivative import wrap_of
 from .forces import describe_forces
 from .position import describe_position, find_position
 from .trials import longest_trial, name_trials
@@ -36,6 +40,7 @@ __all__ = [
     "require_same_columns",
     "spans_of",
     "survey_log",
+    "survey_logs",
 ]
 
 #: units that a misspelt one may mean
@@ -73,10 +78,6 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     elif choices.sample_rate is None and (rate := rate_without_time(raw, log, choices)):
         choices = replace(choices, sample_rate=rate[0])
         guesses["sample_rate"] = f"{rate[0]:g} Hz: no column rises as a time does, and {rate[1]}"
-    elif choices.sample_rate is None:
-        known = {n: choices.units.get(n) or log.units.get(n) or unit_in_name(n) for n in raw}
-        stated = {n: u for n, u in known.items() if u is not None}
-        guesses["sample_rate"] += explain_rate(raw, stated)
     try:
         time, columns = interpolate_columns(raw, log, time_name, unit, choices, file)
     except ExperimentError as problem:
@@ -90,7 +91,7 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     if time_name is not None:
         survey.channels["time"] = {"column": time_name, "unit": unit}
     else:
-        survey.channels["sample_rate"] = {"value": choices.sample_rate or 1000.0, "unit": "Hz"}
+        survey.channels["sample_rate"] = {"value": choices.sample_rate or ASSUMED, "unit": "Hz"}
     name_trials(survey, raw)
     survey.columns = longest_trial(survey)
     position, velocity = find_position(survey, time_name, choices, file)
@@ -100,6 +101,25 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     _units_in_use(survey, choices, file)
     survey.unused = unused_columns(log, raw, survey)
     survey.columns = columns
+    return survey
+
+
+def survey_logs(logs: Sequence[Log], files: Sequence[str], choices: Choices) -> Survey:
+    """Propose the channels that several logs of one experiment share; files: their names.
+
+    The first log is surveyed. If its position does not wrap and that of a later one does, that
+    one is: the readings of a slow run tell nothing of the wrap.
+    """
+    survey = survey_log(logs[0], files[0], choices)
+    position = survey.channels["position"]
+    if "unwrap" in position:
+        return survey
+    name = position["column"]
+    for log, file in zip(logs[1:], files[1:], strict=True):
+        x = numbers_of(log.read({name: ""})[name], name, file)
+        finite = x[np.isfinite(x)]
+        if len(finite) > 1 and wrap_of(finite) is not None:
+            return survey_log(log, file, choices)
     return survey
 
 

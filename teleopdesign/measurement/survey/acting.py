@@ -35,6 +35,13 @@ TORQUE = (
     "torque", "moment", "drehmoment", "couple", "coppia", "force", "kraft", "fuerza", "forza",
     "tau", "トルク", "力矩", "扭矩", "토크", "момент", "сила",
 )  # fmt: skip
+#: parts that have a position, a speed and a force
+PARTS = frozenset("motor servo axis joint".split())
+
+
+def names_part(name: str) -> bool:
+    """Whether a name tells a part of a device and no quantity of it: "motor", "Motor 2"."""
+    return bool(words_of(name)) and PARTS.issuperset(words_of(name))
 
 
 def current_that_acted(

@@ -18,10 +18,16 @@ ASSUMED = 1000.0
 FEWEST, MOST = 60, 12
 #: part by which the rate that a velocity tells may differ from the assumed one
 SAME = 0.1
+#: part by which a rate with fewer digits may be off: a derivative along rows tells it no better
+ROUNDED = 0.005
 
 
-def explain_rate(raw: Mapping[str, Array], units: Mapping[str, str]) -> str:
-    """At which rate one column is the derivative of another, as the end of a guess; "": at none.
+def rate_of_velocity(
+    raw: Mapping[str, Array], units: Mapping[str, str]
+) -> tuple[float, str] | None:
+    """The rate at which one column is the derivative of another, Hz, and the sentence that says so.
+
+    None: no column is one at a rate other than the assumed one, or its unit could be any.
 
     raw: columns of numbers, by name;  units: those that are known
     """
@@ -36,12 +42,16 @@ def explain_rate(raw: Mapping[str, Array], units: Mapping[str, str]) -> str:
         factor, agree = derivative_factor(x, v, 1 / ASSUMED)
         if agree > best[1] and has_both_signs(x, v, 1 / ASSUMED):
             best, pair = (factor * scale, agree), (place, speed)
-    rate = float(f"{ASSUMED * best[0]:.2g}")
-    if not rate > 0 or abs(best[0] - 1.0) < SAME:
-        return ""
-    known = all(units.get(n) for n in pair)
-    unit = "" if known else f", if it is in the unit of {pair[0]!r} per second"
-    return f"; {pair[1]!r} is the derivative of {pair[0]!r} at about {rate:g} Hz{unit}"
+    if not best[0] > 0 or abs(best[0] - 1.0) < SAME:
+        return None
+    rates = [float(f"{ASSUMED * best[0]:.{digits}g}") for digits in (1, 2, 3)]
+    rate = next((r for r in rates if abs(r / (ASSUMED * best[0]) - 1.0) < ROUNDED), rates[-1])
+    unit = ""
+    if not all(units.get(n) for n in pair):
+        if not all(likeness(n, q) > 0 for n, q in zip(pair, ("position", "velocity"), strict=True)):
+            return None
+        unit = f", if it is in the unit of {pair[0]!r} per second"
+    return rate, f"{pair[1]!r} is the derivative of {pair[0]!r} at this rate{unit}"
 
 
 def _scale(of_place: str | None, of_speed: str | None) -> float | None:

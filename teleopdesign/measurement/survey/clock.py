@@ -9,7 +9,14 @@ import numpy as np
 
 from ...base.errors import ExperimentError, quote
 from ...base.units import is_several_times, measures, si_factor
-from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text, words_of
+from ..column_names import (
+    bare_name,
+    is_wanted,
+    likeness,
+    unit_in_name,
+    unit_of_text,
+    words_of,
+)
 from ..doors._log import Log, bare_column, join_names
 from ..log_clock import OF_ANOTHER_CLOCK
 from ..numbers_in_cells import holds_dates, numbers_of
@@ -17,6 +24,7 @@ from ..signed_numbers import sign_code_of
 from ..stamp_unit import unit_in_place_of, unit_of_steps
 from ..time_grid import clock_of
 from ..wrapped_stamps import seconds_since_first, unwrap_stamps
+from .assumed_rate import ASSUMED, rate_of_velocity
 from .candidate_clocks import (
     busiest_clock,
     clock_of_position,
@@ -24,7 +32,16 @@ from .candidate_clocks import (
     counts_rows,
     position_by_name,
 )
-from .content import SURE_NAME, Array, Choices, SurveyedColumn, is_unit_of, reasons, rises
+from .content import (
+    SURE_NAME,
+    Array,
+    Choices,
+    SurveyedColumn,
+    is_unit_of,
+    reasons,
+    rises,
+    unit_in_log,
+)
 from .remarks import sample_rate_in
 
 #: quantities whose units are not those of a time
@@ -117,7 +134,7 @@ def time_column(
             scores = dict.fromkeys(rising, 0.0)
         if not scores:
             guesses["sample_rate"] = (
-                "no column rises as a time does: the sample rate is assumed to be 1000 Hz"
+                f"no column rises as a time does: the sample rate is assumed to be {ASSUMED:g} Hz"
                 f"{_perhaps_coarse(raw, log, choices)}"
             )
             return None, "s"
@@ -151,9 +168,10 @@ def time_column(
 def rate_without_time(
     raw: Mapping[str, Array], log: Log, choices: Choices
 ) -> tuple[float, str] | None:
-    """The rate of the rows (Hz) and what tells it: a line above the table, or a column of steps.
+    """The rate of the rows (Hz) and what tells it.
 
-    Such a column holds the time from one row to the next.
+    That is a line above the table, a column that holds the time from one row to the next, or a
+    velocity beside its position.
     """
     if stated := sample_rate_in(log.remarks):
         return stated[0], f"a line of the log states {stated[1]!r}"
@@ -169,7 +187,8 @@ def rate_without_time(
             unit, _ = unit_of_steps(np.cumsum(steps))
         rate = float(f"{1.0 / (usual * si_factor(unit, quantity='time')):.4g}")
         return rate, f"{name!r} holds the usual time from one row to the next"
-    return None
+    known = {n: choices.units.get(n) or log.units.get(n) or unit_in_log(n, log.names) for n in raw}
+    return rate_of_velocity(raw, {n: u for n, u in known.items() if u is not None})
 
 
 def _rises_as_clock(name: str, values: Array, log: Log) -> bool:
@@ -229,7 +248,7 @@ def duration_of(
 ) -> float:
     """Time from the first to the last row of the whole log, s."""
     if time_name is None:
-        return (max(map(len, raw.values())) - 1) / (choices.sample_rate or 1000.0)
+        return (max(map(len, raw.values())) - 1) / (choices.sample_rate or ASSUMED)
     stamps = raw[time_name] * si_factor(unit, quantity="time")
     return float(np.nanmax(seconds_since_first(stamps)))
 
@@ -248,7 +267,7 @@ def interpolate_columns(
     """
     if time_name is None:
         count = max(map(len, raw.values()))
-        stamps = np.arange(count) / (choices.sample_rate or 1000.0)
+        stamps = np.arange(count) / (choices.sample_rate or ASSUMED)
     else:
         stamps = raw[time_name] * si_factor(unit, quantity="time")
     beside_time = {n: x for n, x in raw.items() if len(x) == len(stamps)}
@@ -273,7 +292,8 @@ def interpolate_columns(
         fine = np.isfinite(x) & np.isfinite(at)
         if fine.sum() < 2:
             continue
-        column_unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name)
+        column_unit = choices.units.get(name) or log.units.get(name)
+        column_unit = column_unit or unit_in_log(name, log.names)
         code = None if _is_counter(name) else sign_code_of(x[fine])
         readings = x[fine] if code is None else code.decode(x[fine])
         grid = np.interp(clock.time, at[fine], readings)

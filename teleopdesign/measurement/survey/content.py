@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.units import is_unit, measures
-from ..column_names import likeness
+from ..column_names import likeness, unit_in_name, words_of
+from ..doors._log import bare_column
 from ..first_guess import FirstGuess
 from ..signed_numbers import SignCode
 
@@ -23,6 +25,10 @@ OF_SENSORS = ("V", "mV")
 #: columns whose scores differ by less are equally likely, as of several joints in one log: the part
 #: of a score that comes from physics is known no better
 AS_LIKELY = 0.05
+#: words of a length or a place along a line
+LENGTHS = frozenset(
+    "position pos x weg displacement displ disp stroke slider verschiebung deplacement".split()
+)
 #: in place of a column's name: the log has none of that quantity
 NONE = "none"
 
@@ -93,6 +99,20 @@ class Choices:
     gear_ratio: float | None = None
     counts_per_turn: float | None = None
     sample_rate: float | None = None
+
+
+def unit_in_log(name: str, names: Collection[str]) -> str | None:
+    """The unit at the end of a column's name among the names of its log.
+
+    One letter is a unit where the words before it name a length: "position_m" is in metres. Beside
+    "position_s" it is an index, as of a master.
+    """
+    unit = unit_in_name(name)
+    stem, _, letter = bare_column(name).rpartition("_")
+    if unit is not None or letter != "m" or not LENGTHS.intersection(words_of(stem)):
+        return unit
+    index = re.compile(re.escape(stem) + r"_[a-z]$", re.I)
+    return None if any(index.match(bare_column(n)) for n in names if n != name) else "m"
 
 
 def moves(column: SurveyedColumn) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..encoder import reading_step
-from ..first_guess import explain_force
+from ..first_guess import SURELY, explain_force, goes_one_way, motion_columns
 from ..law_of_readings import FEWEST_STEPS, LOST, is_copy, law_of_readings, spring_of_copy
 from .content import Array
 from .set_point import has_numbers_of, lags
@@ -17,6 +17,9 @@ FITS = 4
 #: part of its travel that a body crosses between two rows at most: the command of a relay jumps
 #: over all of its range
 JUMP = 0.5
+#: coefficients of a cubic: one position as a function of another bends at both ends at most; and
+#: the part of the squares of a position that it leaves
+POWERS, OF_A_POSITION = 4, 0.01
 
 
 def repeats_mostly(column: Array, other: Array) -> bool:
@@ -38,6 +41,25 @@ def repeats_mostly(column: Array, other: Array) -> bool:
     reach = float(np.ptp(column))
     exact = off <= rounding + LOST * reach
     return rounding * FEWEST_STEPS <= reach and 2 * int(exact.sum()) > len(column)
+
+
+def follows(column: Array, position: Array, sample_time: float) -> bool:
+    """Whether a column (n,) follows a position as a second position behind a gear or spring does.
+
+    A cubic of the position then leaves next to nothing of it, in which no friction is certain: that
+    is part of a force. Along a motion one way everything that rises is a function of the position,
+    and nothing is said.
+    """
+    if goes_one_way(motion_columns(position, sample_time)[2]):
+        return False
+    place = (position - position.mean()) / max(float(np.ptp(position)), np.finfo(float).tiny)
+    powers = np.vander(place, POWERS)
+    rest = column - powers @ np.linalg.lstsq(powers, column, rcond=None)[0]
+    if np.var(rest) >= OF_A_POSITION * np.var(column):
+        return False
+    guess = explain_force(rest, position, sample_time)
+    brakes = zip((guess.level, guess.damping), guess.errors[1:], strict=True)
+    return not any(abs(value) > SURELY * error for value, error in brakes)
 
 
 def pulls_back(command: Array, position: Array, h: float) -> bool:

@@ -44,6 +44,8 @@ NEAR_USUAL = 0.02
 #: part of its range that a number crosses at once where it wraps: a body that is reversed so fast
 #: would not reach the ends of this range in between
 WHOLE_RANGE = 0.9
+#: usual steps from row to row that a leap of a wrap is longer than: a fifth of a turn in a row
+UNLIKE = 5.0
 #: lengths of a turn in units of angle; fewest counts of a turn, below which a number of counts may
 #: be the range of a motion
 TURNS, FEWEST_COUNTS = (360.0, 2 * math.pi, 1.0, 400.0, 180.0, math.pi), 500.0
@@ -63,7 +65,7 @@ def wrap_of(x: Array) -> float | None:
     reach = float(np.ptp(x))
     steps = np.diff(x)
     usual = float(np.quantile(np.abs(steps), 0.95))
-    is_jump = np.abs(steps) > max(0.6 * reach, 20.0 * usual)
+    is_jump = np.abs(steps) > max(0.6 * reach, UNLIKE * usual)
     if reach == 0.0 or not is_jump.any():
         return None
     jumps = np.abs(steps[is_jump])

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ...base.errors import ExperimentError
 from ...base.toml import Table
 from ...base.units import is_unit, measures, unit_of
 from ..column_names import unit_in_name, why_no_unit, words_of
@@ -71,20 +72,7 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
         survey.guesses[f"channels.{key}.unit"] = why + _steps_of_driver(survey, name, "mV")
     if unit in ("A", "mA", "V"):
         entry["unit"] = unit
-        base = "V" if unit == "V" else "A"
-        constant = choices.torque_constant
-        if constant is None:
-            constant = (PLACEHOLDER, f"{unit_of('force', axis)}/{base}")
-            why = (
-                f"{constant[0]:g} {constant[1]} is a placeholder for the motor's constant: "
-                "state the true constant, since forces and parameters scale in proportion"
-            )
-            if (stated := torque_constant_in(survey.remarks)) and measures(
-                stated[1].rpartition("/")[0], "force", axis
-            ):
-                constant = stated[:2]
-                why = f"{constant[0]:g} {constant[1]}: a line of the log states {stated[2]!r}"
-            survey.guesses[f"channels.{key}.torque_constant"] = why
+        constant = _motor_constant(survey, key, unit, choices)
         entry["torque_constant"] = {"value": constant[0], "unit": constant[1]}
         return entry
     if axis == "revolute" and (newton := _unit_at_lever(name, unit)):
@@ -101,6 +89,34 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
             "--force COLUMN selects a current"
         )
     return {**entry, "unit": unit}
+
+
+def _motor_constant(survey: Survey, key: str, unit: str, choices: Choices) -> tuple[float, str]:
+    """The constant of a motor and its unit: stated by the user or by a line, or a placeholder.
+
+    raises ExperimentError: what the user states gives no force of this axis
+    """
+    axis = survey.axis
+    usual = f"{unit_of('force', axis)}/{'V' if unit == 'V' else 'A'}"
+    constant = choices.torque_constant
+    if constant is not None:
+        if not measures(constant[1].rpartition("/")[0], "force", axis):
+            raise ExperimentError(
+                f"--torque-constant: found {constant[1]!r} on a {axis} axis, expected {usual!r}"
+            )
+        return constant
+    constant = (PLACEHOLDER, usual)
+    why = (
+        f"{constant[0]:g} {constant[1]} is a placeholder for the motor's constant: "
+        "state the true constant, since forces and parameters scale in proportion"
+    )
+    if (line := torque_constant_in(survey.remarks)) and measures(
+        line[1].rpartition("/")[0], "force", axis
+    ):
+        constant = line[:2]
+        why = f"{constant[0]:g} {constant[1]}: a line of the log states {line[2]!r}"
+    survey.guesses[f"channels.{key}.torque_constant"] = why
+    return constant
 
 
 def describe_code(survey: Survey, name: str, key: str) -> dict[str, Any]:

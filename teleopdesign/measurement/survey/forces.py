@@ -9,7 +9,7 @@ from ...base.units import si_factor
 from ..column_names import is_difference, is_wanted, likeness
 from ..doors._log import join_names
 from ..first_guess import FirstGuess, explain_force, is_turned, left_by_motion
-from .acting import current_that_acted, names_current, names_voltage
+from .acting import current_that_acted, names_current, names_part, names_voltage
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
 from .balance import hand_by_balance, scale_by_balance
 from .content import (
@@ -25,12 +25,13 @@ from .content import (
     is_unit_of,
     sample_time_of,
 )
-from .copies import pulls_back
+from .copies import follows, pulls_back
 from .derivative import unwrap_column, wrap_of
 from .force_candidates import possible_forces
 from .force_entry import describe_force, force_to_si
 from .no_force import (
     error_of_chance,
+    error_of_place,
     error_without_force,
     taken_for_something_else,
     tells_forces,
@@ -123,17 +124,33 @@ def _find_driving_force(
             f"{force!r} is read as the actuator's force: the command {wanted!r} leaves "
             f"{apart:.0%} of it unexplained, more than noise"
         )
-    elif likeness(force, "actuator_force") < SURE_NAME:
+    elif likeness(force, "actuator_force") < SURE_NAME or names_part(force):
         share = physics[force].explained
-        named = likeness(force, "actuator_force") > 0 or is_unit_of(free[force].unit, "force")
-        if not named and (share < CHANCE or not tells_forces(survey)):
-            raise error_of_chance(survey, file, (force, share), f"{join_names(free)}{beside}")
+        if not _is_named(free[force]):
+            error = error_of_chance(survey, file, (force, share), f"{join_names(free)}{beside}")
+            if share < CHANCE or not tells_forces(survey):
+                raise error
+            if _follows_place(survey, force):
+                raise error_of_place(survey, file, force)
         why = f"{force!r} is read as the actuator's force: the motion explains {share:.0%} of it"
     elif others := as_likely(scores, force):
         why = explain_ambiguity(force, others, "the actuator's force")
     if why is not None:
         survey.guesses["channels.actuator_force.column"] = why
     return force, acted is not None
+
+
+def _is_named(column: SurveyedColumn) -> bool:
+    """Whether unit or name are those of a force; "motor" is the name of what has one."""
+    named = likeness(column.name, "actuator_force") > 0 and not names_part(column.name)
+    return named or is_unit_of(column.unit, "force")
+
+
+def _follows_place(survey: Survey, name: str) -> bool:
+    """Whether a column is a function of the position, or this of it, as a second position is."""
+    x = survey.columns[survey.channels["position"]["column"]].values
+    x, values, h = unwrap_column(x, wrap_of(x)), survey.columns[name].values, sample_time_of(survey)
+    return follows(values, x, h) or follows(x, values, h)
 
 
 def _sizes_beside_signed(

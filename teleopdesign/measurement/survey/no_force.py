@@ -54,6 +54,15 @@ def error_of_chance(
     )
 
 
+def error_of_place(survey: Survey, file: str, name: str) -> ExperimentError:
+    """The error where the likeliest column without the name of a force follows the position."""
+    position = survey.channels["position"]["column"]
+    return ExperimentError(
+        f"{file}: found no force: {name!r} follows {position!r} as a second position or a spring "
+        f"does, and its name states no force; --force {name!r} if it is one"
+    )
+
+
 def taken_for_something_else(survey: Survey, velocity: str | None) -> str:
     """Which columns, taken for velocities or set points, may be the force, for a message."""
     used = columns_in_use(survey)
