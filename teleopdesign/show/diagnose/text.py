@@ -205,14 +205,6 @@ def records_line(diagnosis: Diagnosis) -> str:
     )
 
 
-def floors_apart(left: float, without: float) -> tuple[str, str]:
-    """Two errors in noise floors, with as many decimals as show which one is smaller."""
-    if left > CRITERIA.countable:
-        return say_floors(left), say_floors(without)
-    digits = next((d for d in (1, 2, 3) if f"{left:.{d}f}" != f"{without:.{d}f}"), 4)
-    return f"{left:.{digits}f}", f"{without:.{digits}f}"
-
-
 def sentence(diagnosis: Diagnosis) -> str:
     """The verdict of a diagnosis in words."""
     rest = _rest(diagnosis)
