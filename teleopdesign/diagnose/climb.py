@@ -7,7 +7,7 @@ from dataclasses import replace
 from .adequacy import is_a_tone
 from .conclusion import remove_doubtful_rung, with_last_corrected
 from .ladder_state import LadderSearch, LadderState, look
-from .moves import add, swap
+from .moves import add, add_two, swap
 from .rung import Rung
 from .stand_in import stands_in_for_moments, stands_in_for_values
 from .straight import straighten
@@ -73,8 +73,9 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
     """The state after the next move; None: the ladder ends here.
 
     First, a supported effect is added. Where there is none, another effect takes the place of one
-    that the records do not tell from it. Where more than a tone is left, a transmission with
-    friction behind it is tried, because a search with one of the two does not lead to the other.
+    that the records do not tell from it. Where more than a tone is left, two effects are tried that
+    mask each other, and a transmission with friction behind it, because a search with one of the
+    two does not lead to the other.
     """
     moves = [straighten] if state.step > search.plan.most_effects else [add, straighten, swap]
     for move in moves:
@@ -84,4 +85,4 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
         return None
     if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):
         return None
-    return add_transmission(search, state)
+    return add_two(search, state) or add_transmission(search, state)

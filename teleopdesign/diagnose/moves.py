@@ -1,4 +1,4 @@
-"""Moves of a search over sets of effects: add one, remove one, or swap one for another.
+"""Moves of a search over sets of effects: add one or two, remove one, or swap one for another.
 
 A move takes a search and a state and returns the next state, or None where no such move is
 supported. All moves are judged by the same gain on the check records (`decision.is_better`), with
@@ -14,14 +14,22 @@ from dataclasses import replace
 from .adequacy import is_adequate
 from .candidates import Candidate, list_look_alikes
 from .decision import is_better, is_supported
-from .evidence import whole_score
-from .fit import Fit
+from .evidence import check_squares, whole_score
+from .fit import Fit, fit_squares
 from .ladder_state import LadderSearch, LadderState
-from .order import alternatives_of, select_equals, select_other_helpers, select_simplest, simplicity
+from .order import (
+    alternatives_of,
+    look_alikes_of,
+    select_equals,
+    select_other_helpers,
+    select_simplest,
+    simplicity,
+)
 from .plausibility import undetermined_of
 from .ranking import Ranked, Ranking
 from .rung import Rung, make_replaced
-from .rungs import estimate_without, reorder_and_refit
+from .rungs import estimate_without, order_by_falling_error, reorder_and_refit
+from .verdict import explained_share
 
 
 def add(search: LadderSearch, state: LadderState) -> LadderState | None:
@@ -68,6 +76,84 @@ def _add_candidate(search: LadderSearch, state: LadderState, best: Ranked) -> La
     else:
         return state.with_rungs(rungs)
     return _in_order(search, state, rungs, best.fit)
+
+
+def add_two(search: LadderSearch, state: LadderState) -> LadderState | None:
+    """The ladder with two effects that the records support only together; only as the first move.
+
+    Each of two effects may mask the other, so that neither is supported alone. The best candidates
+    are followed (`SearchPlan.beam`), and all candidates at their body are ranked again beside each.
+    """
+    if state.step > 1 or is_adequate(state.fit, state.floor, criteria=search.criteria):
+        return None
+    first = [
+        r
+        for r in state.ranking.ranked
+        if r.counts
+        and r.candidate.key not in state.gone
+        and fit_squares(r.fit) < fit_squares(state.fit)
+        # all effects were ranked beside this effect before
+        and frozenset(r.fit.model.effects) not in state.visited
+    ]
+    pairs = [_best_beside(search, state, one) for one in first[: search.plan.beam]]
+    orders = [pair for pair in pairs if pair is not None]
+    best = min(orders, key=lambda rungs: check_squares(rungs[-1].fit), default=None)
+    return None if best is None else state.with_rungs(best)
+
+
+def _best_beside(
+    search: LadderSearch, state: LadderState, first: Ranked
+) -> tuple[Rung, ...] | None:
+    """The ladder with a candidate and the best one beside it; None where both are not needed."""
+    here, floor, criteria = state.fit, state.floor, search.criteria
+    # bodies do not act on each other along measured motions: effects of two never mask another
+    body = here.model.holder(first.candidate.at)
+    beside = search.rank(first.fit, step=state.step, body=body)
+    second = next(
+        (
+            r
+            for r in beside.ranked
+            if r.candidate.key not in state.gone
+            and r.instead_of != first.candidate
+            and is_supported(first.fit, r, floor, criteria=criteria)
+        ),
+        None,
+    )
+    if second is None:
+        return None
+    rungs = (
+        Rung(
+            first.candidate,
+            first.fit,
+            state.ranking,
+            look_alikes_of(first, state.ranking, criteria=criteria),
+            replaced=make_replaced(first, here.model),
+        ),
+        Rung(
+            second.candidate,
+            second.fit,
+            beside,
+            alternatives_of(second, beside, first.fit, floor, criteria=criteria),
+            replaced=make_replaced(second, first.fit.model),
+        ),
+    )
+    if not _needs_both(search, state, rungs):
+        return None
+    return order_by_falling_error((*state.rungs, *rungs), search.prepared)
+
+
+def _needs_both(search: LadderSearch, state: LadderState, pair: tuple[Rung, Rung]) -> bool:
+    """Whether two effects together explain most of the missing force and both are needed."""
+    here, both, floor, criteria = state.fit, pair[-1].fit, state.floor, search.criteria
+    if (
+        not is_better(here, both, floor, criteria=criteria)
+        or explained_share(here, both, floor) < criteria.mostly
+        or not state.tone.is_beaten_by(both)
+    ):
+        return False
+    without = estimate_without(both.model, pair[0], search.prepared)
+    # None: the second effect needs the first
+    return without is None or is_better(without, both, floor, criteria=criteria)
 
 
 def remove(search: LadderSearch, state: LadderState) -> LadderState | None:

@@ -70,6 +70,19 @@ def alternatives_of(
     )
 
 
+def look_alikes_of(
+    one: Ranked, ranking: Ranking, *, criteria: Criteria = CRITERIA
+) -> tuple[Candidate, ...]:
+    """Candidates that explain as much as this one, whether or not it is the best, or supported."""
+    parameters = simplicity(one.candidate)[0]
+    return tuple(
+        r.candidate
+        for r in ranking.ranked
+        if r is not one and r.counts and _is_equal(r, one, criteria)
+        if simplicity(r.candidate)[0] == parameters
+    )
+
+
 def select_other_helpers(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...]:
     """Other effects that remove at least half as many check squares as the best, by chance or not.
 

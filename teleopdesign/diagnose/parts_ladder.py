@@ -82,7 +82,7 @@ def _begin_joints(
             prepared=first.prepared[j],
             stated=models[j],
             seed=seed,
-            plan=plan.for_joints(),
+            plan=plan.for_joints(len(prepared.parts)),
             progress=lambda text, j=j: report(f"{j}: {text}"),  # type: ignore[misc]
         )
         records = with_clock_of_others(first.prepared, first.fits, j)

@@ -19,6 +19,10 @@ class SearchPlan:
     long: int = 200_000
     #: samples of the windows together
     windows: int = 60_000
+    #: candidates that are followed where none is supported alone, for each may mask another: one
+    #: ranking each. At each joint of an arm with more joints than that one is followed: a real arm
+    #: always leaves more than noise, and with three, six joints took over twice the time
+    beam: int = 3
     #: whether the errors of the readings are taken out of the last fit. Not at a joint of an arm:
     #: its readings are drawn with those of all joints
     corrected: bool = True
@@ -120,14 +124,15 @@ class SearchPlan:
     #: most models that one open question holds: an experiment separates each from the others
     rivals: int = 4
 
-    def for_joints(self) -> SearchPlan:
-        """The plan for each joint of an arm.
+    def for_joints(self, count: int) -> SearchPlan:
+        """The plan for each joint of an arm with `count` joints.
 
         An arm's records are searched whole, so the plan has the default sizes of windows.
         """
         plan = replace(self, long=SearchPlan.long, windows=SearchPlan.windows)
         return replace(
             plan,
+            beam=self.beam if count <= self.beam else min(self.beam, 1),
             corrected=False,
             stand_ins=False,
             tip_starts=0,
@@ -139,6 +144,11 @@ class SearchPlan:
         words = []
         if self.most_effects < PLAN.most_effects:
             words.append(f"no more than {self.most_effects} effects were added")
+        if self.beam == 0:
+            words.append("pairs of effects that mask each other were not searched")
+        elif self.beam < PLAN.beam:
+            best = "the best candidate" if self.beam == 1 else f"the best {self.beam}"
+            words.append(f"pairs of effects that mask each other were searched with {best} only")
         if self.long < PLAN.long:
             words.append(
                 f"records of more than {self.long} samples were searched on {self.windows} samples "
@@ -149,11 +159,13 @@ class SearchPlan:
 
 #: the sizes in use
 PLAN = SearchPlan()
-#: sizes of a quick first search. It may miss a weak effect, and a third or later one
+#: sizes of a quick first search. It may miss a weak effect, a third or later one, and two effects
+#: that mask each other
 QUICK = SearchPlan(
     most_effects=2,
     long=8_000,
     windows=8_000,
+    beam=0,
     tip_starts=0,
     draws=0,
 )

@@ -52,11 +52,11 @@ def test_quick_says_what_it_leaves_out_in_text_answer_and_report(rod, few, tmp_p
     for words in QUICK.omissions():
         assert f"left out: {words}" in out
         assert words in json.loads(answer.read_text())["left_out"]
-    assert "No more than 2 effects were added; records" in page.read_text(encoding="utf-8")
+    assert "No more than 2 effects were added; pairs" in page.read_text(encoding="utf-8")
 
 
 def test_the_usual_plan_leaves_nothing_out():
-    assert PLAN.omissions() == () and len(QUICK.omissions()) == 2
+    assert PLAN.omissions() == () and len(QUICK.omissions()) == 3
 
 
 @pytest.mark.parametrize(

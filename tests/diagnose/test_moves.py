@@ -14,7 +14,7 @@ from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.conclusion import remove_doubtful_rung
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.ladder_state import LadderSearch, begin, look, search_for
-from teleopdesign.diagnose.moves import add, remove, swap
+from teleopdesign.diagnose.moves import add, add_two, remove, swap
 from teleopdesign.diagnose.rank import make_ranked
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.rung import Rung
@@ -230,3 +230,26 @@ def test_two_effects_that_make_each_other_superfluous_do_not_take_turns(ladder, 
     again = replace(supported, visited=frozenset({one.effects}))
     assert add(search, again) is both
     assert add(search, replace(again, visited=frozenset({one.effects, both.effects}))) is None
+
+
+def test_a_pair_is_added_to_the_model_alone(ladder):
+    search, state = ladder
+    moved = add_two(search, state)
+    assert set(added(moved)) == {"spring", "bias"}
+    errors = [rung.fit.check_error for rung in moved.rungs]
+    assert errors == sorted(errors, reverse=True)
+    assert is_adequate(moved.fit, moved.floor)
+    assert add_two(search, moved) is None
+
+
+def test_the_second_of_a_pair_is_sought_at_the_body_of_the_first(ladder, monkeypatch):
+    search, state = ladder
+    questions = []
+
+    def rank(self, base, *, body=None, **_):
+        questions.append(body)
+        return Ranking(base, ())
+
+    monkeypatch.setattr(LadderSearch, "rank", rank)
+    assert add_two(search, state) is None
+    assert questions and set(questions) == {"device"}

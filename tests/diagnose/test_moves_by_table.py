@@ -2,14 +2,17 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
-from diagnose.stand_ins import floor
-from diagnose.stub_models import Table, candidate
+from diagnose.stand_ins import SHAPE, floor
+from diagnose.stub_models import Names, Table, candidate
 
 from teleopdesign.diagnose import rungs as rungs_module
-from teleopdesign.diagnose.moves import add, remove
+from teleopdesign.diagnose.moves import add, add_two, remove
+from teleopdesign.diagnose.outside_tone import Tone
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.rung import Replaced
+from teleopdesign.diagnose.search_plan import PLAN
 
 SPRING, HARD, BIAS, DRAG, GRAVITY = map(
     candidate, ("spring", "hardening_spring", "bias", "quadratic_drag", "gravity")
@@ -144,3 +147,44 @@ def test_what_another_effect_needs_is_not_removed(use):
     table = use(shares(spring=0.5, bias=0.3), needs=(("spring", "quadratic_drag"),))
     state = table.state(table.rungs("quadratic_drag", "spring", "bias"))
     assert remove(table.search(), state) is None
+
+
+def masked(names, both=0.1):
+    """Each of a spring and a bias explains next to nothing without the other."""
+    if {"spring", "bias"} <= names:
+        return both
+    return 0.97 if "spring" in names else 0.96 if "bias" in names else 1.0
+
+
+def two_added(use, monkeypatch, rule, *, tone=None):
+    """What `add_two` adds to a model without an effect."""
+    table = use(rule)
+    monkeypatch.setattr(Names, "holder", lambda model, at: at, raising=False)
+    search = table.search()
+
+    def rank(base, *, step, body):
+        lacks = [c for c in (SPRING, BIAS) if not base.model.has(c.effect.name)]
+        return table.rank(base, among=lacks, step=step)
+
+    search.rank, search.plan = rank, PLAN
+    state = looked(table, table.state(table.rungs()), SPRING, BIAS)
+    residual = None if tone is None else tone * np.cos(np.arange(SHAPE.size)) / 14.0
+    moved = add_two(search, replace(state, supported=(), tone=Tone(residual)))
+    return None if moved is None else set(names(moved))
+
+
+@pytest.mark.parametrize(("rule", "found"), [
+    (masked, {"spring", "bias"}),
+    # the spring does it alone
+    (lambda names: 1.0 - 0.9 * ("spring" in names) - 1e-4 * ("bias" in names), None),
+    # together they leave most of the force
+    (lambda names: masked(names, 0.8), None),
+    (lambda names: masked(names, 0.6), {"spring", "bias"}),
+])  # fmt: skip
+def test_two_that_mask_each_other_are_added_where_each_is_needed(use, monkeypatch, rule, found):
+    assert two_added(use, monkeypatch, rule) == found
+
+
+def test_two_effects_leave_less_than_a_tone_from_outside(use, monkeypatch):
+    assert two_added(use, monkeypatch, masked, tone=0.5) == {"spring", "bias"}
+    assert two_added(use, monkeypatch, masked, tone=0.05) is None

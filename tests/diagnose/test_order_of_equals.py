@@ -7,6 +7,7 @@ from diagnose.stand_ins import SHAPE, fit, floor, ranked
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.order import (
     alternatives_of,
+    look_alikes_of,
     rank_key,
     select_equals,
     select_other_helpers,
@@ -108,3 +109,14 @@ def test_of_two_that_do_the_same_the_first_of_the_catalogue_stays_first():
     assert sorted([one, other], key=rank_key) == [one, other]
     better = ranked(0.3 * (1 - 1e-4), "viscous")
     assert sorted([one, better], key=rank_key) == [better, one]
+
+
+def test_a_candidate_that_only_a_pair_supports_has_look_alikes_too():
+    """A bias beside a gain was called an asymmetry of friction, with certainty."""
+    base, one = fit(0.31), ranked(0.3, "coulomb_asymmetry")
+    same, worse = alike(0.3001, one, "bias"), ranked(0.32, "spring")
+    nothing = alike(0.3, one, "viscous", is_identifiable=False)
+    two = alike(0.3, one, "stribeck")  # two parameters
+    ranking = Ranking(base, (ranked(0.2, "cogging"), one, same, worse, nothing, two))
+    assert look_alikes_of(one, ranking) == (same.candidate,)
+    assert look_alikes_of(worse, ranking) == ()
