@@ -1,11 +1,15 @@
-"""The picture of the README, drawn from the diagnosis of the shipped experiment.
+"""The pictures of the README: its four steps on the logs that come with the package.
 
 python docs/make_pictures.py
 """
 
 from __future__ import annotations
 
+import shutil
+import subprocess
+import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import matplotlib
@@ -13,12 +17,13 @@ import matplotlib
 matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
 
 import teleopdesign as td  # noqa: E402
 
 ROD = td.example("rod")
 STYLE = Path(td.__file__).parent / "show" / "figures" / "teleopdesign.mplstyle"
-OUTPUT = Path(__file__).parent / "_static" / "diagnosis.png"
+OUTPUT = Path(__file__).parent / "_static"
 MEASURED, BEFORE, AFTER = "0.6", "#D55E00", "#0072B2"
 #: s, of the check record: slow strokes, where friction is most of the force
 WINDOW = (6.66, 7.5)
@@ -83,9 +88,34 @@ def _ladder(ax: Any, diagnosis: td.Diagnosis) -> None:
     ax.set_xlabel("force error on the record that was not fitted (% of the measured force)")
 
 
+def draw_felt(design: Any) -> plt.Figure:
+    """What a hand feels of the device over amplitude, in the four cases of a compensation."""
+    cases = td.diagrams.four_cases(design.diagram)
+    amplitude = 1e-3 * np.geomspace(0.5, 10, 8)
+    felt = td.measured_impedance(cases, amplitude=amplitude, frequency=5.0)
+    predicted = td.frequency.quasi_linear_impedance(cases, amplitude=amplitude, frequency=5.0)
+    return felt.plot(model=predicted)
+
+
+def main() -> None:
+    """The steps of the README, each with its picture."""
+    with TemporaryDirectory() as folder:
+        rod = Path(folder) / "rod"
+        logs = [str(ROD / "fit.csv.gz"), str(ROD / "check.csv.gz")]
+        units = [word for unit in ("x=m", "u=N", "f_h=N") for word in ("--unit", unit)]
+        new = [sys.executable, "-m", "teleopdesign", "new", *logs, "--output", str(rod), *units]
+        subprocess.run([*new, "--yes"], check=True)
+        shutil.copy(rod / "understood.png", OUTPUT / "first_log.png")
+        diagnosis = td.find_missing(td.load_experiment(rod))
+        print(diagnosis)
+        design = td.design_compensation(diagnosis)
+        for name, figure, dpi in (
+            ("diagnosis", draw(diagnosis), 220),
+            ("first_compensation", design.plot(), 160),
+            ("first_figure", draw_felt(design), 200),
+        ):
+            figure.savefig(OUTPUT / f"{name}.png", dpi=dpi)
+
+
 if __name__ == "__main__":
-    rod_diagnosis = td.find_missing(td.load_experiment(ROD))
-    print(rod_diagnosis)
-    OUTPUT.parent.mkdir(exist_ok=True)
-    draw(rod_diagnosis).savefig(OUTPUT, dpi=220)
-    print(f"{OUTPUT.stat().st_size / 1000:.0f} kB")
+    main()

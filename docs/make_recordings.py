@@ -31,19 +31,16 @@ from recordings import table  # noqa: E402  the study beside: its table is the p
 
 
 def sections(rows: Mapping[str, Mapping[str, Any]]) -> str:
-    """A section for each recording: what the diagnosis says, its figure, what is left."""
+    """A section for each recording: the verdict and its figure; the rows hold the whole text."""
     parts = []
     for name, row in rows.items():
         if "skipped" in row:
             continue
-        parts.append(f"### {name}\n")
-        parts.append(f"```text\n{row['text']}\n```\n")
+        verdict = row["text"].rpartition("\nverdict: ")[2].strip()
+        parts.append(f"### {name}\n\n{verdict}\n")
         if (COPIES / f"{name}.png").is_file():
             picture = f"_static/recordings/{name}.png"
             parts.append(f"![Forces, residuals and ladder of {name}]({picture})\n")
-        if row.get("left"):
-            sentences = "\n".join(f"- {sentence}" for sentence in row["left"])
-            parts.append(f"What the last model leaves:\n\n{sentences}\n")
     return "\n".join(parts)
 
 
