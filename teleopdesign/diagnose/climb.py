@@ -8,8 +8,9 @@ from .adequacy import is_a_tone
 from .conclusion import remove_doubtful_rung, with_last_corrected
 from .ladder_state import LadderSearch, LadderState, look
 from .moves import add, add_two, swap
+from .noise_floor import noise_floor
 from .rung import Rung
-from .stand_in import stands_in_for_moments, stands_in_for_values
+from .stand_in import stands_in_for_moments, stands_in_for_readings, stands_in_for_values
 from .straight import straighten
 from .transmission import add_transmission
 
@@ -44,9 +45,9 @@ def bar_what_explains_nothing(
 ) -> LadderState | None:
     """The state before a move, with the move's new effects barred; None: they explain something.
 
-    An effect is barred if it only does what other values of the model do as well, or explains a few
-    moments of one log. A move that replaces rungs is exempt: it may explain as much as they did,
-    more simply.
+    An effect is barred if it only does what other values of the model do as well, only weakens
+    the errors of the readings, or explains a few moments of one log. A move that replaces rungs is
+    exempt: it may explain as much as they did, more simply.
     """
     before, after = ({r.added.key for r in s.rungs if r.added} for s in (state, moved))
     new = [r for r in moved.rungs if r.added is not None and r.added.key not in state.effects]
@@ -56,17 +57,22 @@ def bar_what_explains_nothing(
         return None
     last = replace(new[-1], fit=moved.fit)
     prepared, criteria = search.prepared, search.criteria
-    barred = stands_in_for_values(state.fit, last, prepared, state.floor, criteria=criteria)
-    barred = barred or stands_in_for_moments(state.fit, last, prepared, criteria=criteria)
+    drawn = noise_floor(moved.fit.model, prepared, search.generator())
+    barred = (
+        stands_in_for_readings(state.fit, state.floor, last, drawn, criteria=criteria)
+        or stands_in_for_values(state.fit, last, prepared, state.floor, criteria=criteria)
+        or stands_in_for_moments(state.fit, last, prepared, criteria=criteria)
+    )
     if barred is None:
         return None
     gone = {r.added.key for r in new if r.added is not None}
     search.progress(f"set aside: {barred}")
-    return replace(
+    state = replace(
         state,
         supported=tuple(r for r in state.supported if r.candidate.key not in gone),
         barred=(*state.barred, barred),
     )
+    return state.with_floor_limited() if barred.of_readings else state
 
 
 def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | None:

@@ -122,6 +122,12 @@ class LadderState:
         removed = (*self.set_aside, *self.barred)
         return frozenset(one.candidate.key for one in removed if one.of_readings)
 
+    def with_floor_limited(self) -> LadderState:
+        """The state with the noise floor that its candidates allow, without `weakening`."""
+        drawn = replace(self.floor, value=self.floor.drawn)
+        limited = limit_noise_floor(drawn, self.fit, self.ranking, self.weakening)
+        return replace(self, floor=limited)
+
     @property
     def fit(self) -> Fit:
         """The last rung's fit."""

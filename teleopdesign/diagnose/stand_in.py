@@ -6,6 +6,10 @@ changes these values may seem to explain the error. So the model is estimated on
 together, with the effect and without it. The effect must still leave surely less of the check
 records.
 
+Errors of the readings: a structure transmits less of the noise in an acceleration. The error may
+    then be smaller, and yet be more noise floors of the new model. In a record with few events (a
+    motor that sticks and slips under a coarse encoder) a lag may follow the errors themselves.
+
 Few moments: in one log without a check record, the few starts and stops of a motion may share an
     error, such as that of their time between two rows. An effect that acts only there follows it.
 """
@@ -20,9 +24,13 @@ from ..measurement.prepare import Prepared
 from .criteria import CRITERIA, Criteria
 from .decision import is_better
 from .fit import Fit, estimate
-from .noise_floor import NoiseFloor
+from .noise_floor import NoiseFloor, say_floors
 from .rung import Rung
 from .statements import SetAside
+
+#: blocks of the check records in fewer of which an effect may follow errors of the readings. Lower:
+#: a lag is named on a motor that sticks and slips; higher: a weak spring is not
+MOMENTS = 10
 
 
 def estimable_on_all(prepared: Prepared) -> Prepared | None:
@@ -69,6 +77,48 @@ def stands_in_for_values(
     return SetAside(rung.added, rung.fit.check_error, reason)
 
 
+def stands_in_for_readings(
+    base: Fit,
+    before: NoiseFloor,
+    rung: Rung,
+    after: NoiseFloor,
+    *,
+    criteria: Criteria = CRITERIA,
+) -> SetAside | None:
+    """The effect of a rung that only weakens the error of sensor readings, with the reason.
+
+    before, after: the noise floors of the two models, as drawn
+    Where the readings alone explain the error of the base, an effect that weakens their error must
+    leave surely fewer noise floors. An effect that leaves less than the readings alone would, by
+    what it does at few moments, follows their errors.
+    returns: None where the effect leaves fewer noise floors too, or the base more than noise
+    """
+    if rung.added is None or not (before.drawn and after.drawn):
+        return None
+    left, leaves = base.check_error / before.drawn, rung.fit.check_error / after.drawn
+    if not is_of_readings(left, criteria):
+        return None
+    if leaves < criteria.weakened and acts_at_few_moments(base, rung.fit):
+        reason = (
+            f"leaves {leaves:.2g} noise floors, less than the readings alone would leave, and acts "
+            f"at few moments: it only follows their errors ({left:.2g} floors are left without it)"
+        )
+        return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)
+    if after.drawn < criteria.weakened * before.drawn:
+        explains = leaves <= criteria.weakened * left
+    else:
+        explains = leaves <= criteria.adequate or criteria.weakened * leaves <= left
+    if explains:
+        return None
+    floors, without = say_floors(leaves, ".2g"), say_floors(left, ".2g")
+    reason = (
+        f"lowers the error from the readings of the sensors, from {100 * before.drawn:.2g} to "
+        f"{100 * after.drawn:.2g} % of the force, but leaves {floors} noise floors, "
+        f"{without} without it"
+    )
+    return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)
+
+
 def stands_in_for_moments(
     base: Fit, rung: Rung, prepared: Prepared, *, criteria: Criteria = CRITERIA
 ) -> SetAside | None:
@@ -87,6 +137,16 @@ def stands_in_for_moments(
         "without a check record so few may agree by chance, or share an error of their time"
     )
     return SetAside(rung.added, rung.fit.check_error, reason)
+
+
+def acts_at_few_moments(base: Fit, fit: Fit) -> bool:
+    """Whether fewer than `MOMENTS` blocks of the check records hold what an effect explains.
+
+    15 to 23 of 30 for a weak spring, 4 and 7 for a lag and a delay that followed errors of
+    readings. In shorter records it is small whatever acts: there the doubt counts against the
+    effect.
+    """
+    return acting_moments(base, fit) < MOMENTS
 
 
 def acting_moments(base: Fit, fit: Fit) -> float:

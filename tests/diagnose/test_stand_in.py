@@ -4,20 +4,23 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from diagnose import stand_ins
 from diagnose.made_records import write_made
 
 import teleopdesign as td
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.noise_floor import noise_floor
+from teleopdesign.diagnose.noise_floor import NoiseFloor, noise_floor
 from teleopdesign.diagnose.rung import Rung
 from teleopdesign.diagnose.stand_in import (
     acting_moments,
     estimable_on_all,
     stands_in_for_moments,
+    stands_in_for_readings,
     stands_in_for_values,
 )
 from teleopdesign.diagnose.stated_fit import estimate_stated
+from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model
 
@@ -93,6 +96,52 @@ def test_all_records_are_estimated_on_and_the_check_records_compared_on(tmp_path
     files = [s.motion.file for s in together.of("fit")]
     assert files == [s.motion.file for s in prepared.stretches]
     assert together.of("check") == prepared.of("check")
+
+
+def sentence_on_readings(left, leaves, before=0.1, after=0.01, moments=40):
+    """moments: of 40, those at which the effect changes the residual"""
+    base, fit = (stand_ins.fit(x) for x in (left * before, leaves * after))
+    at_all = stand_ins.BLOCKS < moments
+    fit.check_residual = np.where(at_all, fit.check_residual, base.check_residual)
+    rung = SimpleNamespace(added=Candidate(EFFECTS["viscous"], "device"), fit=fit)
+    floors = [NoiseFloor(x, "made", x) for x in (before, after)]
+    return stands_in_for_readings(base, floors[0], rung, floors[1])
+
+
+def test_an_effect_that_weakens_readings_more_than_what_is_left_is_none():
+    """A tip behind a spring passes on a tenth of the noise, and a fifth of what was left."""
+    sentence = sentence_on_readings(1.5, 3.0)
+    assert "3 noise floors, 1.5 without it" in sentence.reason
+    assert sentence_on_readings(1.5, 1.1) is None, "less in noise floors, too"
+    assert sentence_on_readings(0.7, 1.5) is None, "noise only"
+    assert sentence_on_readings(1.5, 6.0, before=0.0) is None, "no noise is stated"
+    nothing = sentence_on_readings(1.5, 1e7, after=1e-9)
+    assert "leaves more than 1000 noise floors, 1.5 without it" in nothing.reason
+
+
+def test_where_more_than_noise_is_left_floors_say_nothing_of_an_effect():
+    """Friction of a cylinder took 42 to 10 % of the force, and its model had the smaller floor."""
+    assert sentence_on_readings(3.0, 6.0) is None
+    assert sentence_on_readings(27.0, 41.0) is None
+
+
+def test_where_the_readings_explain_what_is_left_an_effect_does_not_explain_it_by_weakening_them():
+    """A tip of 11 Hz passed on a quarter of a coarse encoder's noise, and was named."""
+    sentence = sentence_on_readings(1.15, 1.6, before=0.025, after=0.0065)
+    assert sentence is not None and sentence.of_readings
+    assert sentence_on_readings(1.5, 1.1, before=0.025, after=0.0065) is None, "surely fewer floors"
+    assert sentence_on_readings(1.15, 1.6, after=0.09) is None, "the readings count for as much"
+
+
+def test_an_effect_that_leaves_less_than_the_readings_alone_would_follows_their_errors():
+    """A lag left half of what a coarse encoder makes of a motor that sticks and slips."""
+    same = dict(before=0.005, after=0.005)
+    sentence = sentence_on_readings(1.3, 0.5, **same, moments=7)
+    assert sentence is not None and sentence.of_readings
+    assert "leaves 0.5 noise floors" in sentence.reason and "(1.3 floors" in sentence.reason
+    assert sentence_on_readings(1.3, 0.81, **same, moments=7) is None, "known to a fifth"
+    assert sentence_on_readings(1.9, 0.5, **same, moments=7) is None, "more than readings"
+    assert sentence_on_readings(1.3, 0.5, **same, moments=12) is None, "acts again and again"
 
 
 @pytest.mark.slow
