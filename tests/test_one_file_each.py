@@ -96,7 +96,6 @@ from ._theorem import Theorem, TopicClaim
 
 THEOREM = Theorem(
     mathematics=(),
-    applies=lambda question: True,
     claims=lambda question: [TopicClaim("throw-away", Claim("nothing", Unknown("a test")))],
     order=1000,
 )

@@ -6,7 +6,7 @@ import math
 import types
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, TypeVar, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 from .errors import did_you_mean, quote
 from .sentences import join_names
@@ -68,6 +68,8 @@ def check_of(annotation: Any) -> TypeCheck | None:
         return _make_check("None", lambda v: v is None)
     if annotation in _SIMPLE:
         return _SIMPLE[annotation]
+    if origin is Annotated:
+        return check_of(inner[0])
     if origin is Literal:
         return _one_of(inner)
     if origin in (Union, types.UnionType):

@@ -201,19 +201,18 @@ def _settle_claims(
 ) -> list[TopicClaim]:
     import numpy as np
 
-    from ..passivity.device_claims import compensation_claims, device_claims, wall_claims
+    from ..passivity.device_claims import compensation_claims
+    from ..passivity.theorems import Question, Wall, settle
 
     computer = _make_sampling(options)
-    claims = device_claims(device)
+    claims = settle(Question(device))
     if compensator is not None:
         rng = np.random.default_rng(1)
         claims += compensation_claims(device, compensator, computer=computer, rng=rng)
     if options.wall is not None and computer is not None:
         stiffness, damping = options.wall
-        cancelled = compensator.level if compensator else 0.0
-        claims += wall_claims(
-            device, stiffness=stiffness, damping=damping, computer=computer, cancelled=cancelled
-        )
+        wall = Wall(stiffness, damping, compensator.level if compensator else 0.0)
+        claims += settle(Question(device, wall=wall, computer=computer))
     return claims
 
 

@@ -11,7 +11,7 @@ from ..diagnose import Diagnosis
 from ..diagrams import Diagram, four_cases, haptic_interface
 from ..model import Model
 from ..passivity import Claim
-from ..passivity.claims.axis_units import use_units_of
+from ..passivity.claims.claim import use_units_of
 from ..realise.damping_interval import small_motion_damping
 from ..realise.friction_interval import FrictionInterval, friction_interval
 from ..realise.reach import Reach

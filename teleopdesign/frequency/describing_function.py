@@ -13,7 +13,7 @@ over the cycle.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -174,7 +174,8 @@ def describing_function(
     law = body_law(of) if isinstance(of, Body) else controller_law(of)
     amplitudes, frequencies = sizes.reshape(-1, 1), f.reshape(-1, 1)
     coefficients = np.empty(sizes.size, dtype=complex)
-    for part in _parts(sizes.size, 1 if law.rates else _AT_ONCE):
+    at_once = 1 if law.rates else _AT_ONCE
+    for part in (slice(start, start + at_once) for start in range(0, sizes.size, at_once)):
         motion = cycle_values(amplitudes[part], frequencies[part])
         signals = motion if isinstance(of, Body) else controller_signals(motion)
         if law.rates:
@@ -182,10 +183,6 @@ def describing_function(
         coefficients[part] = first_harmonic(law, signals, frequency=frequencies[part].item(0))
     coefficients = (coefficients / sizes.reshape(-1)).reshape(sizes.shape)
     return coefficients if coefficients.shape else complex(coefficients)
-
-
-def _parts(size: int, at_once: int) -> Iterator[slice]:
-    return (slice(start, min(start + at_once, size)) for start in range(0, size, at_once))
 
 
 def driven_gain(

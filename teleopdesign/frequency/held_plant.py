@@ -2,7 +2,8 @@
 
     x' = A x + sum_k B_k u(t - T_k),   y = C x + sum_k D_k u(t - T_k)
 
-Time counts in samples. Numbers are exact before `mpmath` takes them, with the digits that are set.
+C is that of the companion form: the first state. Time counts in samples. Numbers are exact before
+`mpmath` takes them, with the digits that are set.
 """
 
 from __future__ import annotations
@@ -23,7 +24,6 @@ class HeldPlant:
 
     step: mpmath.matrix  # e^(A h)
     grown: mpmath.matrix  # e^(A h) - I, as A times its integral
-    output: mpmath.matrix
     #: for each dead time: samples m, B0, B1, D
     inputs: tuple[tuple[int, mpmath.matrix, mpmath.matrix, mpmath.mpf], ...]
 
@@ -58,11 +58,8 @@ class HeldPlant:
                 continue
             late = growth.integral(1 - share)
             inputs.append((m, late * b, (whole - late) * b, as_mpf(straight)))
-        output = mpmath.matrix(1, n)
-        if n:
-            output[0, 0] = mpmath.mpf(1)
         grown = a * whole if n else a
-        return cls(mpmath.eye(n) + grown if n else a, grown, output, tuple(inputs))
+        return cls(mpmath.eye(n) + grown if n else a, grown, tuple(inputs))
 
     def polynomials(
         self,
@@ -79,8 +76,7 @@ class HeldPlant:
             power = moved + c * mpmath.eye(n)
         shares = []
         for m, now, before, straight in self.inputs:
-            first = [(self.output * p * now)[0, 0] for p in adjoint]
-            second = [(self.output * p * before)[0, 0] for p in adjoint]
+            first, second = ([(p * b)[0] for p in adjoint] for b in (now, before))
             shares.append((m, first, add(second, [straight * c for c in below])))
         return below, shares
 
@@ -97,7 +93,7 @@ class HeldPlant:
         now, before = (x.reshape(n, len(self.inputs)) for x in columns)
         straight = np.array([float(d) for *_, d in self.inputs])
         whole = np.array([m for m, *_ in self.inputs], dtype=float)
-        c = np.array([float(self.output[0, i]) for i in range(n)])
+        c = np.eye(n)[0] if n else np.zeros(0)
         if not n:
             return np.zeros((0, 0)), now, before, straight, whole, c
         # units of the states: their sizes spread as the powers of the slowest pole

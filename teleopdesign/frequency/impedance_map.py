@@ -1,18 +1,35 @@
-"""An impedance over case, frequency and amplitude, and its deviation from a linear one."""
+"""An impedance over case, frequency and amplitude, and its deviation from a linear one.
+
+Zhat_M = Gamma^-1 (Z_M - C) holds for linear blocks; `quasi_linear_impedance` puts describing
+functions at the amplitude of the motion in place of nonlinear ones. The input of a controller that
+a force drives is reduced to its first harmonic. The simulation is compared with this approximation.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import cmath
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+import sympy as sp
 
 from ..base.errors import ModelError
 from ..base.files import write_json, write_netcdf
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
+from ..base.units import unit_of
+from ..blocks import Body
+from ..controllers import Controller
+from ..derive import block_symbol, transfer
+from ..derive.printing import dead_time_symbol, motion_controller_symbol
+from ..diagrams import Control, Diagram
+from ..diagrams.units import first_axis
+from ..realise.lti import S, linear_blocks
+from .describing_function import describing_function, driven_gain
+from .response import cases_of
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -103,7 +120,8 @@ class ImpedanceMap(Shown, ByValue):
     def to_netcdf(self, path: str | Path) -> None:
         """Write all data with units to a netCDF file, the impedance as real and imaginary part."""
         z = self.data["impedance"]
-        parts = {f"impedance_{n}": p.assign_attrs(z.attrs) for n, p in _parts(z).items()}
+        both = {"real": z.real, "imaginary": z.imag}
+        parts = {f"impedance_{n}": p.assign_attrs(z.attrs) for n, p in both.items()}
         write_netcdf(path, self.data.drop_vars("impedance").assign(parts))
 
     def to_json(self, path: str | Path) -> None:
@@ -123,12 +141,180 @@ class ImpedanceMap(Shown, ByValue):
         write_json(path, {**written, "cases": cases})
 
 
-def _parts(z: xarray.DataArray) -> dict[str, xarray.DataArray]:
-    return {"real": z.real, "imaginary": z.imag}
-
-
 def _round_values(values: np.ndarray) -> list[object]:
     """Values with five digits, the same on every machine; None for a value that is no number."""
     numbers = [float(f"{x:.5g}") if np.isfinite(x) else None for x in values.reshape(-1)]
     entries: list[object] = np.array(numbers, dtype=object).reshape(values.shape).tolist()
     return entries
+
+
+Amplitude = float | Sequence[float] | np.ndarray | Callable[[np.ndarray], np.ndarray]
+
+
+def falling_profile(
+    amplitude: float, *, exponent: float = 0.8
+) -> Callable[[np.ndarray], np.ndarray]:
+    """The profile amplitude * (f / 1 Hz)^-exponent; 0.8 is that of figure 7 of the paper.
+
+    amplitude: at 1 Hz, m or rad;  returns: frequency (n,), Hz -> amplitude (n,), m or rad
+    """
+    return lambda frequency: amplitude * np.asarray(frequency, dtype=float) ** -exponent
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Points of a map: each amplitude with each frequency, or an amplitude for each frequency."""
+
+    frequency: np.ndarray
+    amplitude: np.ndarray
+    on_profile: bool
+
+    @staticmethod
+    def of(amplitude: Amplitude, frequency: float | Sequence[float] | np.ndarray) -> Grid:
+        """The grid for a user's numbers; raises ModelError: numbers that are not positive."""
+        f = _positive("frequency", frequency)
+        if callable(amplitude):
+            return Grid(f, _positive("amplitude", amplitude(f)), True)
+        return Grid(f, _positive("amplitude", amplitude), False)
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        return ("frequency",) if self.on_profile else ("frequency", "amplitude")
+
+    @property
+    def points(self) -> list[tuple[tuple[int, ...], float, float]]:
+        """Index, amplitude and frequency of each point."""
+        if self.on_profile:
+            both = zip(self.amplitude, self.frequency, strict=True)
+            return [((i,), float(a), float(f)) for i, (a, f) in enumerate(both)]
+        return [
+            ((i, j), float(a), float(f))
+            for i, f in enumerate(self.frequency)
+            for j, a in enumerate(self.amplitude)
+        ]
+
+    def label(
+        self, values: Mapping[str, tuple[np.ndarray, str]], *, cases: Sequence[str], length: str
+    ) -> xarray.Dataset:
+        """Values (cases, ...) with their units as a data set; length: unit of amplitude."""
+        import xarray
+
+        dims = ("case", *self.dims)
+        coordinates = {
+            "case": list(cases),
+            "frequency": ("frequency", self.frequency, {"units": "Hz"}),
+            "amplitude": (self.dims[-1], self.amplitude, {"units": length}),
+        }
+        data = {name: (dims, array, {"units": unit}) for name, (array, unit) in values.items()}
+        return xarray.Dataset(data, coordinates)
+
+
+def _positive(what: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
+    array = np.atleast_1d(np.asarray(values, dtype=float))
+    if array.ndim != 1 or not array.size or not (np.isfinite(array) & (array > 0)).all():
+        raise ModelError(f"{what}: found {values}, expected positive numbers")
+    return array
+
+
+#: relative change at the end of the iteration for the phase of a controller's input; most
+#: iterations
+_CONVERGED, _MOST = 1e-9, 100
+
+
+def quasi_linear_impedance(
+    diagrams: Diagram | Mapping[str, Diagram],
+    *,
+    amplitude: Amplitude,
+    frequency: float | Sequence[float] | np.ndarray,
+    motion: str = "L",
+    force: str = "E",
+) -> ImpedanceMap:
+    """Impedance Zhat_M that a hand feels over frequency and amplitude, without simulation.
+
+    Arguments are those of `measured_impedance`, with a prescribed motion; controllers are
+    continuous.
+
+    raises ModelError: a block without laws or without describing function
+    """
+    cases = cases_of(diagrams)
+    grid = Grid.of(amplitude, frequency)
+    z = np.empty((len(cases), *(len(getattr(grid, n)) for n in grid.dims)), dtype=complex)
+    for i, diagram in enumerate(cases.values()):
+        form = _Form(diagram, motion, force)
+        for at, size, f in grid.points:
+            z[(i, *at)] = form.value(size, f)
+    axis = first_axis(next(iter(cases.values())))
+    values = {"impedance": (z, unit_of("stiffness", axis))}
+    data = grid.label(values, cases=list(cases), length=unit_of("position", axis))
+    data.attrs |= {"motion": motion, "force": force}
+    return ImpedanceMap(data)
+
+
+class _Form:
+    """The transfer function from motion to force, into which blocks are inserted."""
+
+    def __init__(self, diagram: Diagram, motion: str, force: str) -> None:
+        self.diagram, self.motion = diagram, motion
+        self.force = transfer(diagram, force, (motion,), given=motion)[motion]
+        self.controls: dict[str, tuple[Controller, sp.Expr | None]] = {}
+        self.linear = linear_blocks(diagram)
+        for part in diagram.controls:
+            if part.dead_time is not None:
+                continue
+            if part.name in self.linear.along:
+                self._check_speed(part)
+                continue
+            if not isinstance(part.controller, Controller):
+                raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no laws")
+            drive = None  # the input is the motion itself
+            if part.input != motion:
+                drive = sp.sympify(transfer(diagram, part.input, (motion,), given=motion)[motion])
+            self.controls[part.name] = (part.controller, drive)
+
+    def _check_speed(self, part: Control) -> None:
+        """Raise ModelError if the linear form of a law on two signals changes with speed."""
+        assert isinstance(part.controller, Controller)
+        speed = sp.Symbol("speed", positive=True)
+        forms = part.controller.linear_parts(part.name, S, speed) or ()
+        if any(form.has(speed) for form in forms):
+            raise ModelError(
+                f"{self.diagram.name}: {part.name} follows {part.input} and the velocity of "
+                f"{part.motion}, and its gain the speed: no describing function; simulate it"
+            )
+
+    def value(self, amplitude: float, frequency: float) -> complex:
+        s = 2j * np.pi * frequency
+        values = {
+            block_symbol(f"A_{n}"): complex(e.subs(S, s)) for n, e in self.linear.actuation.items()
+        }
+        for name, form in self.linear.along.items():
+            values[motion_controller_symbol(name)] = complex(form.subs(S, s))
+            values[block_symbol(name)] = complex(self.linear.blocks[name].subs(S, s))
+        values |= {dead_time_symbol(n): complex(t) for n, t in self.linear.dead_times.items()}
+        values[S] = s
+        for part in self.diagram.bodies:
+            assert isinstance(part.body, Body)
+            if part.motion == self.motion:
+                z = describing_function(part.body, amplitude=amplitude, frequency=frequency)
+                values[block_symbol(part.name)] = complex(z)
+        gains = []
+        for name, (law, drive) in self.controls.items():
+            values[block_symbol(name)] = 0j
+            if drive is None:
+                n = describing_function(law, amplitude=amplitude, frequency=frequency)
+                values[block_symbol(name)] = complex(n)
+            else:
+                gain = driven_gain(law, amplitude=amplitude, frequency=frequency)
+                gains.append((block_symbol(name), gain, drive))
+        for _ in range(_MOST):
+            before = dict(values)
+            for symbol, gain, drive in gains:
+                size = _number(drive, values) * amplitude
+                values[symbol] = gain(size) if size else 0j  # nothing drives it: no output
+            if all(cmath.isclose(values[k], before[k], rel_tol=_CONVERGED) for k in values):
+                return _number(self.force, values)
+        raise ModelError(f"{self.diagram.name}: the gains of its controllers settle on no phase")
+
+
+def _number(form: sp.Expr, values: dict[sp.Symbol, complex]) -> complex:
+    return complex(sp.N(sp.sympify(form).subs(values)))

@@ -127,7 +127,10 @@ def factor_far_out(ratio: LateRatio, w: np.ndarray, *, share: float) -> tuple[fl
     times = sorted({*ratio.above, *ratio.below})
     lead = max(abs(float(p[0])) for p in ratio.below.values() if len(p) == degree)
     both = ratio.below, ratio.above
-    sides = [[_pad(terms.get(t), degree) / lead for t in times] for terms in both]
+    sides = [
+        [np.polyadd(np.zeros(degree), terms.get(t, np.zeros(0))) / lead for t in times]
+        for terms in both
+    ]
     d, n = (np.array([p[0] for p in side]) for side in sides)
 
     def left(g: float) -> float:
@@ -149,10 +152,6 @@ def factor_far_out(ratio: LateRatio, w: np.ndarray, *, share: float) -> tuple[fl
     )
     before = np.flatnonzero(off > share * np.abs(d).max())
     return max(float(factor), 1.0), min(int(before.max(initial=0)) + 2, len(w))
-
-
-def _pad(p: np.ndarray | None, degree: int) -> np.ndarray:
-    return np.zeros(degree) if p is None else np.pad(p, (degree - len(p), 0))
 
 
 def _first_zero(left: Callable[[float], float], points: Sequence[float]) -> float:

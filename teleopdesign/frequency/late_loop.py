@@ -21,10 +21,14 @@ from .late_zeros import Terms, coefficient, corners_of, degree_of, describe_grow
 
 @dataclass(frozen=True)
 class LateRatio:
-    """above/below; each a mapping from dead time (s) to coefficients in s, highest power first."""
+    """above/below; each a mapping from dead time (s) to coefficients in s, highest power first.
+
+    fault: why a loop of this gain has no margins, whatever its gain; "" for none
+    """
 
     above: Terms
     below: Terms
+    fault: str = ""
 
     @property
     def closed(self) -> Terms:
@@ -42,28 +46,13 @@ class LateRatio:
         first, *others = (abs(coefficient(p, degree)) for p in self.below.values())
         return sum(abs(coefficient(p, degree)) for p in self.above.values()) < first - sum(others)
 
-    def passes(self) -> bool:
-        """Whether the magnitude does not go to 0 at high frequency."""
-        return degree_of(self.above) >= degree_of(self.below)
-
     def corners(self) -> np.ndarray:
         """Magnitudes of the roots of all polynomials, and points across resonances, rad/s."""
         return corners_of(self.above, self.below, self.closed)
 
 
-@dataclass(frozen=True)
-class CountedLoop:
-    """The gain of a loop, from the equations of all states.
-
-    ratio: the gain;  fault: why the loop has no margins, whatever its gain; "" for none
-    """
-
-    ratio: LateRatio
-    fault: str = ""
-
-
-def count_loop(diagram: Diagram, controller: str, *, speed: float) -> CountedLoop:
-    """The loop of a controller of a linear diagram, with the modes that the loop does not see.
+def count_loop(diagram: Diagram, controller: str, *, speed: float) -> LateRatio:
+    """The gain of a linear diagram's loop, with the modes that the loop does not see.
 
     With a factor g at the output of the controller, the determinant of all equations is d + g n.
     The loop gain is n/d, and common factors of n and d are modes that the loop does not change.
@@ -81,7 +70,7 @@ def count_loop(diagram: Diagram, controller: str, *, speed: float) -> CountedLoo
     return _count_modes(above, below, states.times)
 
 
-def loop_as_written(gain: sp.Expr) -> CountedLoop:
+def loop_as_written(gain: sp.Expr) -> LateRatio:
     """A loop by its gain alone, in `S` and e^(-s T), without states that the gain does not show.
 
     raises ModelError: it is no ratio of polynomials in s and dead times
@@ -97,9 +86,9 @@ def loop_as_written(gain: sp.Expr) -> CountedLoop:
     return _count_modes(above, below, times)
 
 
-def _count_modes(above: Any, below: Any, times: Mapping[sp.Symbol, sp.Expr]) -> CountedLoop:
+def _count_modes(above: Any, below: Any, times: Mapping[sp.Symbol, sp.Expr]) -> LateRatio:
     unseen, above, below = above.cofactors(below)
-    closed, order = above + below, _order(above, below)
+    closed, order = above + below, max(_order(above), _order(below))
     fault = ""
     if modes := describe_growth(unseen, times):
         fault = f"a mode that it does not see grows: {modes}"
@@ -110,12 +99,13 @@ def _count_modes(above: Any, below: Any, times: Mapping[sp.Symbol, sp.Expr]) -> 
     sides = [terms_of(side, times, unit=unit) for side in (above, below)]
     first = min(t for terms in sides for t in terms)
     made = ({t - first: p for t, p in terms.items()} for terms in sides)
-    return CountedLoop(LateRatio(*made), fault)
+    over, under = made
+    return LateRatio(over, under, fault)
 
 
-def _order(*polynomials: Any) -> int:
-    """The highest power of s in polynomials; -1 if all are zero."""
-    return max((powers[0] for p in polynomials for powers in p), default=-1)
+def _order(p: Any) -> int:
+    """The highest power of s; -1 if all are zero."""
+    return max((powers[0] for powers in p), default=-1)
 
 
 def crossings(above: np.ndarray, below: np.ndarray) -> np.ndarray:
@@ -123,12 +113,12 @@ def crossings(above: np.ndarray, below: np.ndarray) -> np.ndarray:
 
     above, below: coefficients in s, highest first. A gain within 1e-12 of 1 counts as 1
     """
-    first, second = (cross(side, side)[0] for side in map(_in_ring, (above, below)))
+    sides = [[Fraction(float(c)) for c in side[::-1]] for side in (above, below)]
+    rings = [
+        RING({(k,): sp.QQ(c.numerator, c.denominator) for k, c in enumerate(side) if c})
+        for side in sides
+    ]
+    first, second = (cross(side, side)[0] for side in rings)
     at = roots_of(first - second)
     near = (at.real > 0) & (np.abs(at.imag) <= 1e-6 * np.abs(at))
     return np.asarray(np.sqrt(at.real[near]))
-
-
-def _in_ring(falling: np.ndarray) -> Any:
-    exact = (Fraction(float(c)) for c in falling[::-1])
-    return RING({(k,): sp.QQ(c.numerator, c.denominator) for k, c in enumerate(exact) if c})

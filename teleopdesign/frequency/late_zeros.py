@@ -18,7 +18,7 @@ import numpy as np
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..derive.polynomials import element, is_free_of_growth, roots, roots_of
+from ..derive.polynomials import element, fraction, is_free_of_growth, roots, roots_of
 from ..realise.lti import S
 
 #: dead time (s) -> coefficients in s, highest power first
@@ -47,7 +47,8 @@ def exact_terms(
     """
     known = values or {}
     symbols = polynomial.ring.symbols[1:]
-    delays = {x: _fraction(sp.sympify(t).xreplace(_rationals(known))) for x, t in times.items()}
+    at = {x: sp.Rational(v.numerator, v.denominator) for x, v in known.items()}
+    delays = {x: fraction(sp.sympify(t).xreplace(at)) for x, t in times.items()}
     made: dict[Fraction, dict[int, Fraction]] = {}
     for (power, *others), c in polynomial.items():
         late, size = Fraction(0), Fraction(int(c.numerator), int(c.denominator))
@@ -73,14 +74,6 @@ def terms_of(
     exact = exact_terms(polynomial, times, values)
     unit = unit or max((abs(c) for p in exact.values() for c in p), default=Fraction(1))
     return {float(t): np.array([float(c / unit) for c in p]) for t, p in exact.items()}
-
-
-def _fraction(number: sp.Expr) -> Fraction:
-    return Fraction(int(number.p), int(number.q))
-
-
-def _rationals(values: Mapping[sp.Symbol, Fraction]) -> dict[sp.Symbol, sp.Rational]:
-    return {x: sp.Rational(v.numerator, v.denominator) for x, v in values.items()}
 
 
 def describe_growth(polynomial: Any, times: Mapping[sp.Symbol, sp.Expr]) -> str:

@@ -27,7 +27,7 @@ from ..realise.lti import S, as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
 from . import sampled_margins
 from .late_envelope import unity_grid
-from .late_loop import CountedLoop, LateRatio, count_loop, crossings, loop_as_written
+from .late_loop import LateRatio, count_loop, crossings, loop_as_written
 from .late_zeros import count_growing
 from .sampled_loop import SampledLoop, sampled_loop
 
@@ -62,18 +62,13 @@ class LoopGain(Shown):
     fastest: float
     growing: int = 0
     sampled: SampledLoop | None = None
-    counted: CountedLoop | None = field(default=None, compare=False, repr=False)
+    counted: LateRatio | None = field(default=None, compare=False, repr=False)
 
     def __call__(self, s: Any) -> Any:
         """Value at complex s (1/s), a number or an array of any shape."""
         points = np.atleast_1d(np.asarray(s, dtype=complex))
         values = numerical(self.expression)(points.ravel()).reshape(points.shape)
         return complex(values[0]) if np.ndim(s) == 0 else values
-
-    @property
-    def has_delay(self) -> bool:
-        """Whether the gain contains a dead time or a hold, so that it is no rational function."""
-        return bool(self.expression.has(sp.exp))
 
     def transfer_function(self, *, delay_order: int = 4) -> control.TransferFunction:
         """The gain as a python-control system; dead times and holds by Pade approximation.
@@ -108,21 +103,17 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
     kept = {c.name: c for c in diagram.controls if c.name in linear.held}
     periods = [g.values["period"] for c in kept.values() for g in _stages(c) if g.law.in_z]
     fastest = np.pi / max(periods) if periods else float("inf")
-    growing = _count_growing_poles(linear.blocks[controller])
+    growing, form = 0, linear.blocks[controller]
+    if not (form.atoms(AppliedUndef) or form.has(sp.exp)):
+        below = sp.Poly(sp.fraction(sp.cancel(sp.together(form)))[1], S)
+        poles = np.roots([float(c) for c in below.all_coeffs()])
+        growing = int((poles.real > 0).sum())
     sampled = sampled_loop(diagram, part, linear) if linear.held else None
     counted = None
     if not linear.held and not gain.atoms(AppliedUndef):
         counted = count_loop(diagram, controller, speed=speed)
     made = gain, controller, linear.left_out, linear.held, fastest, growing, sampled, counted
     return LoopGain(*made)
-
-
-def _count_growing_poles(form: sp.Expr) -> int:
-    """Number of poles of a rational form in the right half plane; 0 for other forms."""
-    if form.atoms(AppliedUndef) or form.has(sp.exp):
-        return 0
-    below = sp.Poly(sp.fraction(sp.cancel(sp.together(form)))[1], S)
-    return int(sum(root.real > 0 for root in np.roots([float(c) for c in below.all_coeffs()])))
 
 
 def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
@@ -140,7 +131,10 @@ def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
     phase, w, fades = unity_crossings(loop)
     if isinstance(loop, LoopGain) and loop.sampled is not None:
         return sampled_margins.delay_margin(loop.sampled)
-    return _smallest_delay(phase, w) if fades else 0.0
+    if not fades:
+        return 0.0
+    # a crossing is reached by turning back as far as its phase lies ahead of -180 degrees
+    return float((np.radians(phase % 360) / w).min(initial=np.inf))
 
 
 def unity_crossings(
@@ -167,24 +161,31 @@ def unity_crossings(
             phase, angles = sampled_margins.unity_crossings(loop.sampled)
             return phase, angles / float(loop.sampled.period), True
         if loop.held:
-            if _grows_by_pade(loop):
+            from ..base import python_control as control
+
+            # below half the sampling rate the approximation is good
+            whole = control.feedback(loop.transfer_function(delay_order=_PADE), 1)
+            if (np.real(whole.poles()) >= 0).any():
                 raise _unstable()
             return *_crossings(loop, None), True
-        counted = loop.counted or loop_as_written(loop.expression)
-        if counted.fault:
-            raise UnstableLoop(f"the loop of {loop.controller}: {counted.fault}")
-        ratio = counted.ratio
+        ratio = loop.counted or loop_as_written(loop.expression)
+        if ratio.fault:
+            raise UnstableLoop(f"the loop of {loop.controller}: {ratio.fault}")
+    elif loop.isdtime(strict=True):
+        raise ModelError("loop: expected a system in continuous time, found a discrete one")
     else:
-        ratio = _ratio_of(loop)
+        sides = (np.trim_zeros(np.ravel(p[0][0]), "f") for p in (loop.num, loop.den))
+        above, below = ({0.0: p} for p in sides)
+        ratio = LateRatio(above, below)
     if count_growing(ratio.closed):
         raise _unstable()
     if not ratio.above:  # a gain of 0 at every frequency
         return np.zeros(0), np.zeros(0), True
-    if isinstance(loop, LoopGain) and loop.has_delay:
+    if isinstance(loop, LoopGain) and loop.expression.has(sp.exp):
         return *_crossings(loop, ratio), ratio.fades()
-    (above,), (below,) = ratio.above.values(), ratio.below.values()
-    w = crossings(above, below)
-    gain = np.polyval(above, 1j * w) / np.polyval(below, 1j * w)
+    (p,), (q,) = ratio.above.values(), ratio.below.values()
+    w = crossings(p, q)
+    gain = np.polyval(p, 1j * w) / np.polyval(q, 1j * w)
     return np.degrees(np.angle(gain)) + 180, w, ratio.fades()
 
 
@@ -192,51 +193,29 @@ def _unstable() -> UnstableLoop:
     return UnstableLoop("the loop is unstable without delay")
 
 
-def _ratio_of(system: control.TransferFunction) -> LateRatio:
-    if system.isdtime(strict=True):
-        raise ModelError("loop: expected a system in continuous time, found a discrete one")
-    above, below = (np.trim_zeros(np.ravel(p[0][0]), "f") for p in (system.num, system.den))
-    return LateRatio({0.0: above}, {0.0: below})
-
-
-def _grows_by_pade(loop: LoopGain) -> bool:
-    """Stability of a held loop by Pade: below half the sampling rate the approximation is good."""
-    from ..base import python_control as control
-
-    whole = loop.transfer_function(delay_order=_PADE)
-    return bool((np.real(control.feedback(whole, 1).poles()) >= 0).any())
-
-
-def _smallest_delay(phase: np.ndarray, crossing: np.ndarray) -> float:
-    # a crossing is reached by turning back as far as its phase lies ahead of -180 degrees
-    delays = np.radians(np.asarray(phase) % 360) / np.asarray(crossing)
-    return float(delays.min()) if len(delays) else float("inf")
-
-
 def _crossings(loop: LoopGain, ratio: LateRatio | None) -> tuple[np.ndarray, np.ndarray]:
     """Phase above -180 degrees, and frequency (rad/s), where the gain is 1.
 
     ratio: of a loop that is one; a grid alone might miss crossings of its delayed terms
     """
-    from scipy.optimize import brentq
-
     call = numerical(loop.expression)
+    grid = frequencies_of(loop, ratio, _POINTS)
+    grid = grid if ratio is None else unity_grid(ratio, grid)
+    gain = call(1j * grid)
+    if np.isfinite(loop.fastest) and np.abs(gain[-1]) >= 1:
+        raise ModelError(
+            f"the loop's gain is still {np.abs(gain[-1]):.3g} at half the sampling rate"
+        )
+    return sampled_margins.where_unity(lambda w: call(1j * w), grid, gain)
 
-    def above(w: float) -> float:
-        return float(np.log(np.abs(call(np.array([1j * w]))[0])))
 
+def frequencies_of(loop: LoopGain, ratio: LateRatio | None, points: int) -> np.ndarray:
+    """A first grid of so many frequencies, rad/s, with corners and narrow resonances."""
     slowest, fastest = _SLOWEST, min(loop.fastest, _FASTEST)
     corners = np.zeros(0) if ratio is None else ratio.corners()
     if len(corners):
         slowest, fastest = min(slowest, corners.min() / 1e4), max(fastest, corners.max() * 1e4)
-    grid = np.unique(np.concatenate([np.geomspace(slowest, fastest, _POINTS), corners]))
-    grid = grid if ratio is None else unity_grid(ratio, grid)
-    size = np.abs(call(1j * grid))
-    if np.isfinite(loop.fastest) and size[-1] >= 1:
-        raise ModelError(f"the loop's gain is still {size[-1]:.3g} at half the sampling rate")
-    turns = np.flatnonzero((size[:-1] > 1) != (size[1:] > 1))
-    crossings = np.array([brentq(above, grid[k], grid[k + 1], rtol=1e-12) for k in turns])
-    return np.degrees(np.angle(call(1j * crossings))) + 180, crossings
+    return np.unique(np.concatenate([np.geomspace(slowest, fastest, points), corners]))
 
 
 def _stages(part: Control) -> tuple[Any, ...]:
@@ -258,8 +237,6 @@ def measured_crossings(expression: sp.Expr, *, growing: int = 0) -> tuple[np.nda
     growing: poles of the controller itself in the right half plane
     raises ModelError: the loop is unstable (`UnstableLoop`), or the measurement does not decide
     """
-    from scipy.optimize import brentq
-
     call = numerical(expression)
     w = _frequencies(expression)
     gain = call(1j * w)
@@ -280,14 +257,8 @@ def measured_crossings(expression: sp.Expr, *, growing: int = 0) -> tuple[np.nda
         )
     turns = round((angle[0] + steps.sum() - angle[-1]) / (2 * np.pi))
     if 2 * turns != growing:
-        raise UnstableLoop("the loop is unstable without delay")
-
-    def above(x: float) -> float:
-        return float(np.log(np.abs(call(np.array([1j * x]))[0])))
-
-    passed = np.flatnonzero((size[:-1] > 1) != (size[1:] > 1))
-    crossing = np.array([brentq(above, w[k], w[k + 1], rtol=1e-12) for k in passed])
-    return np.degrees(np.angle(call(1j * crossing))) + 180, crossing
+        raise _unstable()
+    return sampled_margins.where_unity(lambda x: call(1j * x), w, gain)
 
 
 def _frequencies(expression: sp.Expr) -> np.ndarray:

@@ -10,10 +10,11 @@ from ..realise.lti import numerical
 from . import sampled_margins
 from .late_envelope import envelope, factor_far_out, halve_steps, is_followed, least_between
 from .late_loop import loop_as_written
-from .loop import LoopGain, unity_crossings
+from .late_zeros import degree_of
+from .loop import LoopGain, frequencies_of, unity_crossings
 
-#: rad/s: range that is searched for a loop without corners and without samples, and points in it
-_SLOWEST, _FASTEST, _POINTS = 1e-4, 1e7, 4001
+#: points of the first grid
+_POINTS = 4001
 #: more points are evaluated only if they may lower the factor by more than this share
 _SMALLER = 1e-6
 #: most steps that are halved at the same time
@@ -54,10 +55,10 @@ def gain_margin(loop: LoopGain) -> float:
     def height(w: float) -> float:
         return float(np.imag(call(np.array([1j * w]))[0]))
 
-    ratio = None if loop.held else (loop.counted or loop_as_written(loop.expression)).ratio
+    ratio = None if loop.held else loop.counted or loop_as_written(loop.expression)
     if ratio is not None and not ratio.above:
         return np.inf  # a gain of 0 at every frequency
-    w = _grid(loop, np.zeros(0) if ratio is None else ratio.corners())
+    w = frequencies_of(loop, ratio, _POINTS)
 
     def at(w: np.ndarray) -> np.ndarray:
         """Gain, and its envelope by dead times, (5, n)."""
@@ -67,8 +68,10 @@ def gain_margin(loop: LoopGain) -> float:
         return np.array([gain, *[np.log(np.abs(gain))] * 2, 0 * w, 0 * w])
 
     points = at(w)
-    best = _factor_at_rest(points[0])
-    if ratio is not None and ratio.passes():
+    best, first = np.inf, points[0]  # level at the slowest point, with a phase of 180 degrees
+    if abs(abs(first[1] / first[0]) - 1) <= _LEVEL and abs(np.angle(-first[0])) <= _LEVEL:
+        best = _factor(first[0])
+    if ratio is not None and degree_of(ratio.above) >= degree_of(ratio.below):
         far_out, number = factor_far_out(ratio, w, share=_LEVEL)
         best, w, points = min(best, far_out), w[:number], points[:, :number]
     followed = np.zeros(len(w) - 1, dtype=bool)
@@ -93,20 +96,5 @@ def gain_margin(loop: LoopGain) -> float:
         followed = np.insert(followed, more + 1, False)
 
 
-def _grid(loop: LoopGain, corners: np.ndarray) -> np.ndarray:
-    """Frequencies of the first grid, rad/s, with corners and narrow resonances."""
-    slowest, fastest = _SLOWEST, min(loop.fastest, _FASTEST)
-    if len(corners):
-        slowest, fastest = min(slowest, corners.min() / 1e4), max(fastest, corners.max() * 1e4)
-    return np.unique(np.concatenate([np.geomspace(slowest, fastest, _POINTS), corners]))
-
-
 def _factor(gain: complex) -> float:
     return float(max(abs(gain), 1 / abs(gain)))
-
-
-def _factor_at_rest(gain: np.ndarray) -> float:
-    """Factor of a gain that is level at the slowest point with a phase of 180 degrees; else inf."""
-    if abs(abs(gain[1] / gain[0]) - 1) <= _LEVEL and abs(np.angle(-gain[0])) <= _LEVEL:
-        return _factor(gain[0])
-    return float("inf")

@@ -20,8 +20,7 @@ from ..diagrams.units import first_axis
 from ..realise.parted import simulated_parted
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
-from .grid import Amplitude, Grid
-from .impedance_map import ImpedanceMap
+from .impedance_map import Amplitude, Grid, ImpedanceMap
 from .response import FrequencyResponse, cases_of, phase_of, ratio_unit
 from .sinusoid import BRISTLE_SHARE, Sinusoid, steady_harmonics
 

@@ -1,4 +1,8 @@
-"""Frequency response between signals: the symbolic transfer function with values inserted."""
+"""Frequency response between signals: the symbolic transfer function with values inserted.
+
+From several inputs to several outputs the same equations are solved at each frequency instead: the
+symbolic forms of a diagram of many axes would fill pages.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +13,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+import sympy as sp
 from numpy.typing import NDArray
 
 from ..base.errors import ModelError, did_you_mean
 from ..base.files import write_netcdf
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
-from ..derive import with_values
-from ..diagrams import Diagram
-from ..realise.lti import numerical
+from ..derive import symbol_values, with_values
+from ..derive.elimination import rows
+from ..diagrams import Diagram, Moving
+from ..realise.lti import linear_blocks, numerical
+from ..realise.parted import linear_parted
 from ..realise.tips import linear_tips
 
 if TYPE_CHECKING:
@@ -207,3 +214,90 @@ def cases_of(diagrams: Diagram | Mapping[str, Diagram]) -> dict[str, Diagram]:
     if not diagrams:
         raise ModelError("diagrams: found none, expected a diagram, or several by case")
     return dict(diagrams)
+
+
+@dataclass(frozen=True, eq=False)
+class MatrixResponse(Shown, ByValue):
+    """Response of several outputs to several inputs.
+
+    data: complex, over frequency (Hz), output and input;  left_out: names without linear form
+    """
+
+    data: xarray.DataArray
+    left_out: tuple[str, ...]
+
+    def singular_values(self) -> np.ndarray:
+        """Gains over all directions, (frequencies, min(outputs, inputs)), largest first."""
+        return np.linalg.svd(self.data.values, compute_uv=False)
+
+    def frd(self) -> control.FRD:
+        """The response as a python-control frequency response."""
+        from ..base import python_control as control
+
+        values = np.moveaxis(self.data.values, 0, -1)
+        return control.frd(values, 2 * np.pi * self.data["frequency"].values)
+
+
+def matrix_response(
+    diagram: Diagram,
+    outputs: Sequence[str],
+    inputs: Sequence[str],
+    frequency: np.ndarray | Sequence[float],
+    *,
+    given: Sequence[str] = (),
+    speed: float = 0.0,
+) -> MatrixResponse:
+    """Response of each output to each input, with all other inputs zero.
+
+    frequency: (n,), Hz
+    given: prescribed motions, in place of the forces that drive them; for a body with a compliant
+        transmission, the motion of its tip
+    speed: at which smoothed friction and schedules are frozen, m/s or rad/s
+    raises ModelError: an unknown signal, an input that is not free, a loop without a solution
+    """
+    import xarray
+
+    diagram, led = linear_parted(diagram, tuple(given))
+    inputs, outputs = ([led.get(n, n) for n in names] for names in (inputs, outputs))
+    given = list(led.values())
+    drivers = {b.motion: b.driver for b in diagram.blocks if isinstance(b, Moving)}
+    free = [s for s in diagram.outside if s not in {drivers.get(m) for m in given}]
+    free += given
+    for name in (*outputs, *inputs):
+        diagram.signal(name)
+    if bound := [name for name in inputs if name not in free]:
+        raise ModelError(f'{diagram.name}: signal "{bound[0]}" is not from outside')
+    unknown = [s for s in diagram.signals if s not in free]
+    form = linear_blocks(diagram, speed=speed, held=True)
+    values = symbol_values(form)
+    s = 2j * np.pi * np.asarray(frequency, dtype=float)
+    system = rows(diagram)
+    matrix = np.zeros((len(s), len(system), len(unknown)), dtype=complex)
+    right = np.zeros((len(s), len(system), len(inputs)), dtype=complex)
+    for i, row in enumerate(system):
+        for name, coefficient in row.items():
+            target, names, sign = (right, inputs, -1) if name in inputs else (matrix, unknown, 1)
+            if name in names:
+                over = numerical(sp.sympify(coefficient).xreplace(values))
+                target[:, i, names.index(name)] = sign * over(s)
+    try:
+        solved = np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        raise ModelError(f"{diagram.name}: the wiring does not determine all signals") from None
+    # a free signal responds to itself
+    chosen = [
+        solved[:, unknown.index(o)]
+        if o in unknown
+        else np.tile(np.array([complex(o == i) for i in inputs]), (len(s), 1))
+        for o in outputs
+    ]
+    data = xarray.DataArray(
+        np.stack(chosen, axis=1),
+        {
+            "frequency": ("frequency", np.asarray(frequency), {"units": "Hz"}),
+            "output": list(outputs),
+            "input": list(inputs),
+        },
+        ("frequency", "output", "input"),
+    )
+    return MatrixResponse(data, form.left_out)

@@ -15,7 +15,6 @@ unit circle are computed in floats as functions of z - 1, since slow poles lie c
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, reduce
@@ -27,12 +26,12 @@ import sympy as sp
 from ..base.errors import ModelError
 from ..controllers import Controller, exact_decimal, is_of_matrices, sides_of
 from ..derive.all_states import all_states
-from ..derive.polynomials import is_free_of_growth
+from ..derive.polynomials import fraction, is_free_of_growth
 from ..diagrams import Control, Diagram
 from ..realise.lti import LinearBlocks
 from .held_plant import HeldPlant, add, as_mpf, multiply
 from .late_loop import LateRatio
-from .late_zeros import describe_growth
+from .late_zeros import describe_growth, exact_terms
 
 #: rational numbers, highest power first
 Coefficients = tuple[Fraction, ...]
@@ -78,7 +77,7 @@ class SampledLoop:
         """Angles w h at which poles and zeros turn the phase, and points across resonances."""
         numerators = {float(t): _floats(p) for t, p in self.above}
         slow = LateRatio(numerators, {0.0: _floats(self.below)}).corners() * float(self.period)
-        roots = np.concatenate([_roots_in_z(p) for p in self.law])
+        roots = np.concatenate([np.roots(_about_one(p)) + 1 for p in self.law])
         roots = roots[np.abs(roots) > 0]
         near = np.maximum(np.abs(np.log(np.abs(roots)))[:, None], 1e-9)
         across = np.abs(np.angle(roots))[:, None] + near * np.linspace(-3, 3, 25)
@@ -156,17 +155,12 @@ def sampled_loop(diagram: Diagram, part: Control, linear: LinearBlocks) -> Sampl
     opened = diagram.open_at(part.name)
     if part.input not in opened.signals:
         return None
-    plant = _plant(opened, part, linear.speed)
-    period = periods.pop()
-    if plant is None:
-        return None
     law_in_z = _rationals(above.quo(unseen)), _rationals(below.quo(unseen))
-    fault = plant.fault
-    if not is_free_of_growth(_reverse(unseen)):
+    made = _loop_round(opened, part, linear.speed, fraction(periods.pop()), law_in_z)
+    if made is not None and not is_free_of_growth(_reverse(unseen)):
         modes = ", ".join(f"z = {r:.4g}" for r in np.roots(_floats(_rationals(unseen))))
-        fault = f"a mode that it does not see grows, among {modes}"
-    whole = Fraction(int(period.p), int(period.q))
-    return SampledLoop(whole, law_in_z, plant.below, plant.above, fault)
+        return replace(made, fault=f"a mode that it does not see grows, among {modes}")
+    return made
 
 
 def _reverse(p: sp.Poly) -> sp.Poly:
@@ -176,41 +170,28 @@ def _reverse(p: sp.Poly) -> sp.Poly:
     return reduce(sp.Poly.add, terms)
 
 
-@dataclass(frozen=True)
-class _Plant:
-    """Numerators by dead time over one denominator, and what grows unseen; "" for nothing."""
-
-    below: Coefficients
-    above: tuple[tuple[Fraction, Coefficients], ...]
-    fault: str
-
-
-def _plant(opened: Diagram, part: Control, speed: float) -> _Plant | None:
-    """The path round the loop of a controller; None: improper, or a dead time in another loop."""
+def _loop_round(
+    opened: Diagram,
+    part: Control,
+    speed: float,
+    period: Fraction,
+    law: tuple[Coefficients, Coefficients],
+) -> SampledLoop | None:
+    """The loop of this law; None: its path is improper, or has a dead time in another loop."""
     states = all_states(opened, speed=speed)
     below, ((above,),) = states.solve([part.input], [part.output])
     unseen, above, below = (-above).cofactors(below)
     if any(any(k[1:]) for k in below) or max((k[0] for k in above), default=0) > below.degree():
         return None
-    made: dict[Fraction, dict[int, Fraction]] = {}
-    delays = [states.times[x] for x in states.ring.symbols[1:]]
-    for (degree, *exponents), c in above.items():
-        late = sum((n * t for n, t in zip(exponents, delays, strict=True)), sp.S(0))
-        of_this = made.setdefault(Fraction(int(late.p), int(late.q)), {})
-        of_this[degree] = of_this.get(degree, Fraction(0)) + Fraction(c.numerator, c.denominator)
-    numerators = tuple((t, _falling(p)) for t, p in sorted(made.items()))
+    numerators = tuple((t, tuple(p)) for t, p in exact_terms(above, states.times).items())
+    ((_, plain),) = exact_terms(below, states.times).items()
     modes = describe_growth(unseen, states.times)
     fault = f"a mode that it does not see grows: {modes}" if modes else ""
-    plain = {k[0]: Fraction(c.numerator, c.denominator) for k, c in below.items()}
-    return _Plant(_falling(plain), numerators, fault)
-
-
-def _falling(powers: Mapping[int, Fraction]) -> Coefficients:
-    return tuple(powers.get(k, Fraction(0)) for k in range(max(powers), -1, -1))
+    return SampledLoop(period, law, tuple(plain), numerators, fault)
 
 
 def _rationals(polynomial: sp.Poly) -> Coefficients:
-    return tuple(Fraction(int(c.p), int(c.q)) for c in polynomial.all_coeffs())
+    return tuple(map(fraction, polynomial.all_coeffs()))
 
 
 def _decays(polynomial: list[mpmath.mpf]) -> bool:
@@ -235,10 +216,6 @@ def _about_one(coefficients: Coefficients) -> np.ndarray:
             left[i] += left[i - 1]
         made.append(left.pop())
     return np.array([float(c) for c in reversed(made)])
-
-
-def _roots_in_z(coefficients: Coefficients) -> np.ndarray:
-    return np.asarray(np.roots(_about_one(coefficients)) + 1)
 
 
 def _floats(coefficients: Coefficients) -> np.ndarray:

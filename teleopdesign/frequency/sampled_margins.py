@@ -45,8 +45,7 @@ def grid_of(loop: SampledLoop) -> np.ndarray:
 def unity_crossings(loop: SampledLoop) -> tuple[np.ndarray, np.ndarray]:
     """Phase above -180 degrees, and angle w h, where the gain is 1."""
     angles = grid_of(loop)
-    at = _zeros(lambda a: np.log(np.abs(loop(a))), angles, np.abs(loop(angles)) > 1)
-    return np.degrees(np.angle(loop(at))) + 180, at
+    return where_unity(loop, angles, loop(angles))
 
 
 def gain_margin(loop: SampledLoop) -> float:
@@ -84,8 +83,13 @@ def delay_margin(loop: SampledLoop) -> float:
             break
         low = time
     times = [s * best for s in _BEFORE] if np.isfinite(best) else [n * period for n in _SAMPLES]
+    # short dead times at which a loop may grow and then decay again at a slightly longer one: parts
+    # of a sample, and those about which a dead time of the loop is whole samples, where the
+    # response has a kink or, with a direct feedthrough, jumps
+    parts = {*(k / _PARTS for k in range(_PARTS)), *_bends(loop), *_just_before_bends(loop)}
+    times += [(n + part) * period for n in range(_LOOKED) for part in parts]
     decays = 0.0
-    for time in sorted(t for t in (*times, *_looked_at(loop)) if t <= min(longest, best)):
+    for time in sorted({t for t in times if 0 < t <= min(longest, best)}):
         if loop.with_delay(time).grows():
             return _bisect(loop, decays, time)
         decays = time
@@ -106,17 +110,6 @@ def _candidates(loop: SampledLoop) -> tuple[set[float], set[float]]:
             if on_circle is not None:
                 exact.add(on_circle)
     return exact, {t for t in near if t > 0}
-
-
-def _looked_at(loop: SampledLoop) -> set[float]:
-    """Short dead times (s) at which a loop may grow and then decay again at a slightly longer one.
-
-    Parts of a sample, those that make a dead time of the loop whole samples, and those just before:
-    the response has a kink there, and with a direct feedthrough it jumps.
-    """
-    period = float(loop.period)
-    parts = {*(k / _PARTS for k in range(_PARTS)), *_bends(loop), *_just_before_bends(loop)}
-    return {(n + part) * period for n in range(_LOOKED) for part in parts} - {0.0}
 
 
 def _bends(loop: SampledLoop) -> set[float]:
@@ -191,10 +184,18 @@ def _follow(loop: SampledLoop, angle: float, time: float) -> float | None:
     return None
 
 
+def where_unity(
+    gain: Callable[[np.ndarray], np.ndarray], grid: np.ndarray, values: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Phase above -180 degrees, and place, where the size of a gain passes 1 on a grid."""
+    at = _zeros(lambda x: np.log(np.abs(gain(x))), grid, np.abs(values) > 1)
+    return np.degrees(np.angle(gain(at))) + 180, at
+
+
 def _zeros(
     function: Callable[[np.ndarray], np.ndarray], angles: np.ndarray, above: np.ndarray
 ) -> np.ndarray:
-    """Angles at which a function changes sign between grid points, by bisection and secants."""
+    """Places at which a function changes sign between grid points, by bisection and secants."""
     from scipy.optimize import brentq
 
     def one(angle: float) -> float:

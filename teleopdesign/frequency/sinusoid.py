@@ -92,6 +92,7 @@ def _set_up(diagram: Diagram, drive: Sinusoid, *, duration: float) -> Setup:
     # reloading takes sqrt(2 lambda/a), lambda = give A and a = A omega^2
     step = min(np.sqrt(2 * drive.give) / _RELOAD_STEPS, 2 * np.pi / _LEAST_STEPS) / omega
     period = 1e-3 if isinstance(drive.computer, str) else drive.computer.period
+    is_force = diagram.outside.get(drive.drive) == "force"
     samples = np.ceil(duration / period - 1e-9)  # whole cycles, at least the number asked for
     return prepare(
         diagram,
@@ -100,13 +101,9 @@ def _set_up(diagram: Diagram, drive: Sinusoid, *, duration: float) -> Setup:
         inputs=None if prescribed else {drive.drive: motion.position},
         computer=drive.computer,
         step=float(step),
-        give=drive.give * _length(diagram, drive),
+        # as a share of the amplitude of the motion, of 1 mm if a force drives the diagram
+        give=drive.give * (1e-3 if is_force else drive.amplitude),
     )
-
-
-def _length(diagram: Diagram, drive: Sinusoid) -> float:
-    """Amplitude of the motion, m or rad; 1 mm if a force drives the diagram."""
-    return 1e-3 if diagram.outside.get(drive.drive) == "force" else drive.amplitude
 
 
 def _outside_signals(

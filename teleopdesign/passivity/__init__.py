@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from .claims.claim import Evidence as Evidence
     from .claims.claim import Proof as Proof
     from .claims.claim import Refutation as Refutation
+    from .claims.claim import Region as Region
     from .claims.claim import Unknown as Unknown
+    from .claims.claim import region as region
     from .claims.counterexample_files import read_record as read_record
     from .claims.counterexample_files import write_record as write_record
     from .claims.second_opinion import SecondOpinion as SecondOpinion
@@ -30,18 +32,18 @@ if TYPE_CHECKING:
     from .diagram_claims import DiagramClaims as DiagramClaims
     from .diagram_claims import Search as Search
     from .diagram_claims import diagram_claims as diagram_claims
-    from .intervals.interval_claim import IntervalClaim as IntervalClaim
+    from .intervals.box import IntervalClaim as IntervalClaim
     from .intervals.over_box import claim_over_intervals as claim_over_intervals
-    from .linear.hand_port import hand_port as hand_port
+    from .linear.excess import Excess as Excess
+    from .linear.excess import damping_excess as damping_excess
+    from .linear.excess import mobility_excess as mobility_excess
     from .linear.impedance import Impedance as Impedance
     from .linear.impedance import impedance as impedance
+    from .linear.judge import positive_real as positive_real
     from .linear.kyp import Kyp as Kyp
     from .linear.kyp import kyp as kyp
     from .linear.kyp import storage_function as storage_function
-    from .linear.positive_real import Excess as Excess
-    from .linear.positive_real import damping_excess as damping_excess
-    from .linear.positive_real import mobility_excess as mobility_excess
-    from .linear.positive_real import positive_real as positive_real
+    from .linear_diagrams import hand_port as hand_port
     from .margin_map import MarginMap as MarginMap
     from .margin_map import margin_map as margin_map
     from .observer import PassivityControlled as PassivityControlled
@@ -58,8 +60,6 @@ if TYPE_CHECKING:
     from .rate_independent import DahlBehindSpring as DahlBehindSpring
     from .rate_independent import Spring as Spring
     from .rate_independent import symmetric_cycle as symmetric_cycle
-    from .regions import Region as Region
-    from .regions import region as region
     from .search.by_simulation import Given as Given
     from .search.by_simulation import SimulatedMotion as SimulatedMotion
     from .search.by_simulation import confirmed_motion as confirmed_motion
@@ -97,10 +97,10 @@ if TYPE_CHECKING:
     from .theorems.wave_channel import wave_channel as wave_channel
     from .theorems.wave_channel import wave_claim as wave_claim
     from .theorems.wave_channel import wave_teleoperator as wave_teleoperator
-    from .two_port.claims import absolutely_stable as absolutely_stable
-    from .two_port.claims import passive as passive
     from .two_port.two_port import FrequencyMargins as FrequencyMargins
     from .two_port.two_port import TwoPort as TwoPort
+    from .two_port.two_port import absolutely_stable as absolutely_stable
+    from .two_port.two_port import passive as passive
     from .two_port.two_port import sweep_margins as sweep_margins
     from .two_port.two_port import teleoperator_two_port as teleoperator_two_port
     from .two_port.two_port import two_port as two_port

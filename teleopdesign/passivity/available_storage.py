@@ -24,8 +24,7 @@ from numpy.typing import NDArray
 from ..base.errors import ModelError
 from ..base.frozen import ByValue
 from .claims.claim import Evidence
-from .rate_independent import Coulomb, Dahl, Element, compliance
-from .round_trips import most_released
+from .rate_independent import AbstractElement, Coulomb, Dahl, compliance
 
 Array = NDArray[np.float64]
 #: growth of the storage per travel, as a share of the compensator's level, that counts as none
@@ -93,7 +92,7 @@ class AvailableStorage(ByValue):
 
 def available_storage(
     compensator: Dahl,
-    friction: Sequence[Element],
+    friction: Sequence[AbstractElement],
     *,
     points: int = 61,
     moves: int | None = None,
@@ -109,7 +108,10 @@ def available_storage(
     raises ModelError: more than three forces with a state, lengths too far apart for one grid,
         fewer than 3 points or 1 move, or a negative load
     """
-    stateful: list[Element] = [compensator, *(e for e in friction if not isinstance(e, Coulomb))]
+    stateful: list[AbstractElement] = [
+        compensator,
+        *(e for e in friction if not isinstance(e, Coulomb)),
+    ]
     if points < 3 or (moves is not None and moves < 1) or load_coefficient < 0:
         raise ModelError(
             f"available_storage: expected 3 points, 1 move and a load of 0 at least, found "
@@ -117,7 +119,8 @@ def available_storage(
         )
     if len(stateful) > 3:
         raise ModelError(f"available_storage: at most 3 forces with a state, found {len(stateful)}")
-    lengths = [_length(e) for e in stateful]
+    # travel over which the force of an element changes by about its level, m
+    lengths = [e.level * compliance(e) for e in stateful]
     # two cells of the stiffest force's grid: shorter moves would only be blurred by interpolation
     travel = 4 * min(lengths) / (points - 1)
     moves = moves or int(24 * max(lengths) / travel) + 10 * points
@@ -135,8 +138,8 @@ def available_storage(
 
 
 def _iterate(
-    stateful: Sequence[Element],
-    friction: Sequence[Element],
+    stateful: Sequence[AbstractElement],
+    friction: Sequence[AbstractElement],
     points: int,
     travel: float,
     moves: int,
@@ -168,12 +171,7 @@ def _check_work(moves: int, points: int, forces: int, *, ratio: float) -> None:
         )
 
 
-def _length(element: Element) -> float:
-    """Travel over which the force of an element changes by about its level, m."""
-    return element.level * compliance(element)
-
-
-def _stored_energy(stateful: Sequence[Element], points: int) -> Array:
+def _stored_energy(stateful: Sequence[AbstractElement], points: int) -> Array:
     """Energy in the springs of friction less that in the compensator's, at each node, J."""
     total: Array = np.zeros((1,) * len(stateful))
     for axis, element in enumerate(stateful):
@@ -185,8 +183,8 @@ def _stored_energy(stateful: Sequence[Element], points: int) -> Array:
 
 
 def _move(
-    stateful: Sequence[Element],
-    friction: Sequence[Element],
+    stateful: Sequence[AbstractElement],
+    friction: Sequence[AbstractElement],
     travel: float,
     *,
     points: int,
@@ -223,3 +221,82 @@ def _cells(nodes: Array, at: Array) -> tuple[NDArray[np.intp], Array]:
     position = np.clip((at - nodes[0]) / (nodes[1] - nodes[0]), 0, len(nodes) - 1)
     left = np.minimum(position.astype(np.intp), len(nodes) - 2)
     return left, position - left
+
+
+#: range of the strokes: the shortest over the shortest length of a force, the longest over the
+#: longest length. Below this range all forces are springs, above it all forces slide
+_SHORTER, _LONGER = 1e-3, 1e2
+#: strokes that are evaluated in each decade, before the best are refined
+_PER_DECADE = 24
+#: number of strokes that are refined: those that release most
+_REFINED = 3
+#: released energy, as a share of the energy that the compensator supplies, that may be rounding
+_ROUNDING = 1e-9
+
+
+def repeated_force(element: AbstractElement, stroke: float) -> float:
+    """Force f (N) at the ends of a stroke (m) back and forth that repeats: from -f to f."""
+    from scipy.optimize import brentq
+
+    def beyond(force: float) -> float:
+        return element.leg(-force, stroke)[0] - force
+
+    if beyond(element.level) >= 0:  # it slides
+        return element.level
+    return float(brentq(beyond, 0.0, element.level, xtol=1e-15 * element.level, rtol=1e-14))
+
+
+def loss_per_stroke(element: AbstractElement, stroke: float) -> float:
+    """Energy (J) that an element takes in each stroke (m) back and forth, after the transient."""
+    return element.leg(-repeated_force(element, stroke), stroke)[1]
+
+
+def most_released(
+    compensator: Dahl, friction: Sequence[AbstractElement], load_coefficient: float = 0.0
+) -> tuple[float, float]:
+    """Most energy per travel that a round trip releases forever, and its stroke.
+
+    compensator: its force helps the motion;  friction: elements that resist
+    load_coefficient: the first element of friction grows by this factor times the size of the force
+        of the last element
+    returns: energy per travel, N, and stroke, m; 0 N where friction takes at least as much as the
+        compensator supplies, at every stroke
+    """
+    from scipy.optimize import minimize_scalar
+
+    def given_out(logarithm: float) -> float:
+        stroke = float(np.exp(logarithm))
+        takes = sum(loss_per_stroke(e, stroke) for e in friction)
+        if load_coefficient:
+            takes += load_coefficient * _integral_of_size(friction[-1], stroke)
+        return (loss_per_stroke(compensator, stroke) - takes) / stroke
+
+    forces = [e for e in (compensator, *friction) if not isinstance(e, Coulomb)]
+    lengths = [e.level * compliance(e) for e in forces]
+    first, last = np.log(_SHORTER * min(lengths)), np.log(_LONGER * max(lengths))
+    count = int((last - first) / np.log(10) * _PER_DECADE)
+    # springs begin to slide at twice their length, where what they take has a kink
+    kinks = np.log(2 * np.array(lengths))
+    strokes = np.sort(np.concatenate([np.linspace(first, last, count), kinks]))
+    values = np.array([given_out(x) for x in strokes])
+    inner = 1 + np.flatnonzero((values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:]))
+    best = max(zip(values, strokes, strict=True))
+    for k in inner[np.argsort(values[inner])[-_REFINED:]]:
+        bounds = (strokes[k - 1], strokes[k + 1])
+        peak = minimize_scalar(lambda x: -given_out(x), bounds=bounds, method="bounded")
+        best = max(best, (-float(peak.fun), float(peak.x)))
+    released, stroke = float(best[0]), float(np.exp(best[1]))
+    gives = loss_per_stroke(compensator, stroke) / stroke
+    return (released if released > _ROUNDING * gives else 0.0), stroke
+
+
+def _integral_of_size(element: AbstractElement, stroke: float) -> float:
+    """Integral (N m) of the size of a force over one stroke (m) of a round trip that repeats."""
+    from scipy.optimize import brentq
+
+    force = repeated_force(element, stroke)
+    if type(element) is Coulomb or force <= 0:
+        return force * stroke
+    turn = brentq(lambda x: element.leg(-force, x)[0], 0.0, stroke, rtol=1e-14)
+    back = element.leg(-force, turn)[1]
+    return element.leg(-force, stroke)[1] - 2 * back

@@ -13,10 +13,10 @@ from ..base.sentences import round_down, round_near, round_up
 from ..controllers import CONTROLLERS, Controller, Stage, controller
 from ..diagrams import haptic_interface
 from ..simulate import Sampling
-from .claims.claim import Claim, Refutation, Unknown
+from .claims.claim import Claim, Unknown
 from .identified import DIGITS, IdentifiedDevice
-from .search.by_simulation import SimulatedMotion, search_counterexample
-from .theorems import Question, TopicClaim, Wall, settle
+from .search.by_simulation import search_counterexample
+from .theorems import Question, TopicClaim, settle
 
 #: N/m: a stiffness that gives ideal friction a length, for the strokes of a search
 _RIGID = 1e5
@@ -83,17 +83,6 @@ def compensation_claims(
     return [*settle(question), _search_claim(device, compensator, computer, rng, tries)]
 
 
-def friction_claims(
-    device: IdentifiedDevice, compensator: Compensator, *, computer: Sampling | None = None
-) -> list[TopicClaim]:
-    """Claims about friction compensation by theorems alone, without simulation.
-
-    computer: as in `compensation_claims`
-    """
-    question = Question(device, compensator.stage, computer=computer)
-    return settle(question, simulated=False)
-
-
 def _search_claim(
     device: IdentifiedDevice,
     compensator: Compensator,
@@ -121,33 +110,7 @@ def _search_claim(
         )
     except ModelError as problem:  # a body that this simulation does not take
         return TopicClaim(topic, Claim("the device as simulated is passive", Unknown(str(problem))))
-    record = claim.verdict.record if isinstance(claim.verdict, Refutation) else None
-    if not isinstance(record, SimulatedMotion):
-        return TopicClaim(topic, claim)
-    return TopicClaim(topic, claim, record.replay(), record)
-
-
-def device_claims(device: IdentifiedDevice) -> list[TopicClaim]:
-    """Claims about the device alone; none unless all parts of LuGre friction are identified."""
-    return settle(Question(device))
-
-
-def wall_claims(
-    device: IdentifiedDevice,
-    *,
-    stiffness: float,
-    damping: float,
-    computer: Sampling,
-    cancelled: float = 0.0,
-) -> list[TopicClaim]:
-    """Claims about a virtual wall: its sampled law, and its encoder steps with friction.
-
-    stiffness: K, N/m;  damping: B, N s/m
-    computer: period, delay (whole periods) and encoder of the wall
-    cancelled: friction that a compensator cancels, N
-    """
-    wall = Wall(stiffness, damping, cancelled)
-    return settle(Question(device, wall=wall, computer=computer))
+    return TopicClaim.searched(topic, claim)
 
 
 def margins(device: IdentifiedDevice, compensator: Compensator | None = None) -> Sequence[Margin]:

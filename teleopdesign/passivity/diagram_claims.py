@@ -17,22 +17,24 @@ from ..base.arguments import check_types
 from ..base.errors import ModelError
 from ..base.frozen import ByValue
 from ..base.shown import Shown
-from ..diagrams import Diagram
-from .claims.claim import Claim, Proof, Refutation, Unknown
-from .device_claims import device_claims
-from .friction_pairs import FrictionPair, friction_pairs, pair_claims
-from .holders import without_holders
+from ..blocks import Body, Value
+from ..controllers import Controller, Stage
+from ..diagrams import Control, Diagram, Moving
+from .claims.claim import Claim, Proof, Unknown
+from .identified import IdentifiedDevice, identify_device, restate_for_device
 from .linear_diagrams import WHOLE, linear_claims
 from .ports import (
     Port,
+    drives_alone,
     drop_absent_effects,
     is_spanned,
     nonlinear_parts,
     ports,
     without_friction,
+    without_holders,
 )
-from .search.by_simulation import Computer, SimulatedMotion, search_counterexample
-from .theorems import TopicClaim
+from .search.by_simulation import Computer, search_counterexample
+from .theorems import Question, TopicClaim, settle
 from .theorems.wave_channel import wave_claim
 
 #: last words of the topic of a claim that a search decides
@@ -95,7 +97,7 @@ def diagram_claims(
         pairs = friction_pairs(alone)
         for pair in pairs:
             topic = f"friction of {pair.body.name}"
-            claims += [replace(s, topic=topic) for s in device_claims(pair.device)]
+            claims += [replace(s, topic=topic) for s in settle(Question(pair.device))]
             claims += pair_claims(pair)
         if (composed := composed_claim(alone, all_ports, pairs)) is not None:
             claims.append(composed)
@@ -201,7 +203,104 @@ def _search_claim(
         )
     except ModelError as problem:  # what this simulation does not take
         return TopicClaim(topic, Claim(statement, Unknown(str(problem))))
-    verdict = claim.verdict
-    if isinstance(verdict, Refutation) and isinstance(verdict.record, SimulatedMotion):
-        return TopicClaim(topic, claim, verdict.replayed, verdict.record)
-    return TopicClaim(topic, claim)
+    return TopicClaim.searched(topic, claim)
+
+
+@dataclass(frozen=True)
+class FrictionPair:
+    """A body with friction, and the one controller that cancels this friction.
+
+    cancellation: None where no controller cancels;  device: bounds of the friction
+    """
+
+    body: Moving
+    cancellation: Control | None
+    device: IdentifiedDevice
+
+    @property
+    def stage(self) -> Stage | None:
+        """The law that cancels friction, with its values; None where no controller does."""
+        if self.cancellation is None:
+            return None
+        assert isinstance(self.cancellation.controller, Controller)
+        return self.cancellation.controller.stages[0]
+
+    @property
+    def question(self) -> Question:
+        """The question for the theorems.
+
+        Values are exact, so estimates and intervals are the same, and only intervals are asked.
+        """
+        return Question(self.device, self.stage, estimates=False)
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the friction level does not depend on the motion."""
+        assert isinstance(self.body.body, Body)
+        parameters = set(self.body.body.symbols().values())
+        return not self.body.body.level().free_symbols - parameters
+
+    @property
+    def lengths(self) -> list[float]:
+        """Travels over which friction, and the cancelling force, build up, m or rad."""
+        lengths = []
+        if self.device.presliding is not None:
+            lengths.append(self.device.lowest.estimate / self.device.presliding.estimate)
+        if (bristle := self.question.bristle) is not None:
+            lengths.append(bristle[0] / bristle[1])
+        return lengths
+
+
+def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
+    """A pair for each body with friction whose cancellation, if any, acts on it alone.
+
+    A cancellation is a controller whose input is the motion of the body, and whose force acts
+    unchanged on this body and on nothing else. A body whose friction level may be zero has no pair.
+    """
+    pairs = []
+    for part in diagram.blocks:
+        if not isinstance(part, Moving) or not isinstance(part.body, Body):
+            continue
+        if part.body.level() == 0:
+            continue
+        along = [c for c in diagram.controls if c.input == c.motion == part.motion]
+        if len(along) > 1 or not all(_acts_alone(c, part, diagram) for c in along):
+            continue
+        try:
+            # exact values have no standard errors
+            values = {
+                n: replace(v, fixed=True, stderr=0.0) for n, v in part.body.parameters.items()
+            }
+            device = identify_device(part.body.with_values(dict[str, float | Value](values)))
+        except ModelError:
+            continue
+        pairs.append(FrictionPair(part, along[0] if along else None, device))
+    return pairs
+
+
+def _acts_alone(control: Control, part: Moving, diagram: Diagram) -> bool:
+    law = control.controller
+    if not isinstance(law, Controller) or len(law.stages) != 1:
+        return False
+    acts = not any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
+    return acts and drives_alone(diagram, control.output, part)
+
+
+def pair_claims(pair: FrictionPair, *, simulated: bool = True) -> list[TopicClaim]:
+    """Claims about friction with its cancellation, by the theorems for a diagnosed device.
+
+    simulated: whether simulations replay the motions of refutations
+    returns: empty where no controller cancels the friction; one unknown claim where no theorem
+        applies
+    """
+    if pair.stage is None or pair.cancellation is None:
+        return []
+    topic = f"friction of {pair.body.name} with {pair.cancellation.name}"
+    if claims := settle(pair.question, simulated=simulated):
+        return [replace(one, topic=topic) for one in claims]
+    law = f"{pair.cancellation.name} ({pair.stage.law.name})"
+    statement = f"friction of {pair.body.name} with {law} is passive"
+    why = pair.question.law.missing or (
+        "no limit is known for such a law on a contact that gives before it slides"
+    )
+    return [TopicClaim(topic, restate_for_device(pair.device, Claim(statement, Unknown(why))))]

@@ -26,8 +26,7 @@ from ..realise.friction_interval import (
 )
 from ..realise.reach import ANY_MOTION, Reach
 from ..realise.simulated import without_absent
-from .claims.axis_units import use_units_of
-from .claims.claim import Claim, Unknown
+from .claims.claim import Claim, Unknown, use_units_of
 from .declarations import is_shipped, underived_energy
 
 #: digits of a measured number in a claim. A standard error is rarely known to more than two digits,
@@ -168,7 +167,10 @@ def identify_device(
     if friction is None:
         raise ModelError("passivity: the device has no friction to compensate")
     if basis is not None and basis.bound is not None:
-        friction = _in_cells(friction, basis.bound)
+        lowest = Interval(*(min(x, basis.bound) for x in vars(friction.lowest).values()))
+        over = "" if friction.over == ANY_MOTION else f"{friction.over}, "
+        over = f"{over}the cells that the residual covers"
+        friction = replace(friction, lowest=lowest, over=over)
     if friction.lowest.low <= 0:
         raise ModelError(
             f"passivity: the friction level may be as low as {friction.lowest.low:.3g} "
@@ -185,7 +187,12 @@ def identify_device(
     bristles = Interval(0.0, 0.0, 0.0)
     if bristle is not None:
         bristles = value_interval(bristle, errors=NINETY_FIVE)
-    resistance = _resistance(body, damping.least, reach)
+    # of friction level and damping together at any speed
+    at_estimate, at_low = (
+        lowest_of(body, body.level() + sp.Float(b) * SPEED, reach, errors=NINETY_FIVE)[0]
+        for b in (damping.least.estimate, damping.least.low)
+    )
+    resistance = Interval(at_estimate.estimate, at_low.low, at_estimate.high)
     left_open = dict(effects_left_open(body, reach, errors=NINETY_FIVE))
     if basis is not None and not basis.is_adequate:
         resistance = replace(resistance, low=min(resistance.low, friction.lowest.low))
@@ -194,7 +201,12 @@ def identify_device(
     return IdentifiedDevice(
         body,
         reach,
-        _round_friction(friction),
+        replace(
+            friction,
+            lowest=friction.lowest.round_outward(digits=DIGITS),
+            highest=friction.highest.round_outward(digits=DIGITS),
+            presliding=friction.presliding and friction.presliding.round_outward(digits=DIGITS),
+        ),
         resistance.round_outward(digits=DIGITS),
         damping.least.round_outward(digits=DIGITS),
         bristles.round_outward(digits=DIGITS),
@@ -208,33 +220,6 @@ def identify_device(
         ),
         basis,
     )
-
-
-def _in_cells(friction: FrictionInterval, bound: float) -> FrictionInterval:
-    """The levels, the lowest at most a bound (N) in the cells of a residual."""
-    lowest = Interval(*(min(x, bound) for x in vars(friction.lowest).values()))
-    over = "" if friction.over == ANY_MOTION else f"{friction.over}, "
-    return replace(friction, lowest=lowest, over=f"{over}the cells that the residual covers")
-
-
-def _round_friction(friction: FrictionInterval) -> FrictionInterval:
-    """Levels and stiffness, rounded outward to the digits of claims."""
-    presliding = friction.presliding
-    return replace(
-        friction,
-        lowest=friction.lowest.round_outward(digits=DIGITS),
-        highest=friction.highest.round_outward(digits=DIGITS),
-        presliding=None if presliding is None else presliding.round_outward(digits=DIGITS),
-    )
-
-
-def _resistance(body: Body, damping: Interval, reach: Reach | None) -> Interval:
-    """Least force of friction level and damping together at any speed, N, with its interval."""
-    at_estimate, at_low = (
-        lowest_of(body, body.level() + sp.Float(b) * SPEED, reach, errors=NINETY_FIVE)[0]
-        for b in (damping.estimate, damping.low)
-    )
-    return Interval(at_estimate.estimate, at_low.low, at_estimate.high)
 
 
 def effects_left_open(

@@ -174,23 +174,19 @@ def _size(z: sp.Symbol, cases: set[sp.Expr], bound: float, *, steps: bool) -> sp
     returns: None where neither could be shown
     """
     largest = max(_equilibrium(z, case - z * int(steps)) for case in cases)
-    keeps = _steps_within if steps else _leads_inward
+    share = sp.Symbol("share_here", real=True)
+
+    def keeps(case: sp.Expr, size: sp.Expr) -> bool:
+        """Whether the next value is within a size, or the rate leads inward at both its ends."""
+        if steps:
+            return _stays_within_one(_scale(case.subs(z, size * share), 1 / (size or sp.S(1))))
+        ends = (-way * case.subs(z, way * size) for way in (1, -1))
+        return all(is_never_negative(end, _ranges(end)) for end in ends)
+
     for size in sorted({largest, exact_decimal(bound)}):
-        if size.is_finite and all(keeps(case, z, size) for case in cases):
+        if size.is_finite and all(keeps(case, size) for case in cases):
             return size
     return None
-
-
-def _steps_within(after: sp.Expr, z: sp.Symbol, size: sp.Expr) -> bool:
-    """Whether the value of a state at the next sample is within a size if the state is."""
-    share = sp.Symbol("share_here", real=True)
-    return _stays_within_one(_scale(after.subs(z, size * share), 1 / (size or sp.S(1))))
-
-
-def _leads_inward(rate: sp.Expr, z: sp.Symbol, size: sp.Expr) -> bool:
-    """Whether the rate of a state leads inward, or is zero, at both ends of its range."""
-    ends = (-way * rate.subs(z, way * size) for way in (1, -1))
-    return all(is_never_negative(end, _ranges(end)) for end in ends)
 
 
 def _ranges(law: sp.Expr) -> Ranges:

@@ -9,14 +9,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
+import sympy as sp
+
 from ..base.errors import ModelError
+from ..derive import symbol_values, transfer
 from ..derive.effort import bounded_effort
 from ..diagrams import Diagram
-from .claims.axis_units import use_units_of
-from .claims.claim import Claim, Unknown
+from ..realise.lti import linear_blocks
+from ..realise.tips import led_motion, linear_tips
+from .claims.claim import Claim, Unknown, use_units_of
+from .declarations import falsely_linear
 from .linear.family import Family, family_at
-from .linear.judge import passive_claim, stable_claim
-from .linear.positive_real import NEARBY
+from .linear.impedance import Impedance, impedance
+from .linear.judge import NEARBY, passive_claim, stable_claim
 from .ports import Port, nonlinear_parts
 from .search.growing_wave import GrowingWave, wave_of
 from .theorems import TopicClaim
@@ -51,7 +56,9 @@ def _judge(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
     if any(one.claim.status == "refuted" for one in claims):
         for other in _nearby(diagram):
             claims = _refuted_there_too(claims, other, all_ports, judges)
-    axis = _axis(diagram, all_ports)
+    motions = {motion.removesuffix("_tip") for port in all_ports for motion in port.weights}
+    axes = {getattr(b.body, "axis", "") for b in diagram.bodies if b.motion in motions}
+    axis = axes.pop() if len(axes) == 1 else "prismatic"  # which all bodies at the ports share
     return [replace(one, claim=use_units_of(axis, one.claim)) for one in claims]
 
 
@@ -107,8 +114,22 @@ def _nearby(diagram: Diagram) -> list[Diagram]:
     ]
 
 
-def _axis(diagram: Diagram, all_ports: Sequence[Port]) -> str:
-    """The axis that all bodies at the ports share; "prismatic" where they differ."""
-    motions = {motion.removesuffix("_tip") for port in all_ports for motion in port.weights}
-    axes = {getattr(b.body, "axis", "") for b in diagram.bodies if b.motion in motions}
-    return axes.pop() if len(axes) == 1 else "prismatic"
+def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple[str, ...]]:
+    """Impedance at the hand (N s/m), and the names of parts without a linear form.
+
+    With R_D = 0 the force of the hand on the device is Zhat_M L; with a compliant transmission the
+    motion is that of the tip. A mode that a zero cancels is not in it: see `diagram_claims`.
+
+    The names include parts that are declared linear and are not; their form in Z has no meaning.
+
+    diagram: a haptic interface without position loop
+    speed: m/s, at which smoothed friction and schedules are linearised. A claim about the impedance
+        is then about this linear system only
+    raises ModelError: a block without values, or with a dead time
+    """
+    apart, motion = linear_tips(diagram), led_motion(diagram, "L")
+    motion = motion if motion in apart.signals else "L"
+    linear = linear_blocks(apart, speed=speed)
+    form = transfer(apart.open_at("K"), "E", (motion,), given=motion)[motion]
+    z = impedance(sp.sympify(form).subs(symbol_values(linear)), motion="position")
+    return z, (*linear.left_out, *falsely_linear(apart))

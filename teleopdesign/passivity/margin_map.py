@@ -24,12 +24,11 @@ from ..derive.responses import Responses
 from ..diagrams import Diagram
 from ..diagrams.units import unit_of_value
 from ..realise.lti import linear_blocks
-from .holders import without_holders
 from .intervals.box import ValueBox
 from .intervals.linear import states_over
 from .linear.family import port_rows
 from .linear.sweep import passive_margin, stable_margin
-from .ports import Port, ports
+from .ports import Port, ports, without_holders
 
 if TYPE_CHECKING:
     import matplotlib.figure

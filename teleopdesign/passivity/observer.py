@@ -135,6 +135,8 @@ def observe(
     errors = _stderr(acting, travel, held, position_noise, force_noise)
     power = np.gradient(energy, time)
     coordinates = {"time": ("time", np.asarray(time), {"units": "s"})}
+    k, (t, x) = max(1, int(_PART * n)), (np.asarray(time), np.asarray(position))
+    speeds = np.abs((x[k:] - x[:-k]) / (t[k:] - t[:-k]))
     return PortEnergy(
         xarray.Dataset(
             {
@@ -143,16 +145,9 @@ def observe(
                 "power": ("time", power, {"units": "W"}),
             },
             coordinates,
-            {"moves_at_start": int(_moves_at_start(np.asarray(time), np.asarray(position)))},
+            {"moves_at_start": int(speeds[0] > _AT_REST * speeds.max())},
         )
     )
-
-
-def _moves_at_start(time: Array, position: Array) -> bool:
-    """Whether the first speed is more than `_AT_REST` of the largest one."""
-    k = max(1, int(_PART * len(time)))
-    speeds = np.abs((position[k:] - position[:-k]) / (time[k:] - time[:-k]))
-    return bool(speeds[0] > _AT_REST * speeds.max())
 
 
 def _stderr(

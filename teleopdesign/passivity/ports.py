@@ -1,4 +1,4 @@
-"""Ports of a diagram, where forces from outside act on its bodies, and the impedance there.
+"""Ports of a diagram, where forces from outside act on its bodies, and who holds them.
 
 Force times velocity at a port is the power that flows in. So the velocity at a port is that of the
 body on which its force acts, or a weighted sum of the velocities of several bodies on which the
@@ -10,20 +10,23 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from graphlib import CycleError, TopologicalSorter
 
 import numpy as np
 import sympy as sp
+from sympy.polys.matrices import DomainMatrix
+from sympy.polys.matrices.exceptions import DMNonInvertibleMatrixError
 
 from ..base.errors import ModelError
 from ..blocks import Body
-from ..controllers import Controller
-from ..diagrams import Diagram, Kinematics, Moving, position_symbol
+from ..controllers import Controller, make_exact
+from ..diagrams import Attached, Diagram, Linked, Moving, position_symbol
 from ..effects import is_linear
 from ..realise.lti import S, linear_blocks
 from ..realise.simulated import without_absent
 from ..realise.tips import with_tips
 from .declarations import falsely_linear
-from .shares import shares_of, total_share
+from .linear.impedance import exact
 
 
 @dataclass(frozen=True)
@@ -54,12 +57,12 @@ class Port:
         return first if not others and weight == 1 else None
 
     def __str__(self) -> str:
-        parts = [m if w == 1 else f"{_weight_text(w)} {m}" for m, w in self.weights.items()]
+        factors = {
+            m: f"({w}) " if isinstance(w, sp.Expr) else "" if w == 1 else f"{w:.4g} "
+            for m, w in self.weights.items()
+        }
+        parts = [f"{factor}{m}" for m, factor in factors.items()]
         return f"({self.force}, {' + '.join(parts).replace('+ -', '- ')})"
-
-
-def _weight_text(weight: float | sp.Expr) -> str:
-    return f"({weight})" if isinstance(weight, sp.Expr) else f"{weight:.4g}"
 
 
 def drop_absent_effects(diagram: Diagram) -> Diagram:
@@ -89,20 +92,12 @@ def ports(diagram: Diagram) -> tuple[Port, ...]:
     for force in dict.fromkeys(b.driver for b in moving if b.driver in diagram.outside):
         shares = shares_of(diagram, force)
         loads = {b.motion: total_share(b.loads, shares) for b in moving}
-        if weights := {m: _plain_number(w) for m, w in loads.items() if w != 0}:
+        kept = {m: w for m, w in loads.items() if w != 0}
+        if weights := {m: w if w.free_symbols else float(w) for m, w in kept.items()}:
             at_forces.append(Port(force, weights))
     if not at_forces:
         raise ModelError(f"{diagram.name}: no force from outside drives a body: it has no port")
     return tuple(at_forces)
-
-
-def _is_fixed(part: Kinematics) -> bool:
-    """Whether a position is a weighted sum of others, so that the Jacobian does not change."""
-    return is_linear([sp.sympify(part.expression)], [position_symbol(n) for n in part.inputs])
-
-
-def _plain_number(weight: sp.Expr) -> float | sp.Expr:
-    return weight if weight.free_symbols else float(weight)
 
 
 def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
@@ -115,7 +110,12 @@ def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
         if form is not None and form.has(speed):
             names.append(part.name)
     names += falsely_linear(diagram)
-    names += [k.name for k in diagram.kinematics if not _is_fixed(k)]
+    # a position that is a weighted sum of others has a Jacobian that does not change
+    names += [
+        k.name
+        for k in diagram.kinematics
+        if not is_linear([sp.sympify(k.expression)], [position_symbol(n) for n in k.inputs])
+    ]
     return (*names, *(j.name for j in diagram.junctions if j.arms))
 
 
@@ -149,3 +149,137 @@ def without_friction(diagram: Diagram, motion: str, *controllers: str) -> Diagra
             blocks = tuple(moved if b is part else b for b in diagram.blocks)
             return replace(diagram, blocks=blocks)
     raise ModelError(f'{diagram.name}: no body moves by "{motion}"')
+
+
+Shares = Mapping[str, sp.Expr]
+
+
+def shares_of(diagram: Diagram, signal: str) -> Shares:
+    """Shares of `signal` in the other signals, through junctions; loops of sums are solved.
+
+    returns: name of a signal -> its share, not 0. A share is an expression of positions where a
+        lever arm is on the way
+    raises ModelError: a loop of sums without a solution
+    """
+    sums = {
+        j.output: {n: _weight(w) for n, w in j.terms.items()}
+        for j in diagram.junctions
+        if j.output != signal
+    }
+    try:
+        order = TopologicalSorter({n: terms.keys() for n, terms in sums.items()}).static_order()
+        shares = {signal: sp.S(1)}
+        for name in order:
+            if name in sums:
+                shares[name] = total_share(sums[name], shares)
+    except CycleError:
+        shares = _solve_sums(diagram, sums, signal)
+    return {name: share for name, share in shares.items() if share != 0}
+
+
+def total_share(terms: Mapping[str, sp.Expr | float], shares: Shares) -> sp.Expr:
+    """Share of one signal in a sum of weight * signal.
+
+    terms: signal -> weight;  shares: of the one signal, from `shares_of`
+    """
+    return sp.expand(sp.Add(*(_weight(w) * shares.get(n, sp.S(0)) for n, w in terms.items())))
+
+
+def drives_alone(diagram: Diagram, signal: str, body: Moving) -> bool:
+    """Whether a force acts unchanged on that body, and on nothing else.
+
+    An actuator of the body is not considered; the caller has to exclude one.
+    """
+    shares = shares_of(diagram, signal)
+    forces = {name: sp.S(0) for name in (body.command, *body.loads)}
+    forces |= {name: _weight(w) for name, w in body.loads.items()}
+    forces[body.command] += 1
+    return total_share(forces, shares) == 1 and not any(
+        part is not body and any(name in shares for name in part.inputs)
+        for part in (*diagram.blocks, *diagram.kinematics)
+    )
+
+
+def _weight(weight: sp.Expr | float) -> sp.Expr:
+    expression = sp.sympify(weight, strict=True)
+    return expression if expression.free_symbols else exact(weight)
+
+
+def _solve_sums(
+    diagram: Diagram, sums: Mapping[str, Mapping[str, sp.Expr]], signal: str
+) -> dict[str, sp.Expr]:
+    names = list(sums)
+    system = sp.Matrix(
+        [[int(row == n) - sums[row].get(n, sp.S(0)) for n in names] for row in names]
+    )
+    right = sp.Matrix([sums[row].get(signal, sp.S(0)) for row in names])
+    whole = DomainMatrix.from_Matrix(system.row_join(right)).to_field()
+    size = len(names)
+    try:
+        answers = whole[:, :size].lu_solve(whole[:, size:]).to_Matrix()
+    except DMNonInvertibleMatrixError:
+        raise ModelError(f"{diagram.name}: a loop of sums has no solution") from None
+    return {signal: sp.S(1), **dict(zip(names, answers, strict=True))}
+
+
+#: difference of two weights, or lever arms in m, that is rounding
+_ROUNDING = 1e-9
+
+
+def holders(diagram: Diagram) -> dict[str, tuple[str, ...]]:
+    """Hands and environments, each with the forces from outside in whose place it acts.
+
+    A block counts if the diagram states that role, and if each of its forces acts as a force from
+    outside does, along the motion that the block resists. Any other block is a part of the device,
+    whatever its role or name.
+    """
+    whole = with_tips(diagram)
+    entering = {
+        force: loads
+        for force, quantity in whole.outside.items()
+        if quantity == "force" and (loads := _loads_of(whole, force))
+    }
+    at: dict[str, tuple[str, ...]] = {}
+    for part in whole.blocks:
+        if not isinstance(part, Attached | Linked) or part.role == "part":
+            continue
+        places = [
+            [f for f, loads in entering.items() if _acts_as(whole, force, motion, loads)]
+            for force, motion in zip(part.outputs, part.inputs, strict=True)
+        ]
+        if all(places):
+            at[part.name] = tuple(f for place in places for f in place)
+    return at
+
+
+def _loads_of(diagram: Diagram, force: str) -> dict[str, sp.Expr]:
+    """Motion of each body on which a force acts -> its share, not 0."""
+    shares = shares_of(diagram, force)
+    moving = (b for b in diagram.blocks if isinstance(b, Moving))
+    loads = {b.motion: total_share(b.loads, shares) for b in moving}
+    return {motion: share for motion, share in loads.items() if share != 0}
+
+
+def _acts_as(diagram: Diagram, force: str, motion: str, loads: Mapping[str, sp.Expr]) -> bool:
+    """Whether a force acts on the bodies with these shares, and the motion moves by them."""
+    if not diagram.is_position(motion):
+        return False
+    place = diagram.position(motion)
+    slopes = {x.name: sp.diff(place, x) for x in place.free_symbols}
+    return all(_is_along(made, loads) for made in (_loads_of(diagram, force), slopes))
+
+
+def _is_along(made: Mapping[str, sp.Expr], loads: Mapping[str, sp.Expr]) -> bool:
+    """Whether all shares are equal, or all are opposite, within rounding of their numbers."""
+
+    def apart(sign: int, motion: str) -> bool:
+        one, other = (share.get(motion, sp.S(0)) for share in (made, loads))
+        rest = sp.expand(make_exact(one - sign * other))
+        return bool(rest.free_symbols) or abs(float(rest)) > _ROUNDING
+
+    return any(not any(apart(sign, m) for m in {*made, *loads}) for sign in (1, -1))
+
+
+def without_holders(diagram: Diagram, force: str = "") -> Diagram:
+    """The diagram without hands and environments; with `force`, without those at that port."""
+    return diagram.without(*(n for n, at in holders(diagram).items() if not force or force in at))

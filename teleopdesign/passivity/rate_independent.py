@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar, Protocol
+from typing import ClassVar, TypeVar
 
 import numpy as np
 import sympy as sp
@@ -25,41 +25,33 @@ from ..base.errors import ModelError
 _FED = 1e-3
 
 
-class Element(Protocol):
-    """A rate-independent force against the motion, within `level` (N)."""
-
-    @property
-    def level(self) -> float:
-        """Largest force, N."""
-        ...
-
-    def leg(self, force: float, travel: float) -> tuple[float, float]:
-        """(force at the end, N; work put in, J) of a travel (m, with sign) without turning.
-
-        force: at the begin, N
-        """
-        ...
-
-
-def _check(element: Element) -> None:
-    """Raise ModelError for a level or stiffness that is not > 0 and finite; Coulomb: >= 0."""
-    for name, number in vars(element).items():
-        if not 0 < number < math.inf and not (number == 0 and isinstance(element, Coulomb)):
-            raise ModelError(f"{type(element).__name__}: {name} = {number:g}, expected above 0")
-
-
-@check_types
 @dataclass(frozen=True)
-class Coulomb:
-    """Coulomb friction: force = level * sign(velocity).
+class AbstractElement(ABC):
+    """A rate-independent force against the motion.
 
-    level: N or N m;  raises ModelError: level < 0 or not finite
+    level: largest force, N
+    raises ModelError: a level or stiffness that is not > 0 and finite; Coulomb friction may be 0
     """
 
     level: float
 
     def __post_init__(self) -> None:
-        _check(self)
+        for name, number in vars(self).items():
+            if not 0 < number < math.inf and not (number == 0 and isinstance(self, Coulomb)):
+                raise ModelError(f"{type(self).__name__}: {name} = {number:g}, expected above 0")
+
+    @abstractmethod
+    def leg(self, force: float, travel: float) -> tuple[float, float]:
+        """(force at the end, N; work put in, J) of a travel (m, with sign) without turning.
+
+        force: at the begin, N
+        """
+
+
+@check_types
+@dataclass(frozen=True)
+class Coulomb(AbstractElement):
+    """Coulomb friction: force = level * sign(velocity); level: N or N m, >= 0."""
 
     def leg(self, force: float, travel: float) -> tuple[float, float]:
         """The force jumps to the level against the travel; all work is lost."""
@@ -68,17 +60,10 @@ class Coulomb:
 
 @check_types
 @dataclass(frozen=True)
-class Dahl:
-    """Dahl friction: df/dx = stiffness (1 - f/level sgn v), exact over any travel.
+class Dahl(AbstractElement):
+    """Dahl friction: df/dx = stiffness (1 - f/level sgn v), exact over any travel; N, N/m."""
 
-    level: N;  stiffness: N/m;  raises ModelError: one of them is not > 0 and finite
-    """
-
-    level: float
     stiffness: float
-
-    def __post_init__(self) -> None:
-        _check(self)
 
     def leg(self, force: float, travel: float) -> tuple[float, float]:
         """Exact: f' = s level + (f - s level) e^(-abs(travel)/length), and its integral.
@@ -96,17 +81,13 @@ class Dahl:
 
 @check_types
 @dataclass(frozen=True)
-class Spring:
+class Spring(AbstractElement):
     """A spring that slides at its level: Coulomb friction behind a compliance, without mass.
 
-    level: N;  stiffness: N/m;  raises ModelError: one of them is not > 0 and finite
+    level: N;  stiffness: N/m
     """
 
-    level: float
     stiffness: float
-
-    def __post_init__(self) -> None:
-        _check(self)
 
     def leg(self, force: float, travel: float) -> tuple[float, float]:
         """Exact: the force is linear in the travel up to the level, then constant."""
@@ -120,21 +101,17 @@ class Spring:
 
 @check_types
 @dataclass(frozen=True)
-class DahlBehindSpring:
+class DahlBehindSpring(AbstractElement):
     """Dahl friction (level, stiffness) that is pulled through a spring in series.
 
     With y = 1 - s f/level and r = stiffness/spring a travel x of sign s leads to
     ln y' + r y' = ln y + r y - stiffness abs(x)/level.
 
-    level: N;  stiffness, spring: N/m;  raises ModelError: one of them is not > 0 and finite
+    level: N;  stiffness, spring: N/m
     """
 
-    level: float
     stiffness: float
     spring: float
-
-    def __post_init__(self) -> None:
-        _check(self)
 
     def leg(self, force: float, travel: float) -> tuple[float, float]:
         """Exact over any travel, by Wright's omega function."""
@@ -152,7 +129,7 @@ class DahlBehindSpring:
         return end, (end**2 - force**2) / (2 * self.spring) + lost
 
 
-def compliance(element: Element) -> float:
+def compliance(element: AbstractElement) -> float:
     """Compliance of an element near zero force, travel over force, m/N."""
     parts = (getattr(element, n, math.inf) for n in ("stiffness", "spring"))
     return float(sum(1 / x for x in parts))
@@ -168,19 +145,19 @@ def _quadratic_remainder(y: float) -> float:
     return total
 
 
-class AbstractMotion(ABC):
-    """A motion that releases energy, in closed formulas; a frozen dataclass of plain values."""
+class AbstractRecord(ABC):
+    """A motion that releases energy; a frozen dataclass of plain values."""
 
     kind: ClassVar[str]
+
+    @property
+    @abstractmethod
+    def energy(self) -> float:
+        """Energy released, J."""
 
     @abstractmethod
     def replay(self) -> float:
         """Energy released, J, computed anew."""
-
-    @property
-    def energy(self) -> float:
-        """Energy released, J."""
-        return self.replay()
 
     def as_dict(self) -> dict[str, object]:
         """Plain data, to be written as JSON: elements by name and values, exact numbers as text.
@@ -191,11 +168,35 @@ class AbstractMotion(ABC):
         return {"kind": self.kind, **values, "energy": self.energy}
 
 
+class AbstractMotion(AbstractRecord):
+    """A motion whose energy has a closed formula."""
+
+    @property
+    def energy(self) -> float:
+        """Energy released, J."""
+        return self.replay()
+
+
+_Motion = TypeVar("_Motion", bound=AbstractMotion)
+
+
+def strongest(motions: Iterable[_Motion]) -> _Motion | None:
+    """The motion that releases most energy; None where none releases any."""
+    best = max(motions, key=lambda motion: motion.energy, default=None)
+    return best if best is not None and best.energy > 0 else None
+
+
 def _plain(value: object) -> object:
-    if isinstance(value, Coulomb | Dahl | Spring | DahlBehindSpring):
+    if isinstance(value, AbstractElement):
         return [type(value).__name__.lower(), *vars(value).values()]
+    if isinstance(value, sp.MatrixBase):
+        return [[str(e) for e in row] for row in value.tolist()]
     if isinstance(value, sp.Basic | Fraction):
         return str(value)
+    if isinstance(value, complex):
+        return [value.real, value.imag]
+    if hasattr(value, "as_plain"):
+        return value.as_plain
     return [_plain(x) for x in value] if isinstance(value, tuple) else value
 
 
@@ -212,14 +213,14 @@ class Cycle(AbstractMotion):
     """
 
     compensator: Dahl
-    friction: tuple[Element, ...]
+    friction: tuple[AbstractElement, ...]
     turning_points: tuple[float, ...]
     rounds: int = 200
     kind = "cycle"
 
     def replay(self) -> float:
         """Energy released in the last round, J, computed anew along the path."""
-        elements: tuple[Element, ...] = (self.compensator, *self.friction)
+        elements: tuple[AbstractElement, ...] = (self.compensator, *self.friction)
         forces, here, out = [0.0] * len(elements), self.turning_points[-1], 0.0
         before, total = list(forces), 0.0
         for _ in range(self.rounds):
@@ -239,7 +240,9 @@ class Cycle(AbstractMotion):
         return out if out <= 0 or fed <= _FED * out else min(out, total)
 
 
-def symmetric_cycle(compensator: Dahl, friction: Sequence[Element], amplitude: float) -> Cycle:
+def symmetric_cycle(
+    compensator: Dahl, friction: Sequence[AbstractElement], amplitude: float
+) -> Cycle:
     """The periodic motion between -amplitude and amplitude, with enough rounds that forces repeat.
 
     compensator: its force helps the motion;  friction: elements that resist

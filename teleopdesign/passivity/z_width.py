@@ -19,8 +19,8 @@ import sympy as sp
 from ..base.errors import ModelError
 from ..base.finding import Graph, Series
 from ..base.frozen import ByValue
+from .linear.excess import is_positive_real
 from .linear.impedance import exact
-from .linear.positive_real import is_positive_real
 from .search.sampled_wave import Z
 from .theorems.sampled_data import travel_operator
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import matplotlib.figure
 
     from ..passivity import Certificate, Claim, DiagramClaims, IntervalClaim, MarginMap, PortEnergy
-    from ..passivity.regions import Region
+    from ..passivity.claims.claim import Region
 
 #: margins above this are drawn in the same colour: the sign counts, and large ones differ by
 #: decades

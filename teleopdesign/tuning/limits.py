@@ -20,11 +20,10 @@ from ..base.frozen import ByValue
 from ..base.shown import Shown
 from ..diagrams import Diagram
 from ..frequency import delay_margin, gain_margin, loop_gain, phase_margin
-from ..passivity.holders import without_holders
 from ..passivity.intervals.box import ValueBox
 from ..passivity.intervals.linear import CLAIMS, margin_over
 from ..passivity.intervals.over_box import claim_over_intervals
-from ..passivity.ports import drop_absent_effects, nonlinear_parts
+from ..passivity.ports import drop_absent_effects, nonlinear_parts, without_holders
 from ..studies.chosen_measures import Measure, measures_of
 from ..studies.measures import MEASURES
 

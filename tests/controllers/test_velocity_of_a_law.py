@@ -25,7 +25,7 @@ from teleopdesign.derive.transfer_functions import with_values
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.effects import Parameter
 from teleopdesign.frequency import delay_margin, loop_gain, matrix_response
-from teleopdesign.frequency.quasi_linear import quasi_linear_impedance
+from teleopdesign.frequency.impedance_map import quasi_linear_impedance
 from teleopdesign.passivity import claim_over_intervals, diagram_claims, ports
 from teleopdesign.passivity.linear.family import family_at
 from teleopdesign.passivity.linear_diagrams import linear_claims

@@ -11,7 +11,7 @@ from clock import takes_less_than
 from passivity.random_two_ports import KINDS, attack, random_two_port
 
 from teleopdesign.passivity.checker import Refused, check
-from teleopdesign.passivity.claims.certificate import absolute_stability_certificate
+from teleopdesign.passivity.claims.certificate import matrix_certificate
 
 TANK = "s/(s**2 + 2)"
 TRIES = 60  # as in test_two_port_attack
@@ -145,7 +145,7 @@ def test_the_effort_of_one_file_is_bounded(entry):
 def test_a_written_matrix_is_read_as_it_was_meant():
     s = sp.Symbol("s")
     z = [[s + 1 / s, sp.Rational(1, 3) / s], [sp.Rational(1, 3) / s, s + 1 / s]]
-    certificate = absolute_stability_certificate("any title", z)
+    certificate = matrix_certificate("any title", z, "absolute stability")
     assert certificate.kind == "absolute stability"
     assert "Z(s) = [[s + 1/s, 1/(3*s)], [1/(3*s), s + 1/s]]" in certificate.check()
 

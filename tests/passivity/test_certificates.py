@@ -324,7 +324,7 @@ def test_z3_finds_values_that_break_a_claim_without_its_condition(certificates):
 
 @pytest.mark.parametrize("expression", [sp.Float(0.5), sp.sqrt(2), sp.exp(S), 0.1 * S, sp.oo])
 def test_only_rational_expressions_are_written(expression):
-    from teleopdesign.passivity.claims.certificate import positive_real_certificate
+    from teleopdesign.passivity.claims.certificate import matrix_certificate
 
     with pytest.raises(ModelError, match="expected a rational expression"):
-        positive_real_certificate("not rational", [[expression]])
+        matrix_certificate("not rational", [[expression]])

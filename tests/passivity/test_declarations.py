@@ -26,8 +26,7 @@ from teleopdesign.passivity.declarations import (
     is_shipped,
     underived_energy,
 )
-from teleopdesign.passivity.diagram_claims import composed_claim
-from teleopdesign.passivity.friction_pairs import friction_pairs, pair_claims
+from teleopdesign.passivity.diagram_claims import composed_claim, friction_pairs, pair_claims
 from teleopdesign.passivity.law_facts import ANY_TIME, CONTINUOUS, law_facts
 from teleopdesign.passivity.theorems.wave_channel import wave_claim
 

@@ -30,8 +30,8 @@ from teleopdesign.passivity import (
     sweep_margins,
     two_port,
 )
-from teleopdesign.passivity.holders import holders
 from teleopdesign.passivity.linear.family import family_at
+from teleopdesign.passivity.ports import holders
 
 SPRING = controller("spring_damper", {"stiffness": 300.0, "damping": 1.0})
 NAMES = ("wall", "Z_E", "Z_H")

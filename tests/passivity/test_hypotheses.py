@@ -18,7 +18,7 @@ from teleopdesign.effects import EFFECTS
 from teleopdesign.passivity import Search, diagram_claims
 from teleopdesign.passivity.identified import identify_device
 from teleopdesign.passivity.theorems import THEOREMS, Question, Wall, settle
-from teleopdesign.passivity.theorems._hypotheses import POSITIVE, hypotheses_of, require_hypotheses
+from teleopdesign.passivity.theorems._hypotheses import Positive, hypotheses_of, require_hypotheses
 from teleopdesign.passivity.theorems.compliant_transmission import free_motion
 from teleopdesign.passivity.theorems.velocity_compensation import velocity_compensation
 from teleopdesign.simulate import Sampling
@@ -115,8 +115,8 @@ def test_a_theorem_answers_or_refuses_numbers_of_any_size(theorem, function, rou
 def test_a_function_without_a_hypothesis_for_an_argument_is_refused_where_it_is_defined():
     with pytest.raises(ModelError, match="other"):
 
-        @require_hypotheses(level=POSITIVE)
-        def half(level, other):
+        @require_hypotheses
+        def half(level: Positive, other):
             return level
 
 

@@ -9,15 +9,10 @@ from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import Controller, controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS, Effect, Parameter
-from teleopdesign.passivity.device_claims import (
-    Compensator,
-    device_claims,
-    friction_claims,
-    margins,
-    wall_claims,
-)
-from teleopdesign.passivity.friction_pairs import friction_pairs, pair_claims
+from teleopdesign.passivity.device_claims import Compensator, margins
+from teleopdesign.passivity.diagram_claims import friction_pairs, pair_claims
 from teleopdesign.passivity.identified import DIGITS, identify_device
+from teleopdesign.passivity.theorems import Question, Wall, settle
 from teleopdesign.realise.friction_interval import friction_interval
 from teleopdesign.realise.reach import Reach
 from teleopdesign.simulate import Sampling
@@ -38,7 +33,8 @@ def body_of(**more):
 
 def claims_on(body, level=0.4, stiffness=1e4, reach=None):
     """Topic -> claim about a Dahl compensator, by theorems."""
-    claims = friction_claims(identify_device(body, reach), Compensator("dahl", level, stiffness))
+    stage = Compensator("dahl", level, stiffness).stage
+    claims = settle(Question(identify_device(body, reach), stage), simulated=False)
     return {s.topic: s.claim for s in claims}
 
 
@@ -54,7 +50,7 @@ BRISTLE = {"stiffness": 2e4, "bristle_damping": 30.0}
 def test_bristle_damping_below_a_falling_level_is_not_dropped():
     """The device alone gives out energy in jumps of speed: no pair with it can be proved."""
     body = body_of(**SLOPE, presliding=BRISTLE)
-    (claim,) = device_claims(identify_device(body))
+    (claim,) = settle(Question(identify_device(body)))
     assert claim.claim.status == "refuted"
     assert claim.claim.record.replay() > 0
     claims = claims_on(body)
@@ -121,8 +117,10 @@ def test_damping_of_one_direction_counts_against_that_of_the_other():
     body = body_of(viscous={"damping": 0.2}, **asymmetric)
     assert identify_device(body).set_aside == ("viscous_asymmetry",)
     assert statuses(body)["any law within the level"] == "unknown"
-    law = dict(stiffness=100.0, damping=0.0, computer=Sampling(period=1e-4))
-    (wall,) = wall_claims(identify_device(body), **law)
+    question = Question(
+        identify_device(body), wall=Wall(100.0, 0.0), computer=Sampling(period=1e-4)
+    )
+    (wall,) = settle(question)
     assert wall.claim.status == "unknown"
 
 

@@ -8,7 +8,7 @@ from passivity.random_impedances import KINDS, random_impedance
 from teleopdesign.base.errors import ModelError
 from teleopdesign.derive.polynomials import fraction
 from teleopdesign.passivity import damping_excess, impedance, kyp, positive_real, storage_function
-from teleopdesign.passivity.linear.squares import sum_of_squares
+from teleopdesign.passivity.linear.kyp import sum_of_squares
 from teleopdesign.realise.lti import S
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import lambertw
 
-from teleopdesign.passivity.intervals.late_roots import holds_root, rightmost_root
+from teleopdesign.passivity.intervals.late import holds_root, rightmost_root
 
 
 def exact(late):

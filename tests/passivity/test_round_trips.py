@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.passivity import Coulomb, Dahl, DahlBehindSpring, Spring, available_storage
+from teleopdesign.passivity.available_storage import loss_per_stroke, most_released
 from teleopdesign.passivity.rate_independent import dahl_loss, symmetric_cycle
-from teleopdesign.passivity.round_trips import loss_per_stroke, most_released
 
 STROKES = st.floats(-2.0, 2.0).map(lambda x: 10.0**x)
 

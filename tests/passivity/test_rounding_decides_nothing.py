@@ -20,7 +20,7 @@ from teleopdesign.passivity import (
     positive_real,
     sampled_passivity,
 )
-from teleopdesign.passivity.linear.positive_real import NEARBY
+from teleopdesign.passivity.linear.judge import NEARBY
 from teleopdesign.passivity.linear_diagrams import _nearby
 
 MASS, DAMPING = 0.15, 2.0

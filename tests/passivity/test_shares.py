@@ -13,9 +13,8 @@ from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Attached, Control, Diagram, Junction, Moving, position_symbol
 from teleopdesign.passivity import ports
-from teleopdesign.passivity.diagram_claims import composed_claim
-from teleopdesign.passivity.friction_pairs import friction_pairs
-from teleopdesign.passivity.shares import shares_of
+from teleopdesign.passivity.diagram_claims import composed_claim, friction_pairs
+from teleopdesign.passivity.ports import shares_of
 
 RUBBING = body(0.3, viscous__damping=2.0, coulomb__level=0.4)
 PLAIN = body(0.3, viscous__damping=2.0)

@@ -11,8 +11,8 @@ from typing import Any
 
 from .absolute_stability import state_absolute_stability
 from .absolute_stability import state_over_a_box as stable_over_a_box
+from .algebra import expect
 from .effort import FILE, Refused, need
-from .fields import expect
 from .over_a_box import state_stability
 from .positive_real import state_over_a_box as positive_real_over_a_box
 from .positive_real import state_positive_real

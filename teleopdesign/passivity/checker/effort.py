@@ -1,14 +1,8 @@
-"""Bounds of what the checker reads and computes, and the refusal of what exceeds these bounds.
-
-The functions of `polynomials.py` serve a proof, whose effort is bounded, and a search, whose effort
-is not. So the effort is no argument of these functions: `bound_effort` opens a context with it.
-"""
+"""Bounds of what the checker reads and computes, and the refusal of what exceeds these bounds."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Iterable
 from fractions import Fraction
 
 #: bounds of what is read: bytes of a file, digits of a number, characters of a name and names of
@@ -17,9 +11,6 @@ FILE, DIGITS, NAMES, SIGNS, NESTING = 2_000_000, 4000, 60, 4, 40
 #: bounds of what is computed: degree of a polynomial, bits of a number, and products of terms (some
 #: microseconds each, so a few seconds at most)
 DEGREE, BITS, EFFORT = 4000, 100_000, 1_500_000
-
-#: effort that is left, in a list of one number, which all functions share; None: not bounded
-_LEFT: ContextVar[list[int] | None] = ContextVar("_LEFT", default=None)
 
 
 class Refused(ValueError):
@@ -30,16 +21,6 @@ def need(condition: object, problem: str) -> None:
     """Raise Refused with a text of the problem, unless the condition holds."""
     if not condition:
         raise Refused(f"refused: {problem[:200]}")
-
-
-@contextmanager
-def bound_effort(left: list[int]) -> Iterator[None]:
-    """A context in which polynomials take effort from `left`, a list of one number, or refuse."""
-    token = _LEFT.set(left)
-    try:
-        yield
-    finally:
-        _LEFT.reset(token)
 
 
 def spend_from(left: list[int], effort: int) -> None:
@@ -56,11 +37,9 @@ def longest(numbers: Iterable[Fraction]) -> int:
     return most
 
 
-def spend(times: int, a: Iterable[Fraction], b: Iterable[Fraction]) -> None:
-    """Subtract the effort of `times` products of numbers of a and b, where effort is bounded.
+def spend(left: list[int], times: int, a: Iterable[Fraction], b: Iterable[Fraction]) -> None:
+    """Subtract the effort of `times` products of numbers of a and b from `left`.
 
     A product of short numbers costs 1, of long ones it grows with the product of their lengths.
     """
-    left = _LEFT.get()
-    if left is not None:
-        spend_from(left, 1 + times * (1 + (longest(a) * longest(b) >> 17)))
+    spend_from(left, 1 + times * (1 + (longest(a) * longest(b) >> 17)))

@@ -23,10 +23,9 @@ from fractions import Fraction
 from itertools import combinations
 from typing import Any
 
-from .algebra import Algebra, Poly
+from .algebra import Algebra, Poly, expect, expect_fields, flat, read_number, read_words
 from .box_signs import Ends, are_apart_from_zero, are_non_negative
-from .effort import EFFORT, bound_effort, need
-from .fields import expect, expect_fields, flat, read_number, read_words
+from .effort import EFFORT, need
 from .polynomials import (
     Polynomial,
     coefficient_list,
@@ -79,9 +78,8 @@ class SignsOverBox:
 
     def is_stable(self, p: Poly) -> bool:
         """Whether it is shown that no root of p has Re s >= 0, anywhere in the box."""
-        with bound_effort(self.left):
-            if not p or not is_hurwitz(self.middle(p)):
-                return False
+        if not p or not is_hurwitz(self.middle(p), self.left):
+            return False
         if not self.names:
             return True
         ends = (coefficient(p, degree(p)), coefficient(p, 0))
@@ -95,9 +93,10 @@ class SignsOverBox:
         With each root counted once, this is so if and only if p'/p is positive real: p'/p is the
         sum of 1/(s - root), and on the axis the real part of such a term has the sign of -Re root.
         """
-        with bound_effort(self.left):
-            plain = square_free(coefficient_list(p))
-        q, slope = map(_as_powers, (plain, derivative(plain)))
+        plain = square_free(coefficient_list(p), self.left)
+        both = plain, derivative(plain)
+        polys: list[Poly] = [{(k,): c for k, c in enumerate(p) if c} for p in both]
+        q, slope = polys
         if degree(q) == 0:
             return True
         stable = self.is_stable(self.algebra.plus(q, slope))
@@ -123,8 +122,7 @@ class SignsOverBox:
                 p = quotient
         if self.names or not p:
             return p
-        with bound_effort(self.left):
-            odd, sign = odd_part(coefficient_list(p)), 1 if p[max(p)] > 0 else -1
+        odd, sign = odd_part(coefficient_list(p), self.left), 1 if p[max(p)] > 0 else -1
         return {(k,): sign * c for k, c in enumerate(odd) if c}
 
     def cross(self, p: Poly, q: Poly) -> tuple[Poly, Poly]:
@@ -153,11 +151,10 @@ class SignsOverBox:
     def reduce(self, above: Sequence[Poly], below: Poly) -> Poly:
         """`below` without factors that it shares with all of `above`; over a box powers of s."""
         if not self.names:
-            with bound_effort(self.left):
-                whole = common = coefficient_list(below)
-                for p in above:
-                    common = greatest_common_divisor(common, coefficient_list(p))
-                whole = divide(whole, common)[0]
+            whole = common = coefficient_list(below)
+            for p in above:
+                common = greatest_common_divisor(common, coefficient_list(p), self.left)
+            whole = divide(whole, common, self.left)[0]
             return {(k,): c for k, c in enumerate(whole) if c}
         shared = min(k[0] for p in (below, *above) for k in p)
         return {(k[0] - shared, *k[1:]): c for k, c in below.items()}
@@ -237,10 +234,6 @@ def _interval(value: Any) -> tuple[Fraction, Fraction]:
     low, high = (read_number(e, "box") for e in ends)
     need(low < high, "box: low is not below high")
     return low, high
-
-
-def _as_powers(p: Polynomial) -> Poly:
-    return {(k,): c for k, c in enumerate(p) if c}
 
 
 def degree(p: Poly) -> int:

@@ -24,9 +24,8 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from .algebra import Algebra, Poly, Quotient
+from .algebra import Algebra, Poly, Quotient, expect_fields, read_matrix, read_number
 from .effort import need
-from .fields import expect_fields, read_matrix, read_number
 from .over_a_box import PolyMatrix, SignsOverBox, halves, read_impedance
 
 #: numbers of rows that are allowed: each further row doubles the number of principal minors

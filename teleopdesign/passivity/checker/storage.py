@@ -36,9 +36,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from .algebra import Algebra, Poly, Quotient
+from .algebra import Algebra, Poly, Quotient, expect, expect_fields, flat, read_number, read_words
 from .effort import DEGREE, EFFORT, SIGNS, need
-from .fields import expect, expect_fields, flat, read_number, read_words
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,9 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import sympy as sp
 
@@ -70,24 +71,18 @@ def read_certificate(path: str | Path) -> Certificate:
     return Certificate(content)
 
 
-def positive_real_certificate(title: str, impedance: Sequence[Sequence[sp.Expr]]) -> Certificate:
-    """Certificate that a matrix of rational functions of s is positive real; not yet checked.
-
-    impedance: 6x6 at most;  raises ModelError: an entry is not rational with exact numbers
-    """
-    rows = [[checker_text(e) for e in row] for row in impedance]
-    return seal({"kind": "positive real", "title": title, "impedance": rows})
-
-
-def absolute_stability_certificate(
-    title: str, impedance: Sequence[Sequence[sp.Expr]]
+def matrix_certificate(
+    title: str,
+    impedance: Sequence[Sequence[sp.Expr]],
+    kind: Literal["positive real", "absolute stability"] = "positive real",
 ) -> Certificate:
-    """Certificate that a 2x2 matrix of rational functions is absolutely stable; not yet checked.
+    """Certificate about a matrix of rational functions of s at a point; not yet checked.
 
+    impedance: 6x6 at most, 2x2 for absolute stability
     raises ModelError: an entry is not rational with exact numbers
     """
     rows = [[checker_text(e) for e in row] for row in impedance]
-    return seal({"kind": "absolute stability", "title": title, "impedance": rows})
+    return seal({"kind": kind, "title": title, "impedance": rows})
 
 
 def storage_certificate(
@@ -124,7 +119,7 @@ def storage_certificate(
     used += [e for pair in invariant.values() for e in pair]
     names = {s.name for e in used for s in sp.sympify(e).free_symbols} | {*signs}
     known = {*rates, *constants, *(prefix + x for x in signs for prefix in ("abs_", "sign_"))}
-    cases = _cases(len(signs))
+    cases = [" ".join(case) for case in product(("1", "-1"), repeat=len(signs))]
     content = {
         "kind": "storage",
         "title": title,
@@ -141,7 +136,13 @@ def storage_certificate(
             for n, (h, rate) in invariant.items()
         },
         "proofs": {
-            goal: {case: _terms(by_case.get(case, by_case.get("", ()))) for case in cases}
+            goal: {
+                case: [
+                    [checker_text(w), dict(powers), checker_text(e)]
+                    for w, powers, e in by_case.get(case, by_case.get("", ()))
+                ]
+                for case in cases
+            }
             for goal, by_case in proofs.items()
         },
         "example": _text({n: e for n, e in example.items() if n in {*names, *rates, *constants}}),
@@ -149,19 +150,8 @@ def storage_certificate(
     return seal(content)
 
 
-def _cases(number: int) -> list[str]:
-    cases = [""]
-    for _ in range(number):
-        cases = [f"{case} {s}".strip() for case in cases for s in (1, -1)]
-    return cases
-
-
 def _text(expressions: Mapping[str, sp.Expr | int]) -> dict[str, str]:
     return {name: checker_text(e) for name, e in expressions.items()}
-
-
-def _terms(terms: Sequence[Term]) -> list[list[object]]:
-    return [[checker_text(w), dict(powers), checker_text(e)] for w, powers, e in terms]
 
 
 def checker_text(expression: sp.Expr | int) -> str:

@@ -3,18 +3,25 @@
 A proof is exact and has a certificate, which `checker` verifies without the package. A refutation
 is a motion that releases energy; the motion is stored, so anyone can replay it. Evidence states
 what was computed or searched, and the margin. Evidence is never called a proof.
+
+Theorems write claims for a prismatic axis. The numbers are the same on a revolute axis, and
+`use_units_of` changes the units: 0.5 N becomes 0.5 N m.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Protocol
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol
+
+import numpy as np
 
 from ...base.errors import ModelError
 from ...base.frozen import ByValue
 from ...base.shown import Shown
+from ...base.units import unit_of
 from .certificate import Certificate
 
 #: of an exact answer without a certificate
@@ -200,3 +207,67 @@ class Claim(Shown, NotTrueOrFalse, ByValue):
         if not isinstance(self.verdict, Refutation):
             raise ModelError(f"claim: {self.status}, so no motion refutes it: {self.statement}")
         return self.verdict.record
+
+
+@dataclass(frozen=True, eq=False)
+class Region(Shown, ByValue):
+    """Status of a claim at each point of a grid of two parameters.
+
+    x, y: values of the parameters, (n,) and (m,)
+    status: "proved", "refuted", "evidence" or "unknown", (m, n)
+    holds: 1 where the claim holds, 0 where not, NaN where unknown, (m, n)
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    status: np.ndarray
+    holds: np.ndarray
+
+
+def region(claim: Callable[[float, float], Claim], x: np.ndarray, y: np.ndarray) -> Region:
+    """Judge claim(x, y) at every point of a grid, each point alone.
+
+    Between the points nothing is known.
+
+    claim: a function of two numbers that returns a `Claim`
+    x, y: values of the parameters, (n,) and (m,)
+    """
+    claims = [[claim(float(a), float(b)) for a in x] for b in y]
+    status = np.array([[c.status for c in row] for row in claims])
+    holds = np.array(
+        [[np.nan if c.holds is None else float(c.holds) for c in row] for row in claims]
+    )
+    return Region(np.asarray(x, dtype=float), np.asarray(y, dtype=float), status, holds)
+
+
+_QUANTITIES = ("damping", "stiffness", "force", "velocity", "inertia", "position")
+#: unit on a prismatic axis -> unit on a revolute axis, as claims write them
+_ROTARY = {
+    unit_of(q, "prismatic").replace("*", " "): unit_of(q, "revolute").replace("*", " ")
+    for q in _QUANTITIES
+}
+_UNIT = "|".join(sorted(map(re.escape, _ROTARY), key=len, reverse=True))
+#: a unit that follows a number and is not a part of a longer unit
+_MEASURE = re.compile(rf"(?<=\d )({_UNIT})(?![\w/^*]| m\b| s/)")
+
+
+def use_units_of(axis: str, claim: Claim) -> Claim:
+    """The claim with its statement and verdict in the units of an axis.
+
+    axis: "prismatic" or "revolute"
+    """
+    if axis != "revolute":
+        return claim
+    verdict: Any = claim.verdict
+    texts = (n for n in ("method", "searched", "why") if hasattr(verdict, n))
+    changed = {name: use_rotary_units(getattr(verdict, name)) for name in texts}
+    if isinstance(verdict, Proof | Evidence):
+        first, _, rest = verdict.unit.partition(" of ")
+        unit = _ROTARY.get(first, first)
+        changed["unit"] = f"{unit} of {rest}" if rest else unit
+    return Claim(use_rotary_units(claim.statement), replace(verdict, **changed))
+
+
+def use_rotary_units(text: str) -> str:
+    """The text with the units after numbers changed to those of a revolute axis."""
+    return _MEASURE.sub(lambda match: _ROTARY[match.group(1)], text)

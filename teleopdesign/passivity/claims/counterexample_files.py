@@ -6,7 +6,7 @@ import json
 import re
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 import sympy as sp
@@ -18,7 +18,7 @@ from ...diagrams.junctions import position_symbol
 from ...realise.lti import S
 from ..rate_independent import Coulomb, Cycle, Dahl, Spring
 from ..search.growing_wave import GrowingWave
-from ..search.sampled_wave import Z, sampled_wave
+from ..search.sampled_wave import SampledWave, Z, sampled_wave
 from ..theorems.lugre import Jumps
 from ..theorems.quantised_spring import Flip
 from ..theorems.sampled_compensation import Trembling
@@ -27,6 +27,12 @@ from ..two_port.growing_mode import GrowingMode
 from ..two_port.termination import CLAMPED, Termination
 from .claim import Counterexample
 
+_KINDS: dict[str, Any] = {
+    kind.kind: kind
+    for kind in (
+        Cycle, Flip, GrowingMode, GrowingWave, Jumps, SampledWave, SteadyStrokes, Trembling,
+    )
+}  # fmt: skip
 _ELEMENTS = {"coulomb": Coulomb, "dahl": Dahl, "spring": Spring}
 #: text of a fraction: longer than any that a search writes, short enough to be read at once
 _FRACTION = re.compile(r"-?[0-9]{1,2000}(/[0-9]{1,2000})?")
@@ -62,35 +68,44 @@ def read_record(path: str | Path) -> Counterexample:
 
 
 def _make_counterexample(c: dict[str, Any]) -> Counterexample:
-    kind = c["kind"]
+    if not isinstance(c, dict):
+        raise TypeError("expected named fields")
     strokes = int(c.get("rounds", 1)) * max(len(c.get(n, ())) for n in ("turning_points", "legs"))
     if not 0 <= strokes <= MOST_STROKES:
         raise ValueError(f"found {strokes} strokes, expected at most {MOST_STROKES}")
-    if kind == "growing wave":
-        z = sp.ImmutableMatrix([[_read(e, S) for e in row] for row in c["impedance"]])
-        velocity = tuple(complex(*v) for v in c["velocity"])
-        return GrowingWave(z, _fraction(c["rate"]), _fraction(c["frequency"]), velocity)
-    if kind == "growing mode":
-        return _growing_mode(c)
-    if kind == "sampled wave":
-        law = _read(c["law"], Z)
-        b, late, k = (_read(c[n]) for n in ("damping", "sample_time", "stiffness"))
-        return sampled_wave(law, b, late, k, _fraction(c["rate"]), _fraction(c["frequency"]))
-    if kind == "cycle":
-        helps, *against = (_ELEMENTS[n](*v) for n, *v in [c["compensator"], *c["friction"]])
-        return Cycle(helps, tuple(against), tuple(c["turning_points"]), int(c["rounds"]))
-    if kind in ("steady strokes", "trembling"):
-        moved = {k: v for k, v in c.items() if k not in ("kind", "energy")}
-        for name in {"friction", "compensator"} & set(moved):
-            element, *values = moved[name]
-            moved[name] = _ELEMENTS[element](*values)
-        return (Trembling if kind == "trembling" else SteadyStrokes)(**moved)
-    fields = {k: _tuples(v) for k, v in c.items() if k not in ("kind", "energy")}
-    if kind == "jumps":
-        return Jumps(**fields)
-    if kind == "flip":
-        return Flip(**fields)
-    raise ModelError(f'no kind of motion "{kind}"')
+    if c["kind"] not in _KINDS:
+        raise ModelError(f'no kind of motion "{c["kind"]}"')
+    kind = _KINDS[c["kind"]]
+    hints, given = get_type_hints(kind), {n: x for n, x in c.items() if n not in ("kind", "energy")}
+    fields = {n: _value(x, hints[n]) for n, x in given.items()}
+    record: Counterexample = sampled_wave(**fields) if kind is SampledWave else kind(**fields)
+    if isinstance(record, GrowingMode) and not record.is_confirmed():
+        raise ValueError("the two-port does not grow between these terminations")
+    return record
+
+
+def _value(data: Any, hint: Any) -> Any:
+    """The value of a field of a motion from its plain data."""
+    if hint is Fraction:
+        return _fraction(data)
+    if hint is sp.Expr:
+        return _read(data, Z)
+    if hint is sp.ImmutableMatrix:
+        return sp.ImmutableMatrix([[_read(e, S) for e in row] for row in data])
+    if hint is Termination:
+        if data == "clamped":
+            return CLAMPED
+        damping, inertia, stiffness = map(_fraction, data)
+        return Termination(damping, inertia, stiffness)
+    if hint is complex:
+        return complex(*data)
+    if not isinstance(data, list):
+        return data
+    if get_origin(hint) is not tuple:
+        name, *values = data
+        return _ELEMENTS[name](*values)
+    inner = [x for x in get_args(hint) if x is not Ellipsis] or [None]
+    return tuple(_value(x, inner[min(k, len(inner) - 1)]) for k, x in enumerate(data))
 
 
 def _fraction(text: str) -> Fraction:
@@ -113,25 +128,3 @@ def _read(text: str, *names: sp.Symbol) -> sp.Expr:
     if e.free_symbols - {*names}:
         raise ValueError(f"unknown names in {text[:60]}")
     return e
-
-
-def _growing_mode(c: dict[str, Any]) -> GrowingMode:
-    z = sp.ImmutableMatrix([[_read(e, S) for e in row] for row in c["impedance"]])
-    first, second = (
-        CLAMPED if held == "clamped" else _make_termination(*(_fraction(x) for x in held))
-        for held in c["terminations"]
-    )
-    one, other = (complex(*v) for v in c["velocity"])
-    at = _fraction(c["rate"]), _fraction(c["frequency"])
-    mode = GrowingMode(z, (first, second), *at, (one, other))
-    if not mode.is_confirmed():
-        raise ValueError("the two-port does not grow between these terminations")
-    return mode
-
-
-def _make_termination(damping: Fraction, inertia: Fraction, stiffness: Fraction) -> Termination:
-    return Termination(damping, inertia, stiffness)
-
-
-def _tuples(value: Any) -> Any:
-    return tuple(_tuples(v) for v in value) if isinstance(value, list) else value

@@ -1,19 +1,24 @@
-"""A box: an interval for each of some values of a diagram, and points inside the box."""
+"""A box, an interval for each of some values of a diagram, and the result of a claim over it."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import product
+from typing import Literal
 
 import numpy as np
 
 from ...base.errors import ModelError, did_you_mean
 from ...base.expectations import describe_value
+from ...base.frozen import ByValue
+from ...base.shown import Shown
 from ...controllers import exact_decimal
 from ...diagrams import Diagram
+from ..claims.certificate import Certificate
+from ..claims.claim import Claim, NotTrueOrFalse
 from ..ports import drop_absent_effects, nonlinear_parts
 
 #: most vertices that are evaluated: all vertices of eight intervals, 2^8
@@ -71,6 +76,60 @@ class ValueBox:
         kept = [k for k, n in enumerate(self.names) if n in names]
         pick = [tuple(x[k] for k in kept) for x in (self.names, self.low, self.high)]
         return ValueBox(*pick)  # type: ignore[arg-type]
+
+
+Status = Literal["proved", "refuted", "evidence", "unknown"]
+
+
+@dataclass(frozen=True, eq=False)
+class IntervalClaim(Shown, NotTrueOrFalse, ByValue):
+    """A claim over intervals of values, with its status and worst case.
+
+    status: "proved" over the whole box; "refuted" at `worst`; "evidence": the claim holds at all
+        points that were evaluated; "unknown"
+    intervals: value -> (low, high);  worst: the values at the least margin
+    margin: the least margin that was evaluated, at `worst`, in `unit`
+    proved_margin: lower bound of the margin that is proved over the whole box; NaN: none
+    points: number of points that were evaluated;  how: the method in words
+    units: of the values;  at_worst: the claim at `worst` alone
+    time: of the controllers: "any" where no controller is sampled
+    certificates: for a linear diagram, each verified by `checker`: one for the bound of the margin
+        over the whole box, one for the modes that no port shows
+    """
+
+    statement: str
+    status: Status
+    intervals: Mapping[str, tuple[float, float]]
+    worst: Mapping[str, float]
+    margin: float
+    unit: str
+    proved_margin: float
+    points: int
+    how: str
+    units: Mapping[str, str] = field(default_factory=dict)
+    at_worst: Claim | None = None
+    time: Literal["continuous", "any"] = "any"
+    certificates: tuple[Certificate, ...] = ()
+
+    @property
+    def holds(self) -> bool | None:
+        """Whether the claim holds, as far as is known; None where the status is "unknown"."""
+        return {"proved": True, "evidence": True, "refuted": False}.get(self.status)
+
+    @property
+    def limited(self) -> str:
+        """Words that limit a proof to continuous time; "" where no controller is sampled."""
+        return " (in continuous time)" if self.time == "continuous" else ""
+
+    @property
+    def known(self) -> str:
+        """Status and method in words, as every report of the claim states them."""
+        return {
+            "proved": f"proved over the whole box{self.limited}",
+            "refuted": "refuted at a point of the box",
+            "evidence": f"checked numerically at {self.points} points, worst found there",
+            "unknown": "unknown",
+        }[self.status]
 
 
 def box_of(

@@ -11,58 +11,52 @@ middle.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
 
 from ...blocks import Body
 from ...controllers import laws_that_declare
 from ...diagrams import Diagram
 from ..claims.claim import Claim
-from ..diagram_claims import composed_claim
-from ..friction_pairs import FrictionPair, friction_pairs, pair_claims
+from ..diagram_claims import FrictionPair, composed_claim, friction_pairs, pair_claims
 from ..linear.conditions import is_shown
 from ..linear.family import family_of_states
 from ..linear.signs import Signs
 from ..ports import drop_absent_effects, nonlinear_parts, ports, without_friction
-from .box import ValueBox
+from .box import IntervalClaim, ValueBox
 from .linear import states_over
+from .worst import Worst, judged
 
 #: effects that the two conditions cover completely, with their values
 _FRICTION: dict[str, tuple[str, ...]] = {"coulomb": ("level",), "presliding": ("stiffness",)}
 
 
-def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> dict[str, Any]:
+def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> IntervalClaim:
     """Judge the passivity (or absolute stability) of a diagram with friction over a box.
 
-    claim: "passive" or "absolutely stable";  returns: fields of an `IntervalClaim`
+    claim: "passive" or "absolutely stable"
     """
     points = [*box.vertices(), box.centre]
     answers = [(point, *_claims_at(middle.with_values(box.named(point)))) for point in points]
-    made: dict[str, Any] = {
-        "statement": f"its ports are {'together ' * (claim == 'passive')}{claim}",
-        "worst": box.named(box.centre),
-        "margin": float("nan"),
-        "unit": "",
-        "proved_margin": float("nan"),
-        "points": len(points),
-    }
+    worst = Worst(box.centre, float("nan"), len(points))
+    statement = f"its ports are {'together ' * (claim == 'passive')}{claim}"
     for point, whole, others in answers:
         # what takes energy out of friction at one port need not make any termination unstable
         against = [c for c in others if c.status == "refuted" and claim == "passive"]
         if whole is None and against:
             how = f"{against[0].statement}: {against[0].verdict}"
-            named = box.named(point)
-            return {**made, "status": "refuted", "worst": named, "how": how, "at_worst": against[0]}
+            there = replace(worst, point=point)
+            return judged(statement, "refuted", there, box, "", how, at_worst=against[0])
     if any(whole is None for _, whole, _ in answers):
         why = "at some vertex neither a theorem nor a motion settles friction with its cancellation"
-        return {**made, "status": "unknown", "how": why}
+        return judged(statement, "unknown", worst, box, "", why)
     if _vertices_decide(middle, box) and _rest_is_passive(middle, box):
         how = (
             "each condition on friction and cancellation is monotone in each value, so that the "
             f"{len(points) - 1} vertices decide; the linear rest by Bernstein coefficients"
         )
-        return {**made, "status": "proved", "how": how, "at_worst": answers[-1][1]}
+        return judged(statement, "proved", worst, box, "", how, at_worst=answers[-1][1])
     how = "proved at each of these points alone"
-    return {**made, "status": "evidence", "how": how, "at_worst": answers[-1][1]}
+    return judged(statement, "evidence", worst, box, "", how, at_worst=answers[-1][1])
 
 
 def _claims_at(diagram: Diagram) -> tuple[Claim | None, list[Claim]]:

@@ -15,21 +15,19 @@ from ...base.errors import ModelError
 from ...derive.all_states import AllStates, all_states, is_well_posed
 from ...derive.effort import TooMuchEffort, try_within_effort
 from ...derive.polynomials import is_hurwitz
+from ...derive.responses import Responses
 from ...diagrams import Diagram
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim
 from ..linear.box_certificates import impedance_certificate, stability_certificate
 from ..linear.conditions import is_shown, take_damping
 from ..linear.family import Family, family_of_states
-from ..linear.signs import Ends, Signs
+from ..linear.signs import Signs
 from ..linear_diagrams import linear_claims
 from ..ports import drop_absent_effects, ports
-from .agreement import agrees
-from .at_points import judge_at_points
-from .box import ValueBox, nonlinear_within
-from .interval_claim import Parts, Status, parts_of
+from .box import IntervalClaim, Status, ValueBox, nonlinear_within
 from .late import judge_late
-from .worst import MarginFunction, Worst, pole_margin, port_margin, search_worst
+from .worst import MarginFunction, Worst, judged, pole_margin, port_margin, search_worst
 
 #: names of claims -> units of their margins
 CLAIMS = {"passive": "N s/m", "absolutely stable": "1", "stable": "1/s"}
@@ -60,11 +58,11 @@ def states_over(diagram: Diagram, box: ValueBox, speed: float = 0.0) -> AllState
     return states if not box.names or agrees(states, diagram, box, speed) else None
 
 
-def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> Parts:
+def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> IntervalClaim:
     """Judge whether every pole of the whole diagram has a negative real part, over a box.
 
     middle: the diagram with values in the middle of the box;  points, seed: of `search_worst`
-    returns: fields of an `IntervalClaim`
+    returns: the claim
     raises ModelError: a part is not linear, or a value is not in the linear form of its block
     """
     if bent := nonlinear_within(middle, box):
@@ -76,7 +74,7 @@ def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> P
         )
     if not is_well_posed(middle, all_states(middle)):
         worst = Worst(box.centre, float("nan"), 1)
-        return parts_of(_STABLE, "unknown", worst, box, "1/s", _ILL_POSED)
+        return judged(_STABLE, "unknown", worst, box, "1/s", _ILL_POSED)
     p = normalise(states.determinant())
     if states.times:
         return judge_late(p, states.times, box, points, seed)
@@ -88,16 +86,18 @@ def normalise(p: Any) -> Any:
     return p.mul_ground(1 / max(map(abs, p.values()))) if p else p
 
 
-def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) -> Parts:
+def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) -> IntervalClaim:
     signs = Signs(box.exact)
     worst = search_worst(pole_margin(p), box, points=points, seed=seed)
-    if worst.margin <= 0 and not is_hurwitz(Signs(_as_box(box, worst.point)).middle(p)):
+    there = tuple(map(float, worst.point))
+    point = ValueBox(box.names, there, there).exact  # a box without width
+    if worst.margin <= 0 and not is_hurwitz(Signs(point).middle(p)):
         how = (
             f"a pole with real part {-worst.margin:.4g} 1/s; not Hurwitz by Routh's scheme, exactly"
         )
-        return parts_of(_STABLE, "refuted", worst, box, "1/s", how)
+        return judged(_STABLE, "refuted", worst, box, "1/s", how)
     if not _is_hurwitz(signs, p):
-        return parts_of(_STABLE, "evidence", worst, box, "1/s", _explain_no_proof(signs))
+        return judged(_STABLE, "evidence", worst, box, "1/s", _explain_no_proof(signs))
     how = _describe_effort(signs, "its characteristic polynomial is nowhere zero on the axis")
     shares = (Fraction(str(round(share, 6))) for share in _SHARES)
     shifts = (Fraction(worst.margin).limit_denominator(10**6) * share for share in shares)
@@ -108,7 +108,7 @@ def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) 
         moved = _move_axis(p, bound)
         return (stability_certificate(title, moved, names=box.names, ends=box.exact, signs=signs),)
 
-    made = parts_of(_STABLE, "proved", worst, box, "1/s", how, proved_margin=float(bound))
+    made = judged(_STABLE, "proved", worst, box, "1/s", how, proved_margin=float(bound))
     return _proof(made, certificates)
 
 
@@ -118,16 +118,13 @@ def _move_axis(p: Any, left: Fraction) -> Any:
     return p.compose(s, s - sp.QQ(left.numerator, left.denominator))
 
 
-def _as_box(box: ValueBox, point: np.ndarray) -> Ends:
-    """A point as a box without width."""
-    return ValueBox(box.names, tuple(map(float, point)), tuple(map(float, point))).exact
-
-
-def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: int) -> Parts:
+def judge_linear(
+    alone: Diagram, box: ValueBox, claim: str, points: int, seed: int
+) -> IntervalClaim:
     """Judge the passivity or absolute stability of a linear diagram at its ports, over a box.
 
     alone: the diagram without hand and environment;  claim: "passive" or "absolutely stable"
-    points, seed: of `search_worst`;  returns: fields of an `IntervalClaim`
+    points, seed: of `search_worst`;  returns: the claim
     """
     statement = f"its ports are {'together ' * (claim == 'passive')}{claim}"
     states = states_over(alone, box)
@@ -140,13 +137,13 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
     if exact.status == "refuted":
         worst = worst if worst.margin < 0 else replace(worst, margin=-np.inf)
         how = str(exact.verdict)
-        return parts_of(statement, "refuted", worst, box, unit, how, at_worst=exact)
+        return judged(statement, "refuted", worst, box, unit, how, at_worst=exact)
     if exact.holds and not family.times and _is_shown(signs, family, claim):
         bound = Fraction(0) if claim != "passive" else _bound(signs, family, worst.margin)
         how = _describe_effort(signs, "its conditions are polynomials of one sign")
         worst = replace(worst, margin=max(worst.margin, float(bound)))
         more = {"proved_margin": float(bound), "at_worst": exact}
-        made = parts_of(statement, "proved", worst, box, unit, how, **more)
+        made = judged(statement, "proved", worst, box, unit, how, **more)
         title = f"{alone.name}: {statement}"
         return _proof(made, lambda: _certificates(signs, family, claim, bound, title))
     status: Status = "evidence" if exact.holds else "unknown"
@@ -156,7 +153,7 @@ def judge_linear(alone: Diagram, box: ValueBox, claim: str, points: int, seed: i
         how = f"at the worst point of the search: {exact.verdict}"
     elif not family.times:
         how = _explain_no_proof(signs)
-    return parts_of(statement, status, worst, box, unit, how, at_worst=exact)
+    return judged(statement, status, worst, box, unit, how, at_worst=exact)
 
 
 def _is_shown(signs: Signs, family: Family, claim: str, margin: Fraction = Fraction(0)) -> bool:
@@ -197,15 +194,17 @@ def margin_over(diagram: Diagram, box: ValueBox, claim: str) -> MarginFunction |
     return port_margin(family_of_states(states, ports(diagram), box.names, box.exact), claim)
 
 
-def _proof(made: Parts, certificates: Callable[[], tuple[Certificate, ...]]) -> Parts:
+def _proof(
+    made: IntervalClaim, certificates: Callable[[], tuple[Certificate, ...]]
+) -> IntervalClaim:
     """A proof, if the checker accepts its certificates; else the exact result as evidence."""
     try:
         accepted = certificates()
     except ModelError:
-        how = f"{made['how']}; a certificate would ask for more work than its checker does"
-        return {**made, "status": "evidence", "proved_margin": float("nan"), "how": how}
-    how = f"{made['how']}; {len(accepted)} certificate{'s' * (len(accepted) > 1)}"
-    return {**made, "how": how, "certificates": accepted}
+        how = f"{made.how}; a certificate would ask for more work than its checker does"
+        return replace(made, status="evidence", proved_margin=float("nan"), how=how)
+    how = f"{made.how}; {len(accepted)} certificate{'s' * (len(accepted) > 1)}"
+    return replace(made, how=how, certificates=accepted)
 
 
 def _bound(signs: Signs, family: Family, margin: float) -> Fraction:
@@ -226,18 +225,13 @@ def _settle(alone: Diagram, claim: str) -> Claim:
 
 def _point_by_point(
     alone: Diagram, box: ValueBox, claim: str, points: int, seed: int, statement: str
-) -> Parts:
+) -> IntervalClaim:
     """Judge a claim at single points, for values that are not symbols in the linear forms."""
     made = judge_at_points(alone, box, lambda diagram: _settle(diagram, claim), points, seed)
-    claim_there = _settle(alone.with_values(made["worst"]), claim)
+    there = _settle(alone.with_values(made.worst), claim)
     how = "its values are not in the linear forms as such: every point is decided by itself"
-    return {
-        **made,
-        "statement": statement,
-        "unit": CLAIMS[claim],
-        "how": str(claim_there.verdict) if made["status"] == "refuted" else how,
-        "at_worst": claim_there,
-    }
+    how = str(there.verdict) if made.status == "refuted" else how
+    return replace(made, statement=statement, unit=CLAIMS[claim], how=how, at_worst=there)
 
 
 def _describe_effort(signs: Signs, what: str) -> str:
@@ -252,3 +246,64 @@ def _explain_no_proof(signs: Signs) -> str:
         f"no proof over the whole box: not shown on {signs.cells} parts of it, or modes that no "
         "port shows"
     )
+
+
+#: points inside the box at which the equations are compared, besides two opposite vertices
+_COMPARED = 2
+#: s at which responses are compared, 1/s, and the relative difference that is rounding
+_AT, _ROUNDING = np.array([3.1 + 4.7j]), 1e-6
+
+
+def agrees(states: AllStates, diagram: Diagram, box: ValueBox, speed: float) -> bool:
+    """Whether all signals respond alike to all signals from outside, at some points of the box.
+
+    Values may make an effect absent at an end of an interval, and then it has another form there.
+
+    states: with the values of the box as the first symbols after s;  speed: see `all_states`
+    """
+    symbols = states.ring.symbols[1 : 1 + len(box.names)]
+    first = Responses(states, states.unknown, states.outside)
+    for point in (np.array(box.low), np.array(box.high), *box.inside(_COMPARED, 0)):
+        diagram = diagram.with_values(box.named(point))
+        there = all_states(drop_absent_effects(diagram), speed=speed)
+        shared = tuple(n for n in states.unknown if n in there.unknown)
+        one = first.at(_AT, dict(zip(symbols, map(float, point), strict=True)))[0]
+        other = Responses(there, shared, there.outside).at(_AT)[0]
+        largest = np.nan_to_num(np.abs(one)).max(initial=0.0)
+        one = one[[states.unknown.index(n) for n in shared]]
+        size = np.abs(one).max(axis=1, initial=0.0) + _ROUNDING * largest
+        if (np.abs(one - other).max(axis=1, initial=0.0) > _ROUNDING * size).any():
+            return False
+    return True
+
+
+def judge_at_points(
+    middle: Diagram, box: ValueBox, claim: Callable[[Diagram], Any], points: int, seed: int
+) -> IntervalClaim:
+    """Judge a user's margin or claim at the vertices, the middle and further points of a box.
+
+    claim: function of a diagram, which returns a margin (>= 0: it holds) or a `Claim`
+    points: number of further points;  seed: of these points
+    """
+    unknown: list[str] = []
+    units: list[str] = []
+
+    def margin(point: np.ndarray) -> float:
+        value = claim(middle.with_values(box.named(point)))
+        if not isinstance(value, Claim):
+            return float(value)
+        if value.holds is None:
+            unknown.append(str(value.verdict))
+        units.append(getattr(value.verdict, "unit", ""))
+        size = float(getattr(value.verdict, "margin", float("nan")))
+        if np.isfinite(size) and (size >= 0) == bool(value.holds):
+            return size
+        return {True: np.inf, False: -np.inf, None: np.inf}[value.holds]
+
+    worst = search_worst(margin, box, points=points, seed=seed, downhill=False)
+    name = getattr(claim, "__name__", "the claim")
+    failed = not worst.margin >= 0
+    how = f"{name} is {worst.margin:.4g} there" if failed else f"{name}: nothing is proved"
+    status: Status = "refuted" if failed else "unknown" if unknown else "evidence"
+    how = f"unknown at {len(unknown)} points: {unknown[0]}" if status == "unknown" else how
+    return judged(f"{name} holds", status, worst, box, next(filter(None, units), ""), how)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from ...base.arguments import check_types
@@ -11,16 +12,13 @@ from ...base.expectations import describe_value
 from ...derive.effort import TooMuchEffort, bounded_effort
 from ...diagrams import Diagram
 from ...diagrams.units import first_axis, unit_of_value
-from ..claims.axis_units import use_rotary_units
-from ..holders import without_holders
+from ..claims.claim import use_rotary_units
 from ..linear.impedance import decimal, exact
-from ..ports import drop_absent_effects, ports
-from .at_points import judge_at_points
-from .box import ValueBox, box_of, nonlinear_within
+from ..ports import drop_absent_effects, ports, without_holders
+from .box import IntervalClaim, ValueBox, box_of, nonlinear_within
 from .friction import judge_friction
-from .interval_claim import IntervalClaim, Parts, parts_of
-from .linear import CLAIMS, judge_linear, judge_stability
-from .worst import Worst
+from .linear import CLAIMS, judge_at_points, judge_linear, judge_stability
+from .worst import Worst, judged
 
 
 @check_types
@@ -58,13 +56,13 @@ def claim_over_intervals(
     except TooMuchEffort as problem:
         worst = Worst(box.centre, float("nan"), 0)
         what = f'it is "{claim}"'
-        made = parts_of(what, "unknown", worst, box, CLAIMS[claim], f"no linear form: {problem}")
+        made = judged(what, "unknown", worst, box, CLAIMS[claim], f"no linear form: {problem}")
     return _finish(diagram, intervals, made)
 
 
 def _judge(
     diagram: Diagram, middle: Diagram, box: ValueBox, claim: str, points: int, seed: int
-) -> Parts:
+) -> IntervalClaim:
     """Judge a claim by its name; middle: the diagram with values in the middle of the box."""
     if claim == "stable":
         return judge_stability(middle, box, points, seed)
@@ -81,25 +79,20 @@ def _judge(
 
 
 def _finish(
-    diagram: Diagram, intervals: Mapping[str, tuple[float, float]], made: Parts
+    diagram: Diagram, intervals: Mapping[str, tuple[float, float]], made: IntervalClaim
 ) -> IntervalClaim:
     """The result with all values of the call, in the units of the axis."""
-    starts = {n: float(a) for n, (a, _) in intervals.items()}
-    worst = {n: made["worst"].get(n, v) for n, v in starts.items()}
+    fixed = {n: float(a) for n, (a, _) in intervals.items()}
     texts = {n: [decimal(exact(float(x))) for x in ends] for n, ends in intervals.items()}
     within = ", ".join(f"{n} {low} to {high}" for n, (low, high) in texts.items())
-    axis = first_axis(diagram)
-    turned = use_rotary_units if axis == "revolute" else str
-    unit = turned(f"1 {made['unit']}")[2:]
-    return IntervalClaim(
-        **{
-            **made,
-            "statement": f"{diagram.name}: {made['statement']}, for all {within or 'its values'}",
-            "intervals": {n: (float(a), float(b)) for n, (a, b) in intervals.items()},
-            "worst": worst,
-            "unit": unit,
-            "how": turned(made["how"]),
-            "time": "continuous" if any(not c.analog for c in diagram.controls) else "any",
-            "units": {n: unit_of_value(diagram, n) for n in intervals},
-        }
+    turned = use_rotary_units if first_axis(diagram) == "revolute" else str
+    return replace(
+        made,
+        statement=f"{diagram.name}: {made.statement}, for all {within or 'its values'}",
+        intervals={n: (float(a), float(b)) for n, (a, b) in intervals.items()},
+        worst={n: made.worst.get(n, x) for n, x in fixed.items()},
+        unit=turned(f"1 {made.unit}")[2:],
+        how=turned(made.how),
+        time="continuous" if any(not c.analog for c in diagram.controls) else "any",
+        units={n: unit_of_value(diagram, n) for n in intervals},
     )

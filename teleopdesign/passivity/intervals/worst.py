@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from ...derive.polynomials import roots
 from ..linear.family import Family
 from ..linear.signs import coefficient, degree
 from ..linear.sweep import least_over, margin_of
-from .box import ValueBox
+from .box import IntervalClaim, Status, ValueBox
 
 #: margin at a point of the box, (n,); -inf where the claim fails and no number measures this
 MarginFunction = Callable[[np.ndarray], float]
@@ -120,3 +120,15 @@ def _coefficients(p: Any) -> Callable[[np.ndarray], np.ndarray]:
     forms = [c.as_expr() for c in rising]
     call = sp.lambdify(p.ring.symbols[1:], [sp.sympify(e).evalf(17) for e in forms], "math")
     return lambda point: np.array(call(*(*point, *(0.0,) * (count - len(point)))), dtype=float)
+
+
+def judged(
+    statement: str, status: Status, worst: Worst, box: ValueBox, unit: str, how: str, **more: Any
+) -> IntervalClaim:
+    """The claim from its status, its worst point and its words; more: further fields."""
+    ends = {n: (a, b) for n, a, b in zip(box.names, box.low, box.high, strict=True)}
+    at, nothing = box.named(worst.point), float("nan")
+    made = IntervalClaim(
+        statement, status, ends, at, worst.margin, unit, nothing, worst.points, how
+    )
+    return replace(made, **more)

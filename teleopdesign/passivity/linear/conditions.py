@@ -21,9 +21,9 @@ from typing import Any
 
 import sympy as sp
 
-from ...derive.polynomials import cross
+from ...derive.polynomials import X, as_poly, cross, where_negative
 from .family import Family
-from .matrices import Matrix, close, dampers, determinant
+from .matrices import Matrix, close, dampers, determinant, hold
 from .signs import Signs, axis_unit, coefficient, degree
 
 
@@ -62,9 +62,7 @@ def _modes_decay(signs: Signs, family: Family, n: Matrix, claim: str) -> bool:
 
 def _is_slow(n: Matrix, d: Any) -> bool:
     """Whether what passes from port to port between dampers grows at most like s far out."""
-    held = dampers(n, d)
-    rows = [[e + d * held[i] if i == j else e for j, e in enumerate(row)]
-            for i, row in enumerate(n)]  # fmt: skip
+    rows = hold(n, d, dampers(n, d))
     across = max(degree(n[0][1]), degree(n[1][0]))
     return degree(d) + across <= degree(determinant(rows)) + 1
 
@@ -90,10 +88,7 @@ def take_damping(family: Family, margin: Fraction) -> Matrix:
     if not margin:
         return family.n
     damper = sp.QQ(margin.numerator, margin.denominator)
-    return [
-        [e - family.d * damper if i == j else e for j, e in enumerate(row)]
-        for i, row in enumerate(family.n)
-    ]
+    return hold(family.n, family.d, [-damper] * family.size)
 
 
 def axis_conditions(n: Matrix, d: Any, claim: str) -> Iterator[Any]:
@@ -106,6 +101,12 @@ def axis_conditions(n: Matrix, d: Any, claim: str) -> Iterator[Any]:
     size, x = cross(d, d)[0], d.ring.gens[0]
     yield from (first, second, _divide_out(2 * first * second - re, size))
     yield _divide_out(4 * first * second * (first * second - re) - x * im**2, size)
+
+
+def where_it_fails(family: Family, claim: str) -> list[Fraction]:
+    """Values of x = w^2 at which a condition of the claim on the axis fails; a point, exactly."""
+    tests = axis_conditions(family.n, family.d, claim)
+    return [x for p in tests for x in where_negative(as_poly(p, X))]
 
 
 def hermitian_minors(n: Matrix, d: Any) -> Iterator[Any]:

@@ -32,8 +32,8 @@ from ...diagrams import Diagram
 from ...frequency.late_zeros import count_growing, terms_of, zeros_at_origin
 from ...realise.lti import S
 from .impedance import Impedance, exact
-from .matrices import Matrix, close, cofactors, damper, dampers, determinant, divide_out
-from .signs import Ends
+from .matrices import Matrix, close, cofactors, damper, dampers, determinant, divide_out, hold
+from .signs import Ends, degree
 from .unseen import not_decaying
 
 if TYPE_CHECKING:
@@ -53,6 +53,7 @@ class Family:
     times: symbol of e^(-s T) -> T: a number, or the symbol of a value
     written: Z as it was written, for texts; default: `z`
     resting: zeros of `held` at s = 0 that are free motions of the ports, with dead times
+    unseen: modes of its python-control systems that no port shows and that do not decay, 1/s
     """
 
     n: Matrix
@@ -63,6 +64,7 @@ class Family:
     times: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     written: sp.ImmutableMatrix | None = None
     resting: int = 0
+    unseen: tuple[complex, ...] = ()
 
     @property
     def size(self) -> int:
@@ -90,7 +92,12 @@ class Family:
     @cached_property
     def at(self) -> Evaluation:
         """Values of Z in floats, compiled once."""
-        entries = [_in_floats(e) for e in self.z]
+
+        def in_floats(e: sp.Expr) -> sp.Expr:
+            long = (x for x in e.atoms(sp.Rational) if not x.is_Integer or abs(x) >= 2**31)
+            return e.xreplace({x: sp.Float(x, 17) for x in long})
+
+        entries = [in_floats(e) for e in self.z]
         call, size = sp.lambdify([S, *self.values], entries, "numpy"), self.size
 
         def values(s: np.ndarray, point: Sequence[float] = ()) -> np.ndarray:
@@ -125,16 +132,7 @@ class Family:
     def hides(self) -> bool:
         """Whether the device has modes that no port shows; without values."""
         shown = close(self.n, self.d, dampers(self.n, self.d))
-        return _order(shown) < _order(self.held)
-
-
-def _in_floats(e: sp.Expr) -> sp.Expr:
-    long = (x for x in e.atoms(sp.Rational) if not x.is_Integer or abs(x) >= 2**31)
-    return e.xreplace({x: sp.Float(x, 17) for x in long})
-
-
-def _order(p: Any) -> int:
-    return max((k[0] for k in p), default=-1)
+        return degree(shown) < degree(self.held)
 
 
 def family_at(diagram: Diagram, at: Sequence[Port]) -> Family:
@@ -163,12 +161,7 @@ def family_of_states(
         raise ModelError(f"{states.name}: its ports do not move apart: they have no impedance")
     # above/d is force over position
     s, size = states.ring.gens[0], len(at)
-    held_by = dampers(above, d * s)
-    rows = [
-        [e + s * d * held_by[i] if i == j else e for j, e in enumerate(row)]
-        for i, row in enumerate(above)
-    ]
-    held = determinant(rows)
+    held = determinant(hold(above, d * s, dampers(above, d * s)))
     for _ in range(1, size):
         held = held.exquo(d)
     resting = _count_resting(states, at)
@@ -221,7 +214,7 @@ def family_of_matrix(z: Sequence[Sequence[sp.Expr]]) -> Family:
     placed = {power: marks[time] for power, time in delays.items()}
     ring, *_ = sp.ring((S, *times), sp.QQ)
     pairs = [[_ratio(sp.sympify(e).xreplace(placed), ring) for e in row] for row in z]
-    d = reduce(_lcm, (q for row in pairs for _, q in row))
+    d = reduce(lambda p, q: p * q.exquo(p.gcd(q)), (q for row in pairs for _, q in row))
     n = [[p * d.exquo(q) for p, q in row] for row in pairs]
     written, held = sp.ImmutableMatrix(z), close(n, d, dampers(n, d))
     resting = _count_lost(n, d, times) if times else 0
@@ -233,10 +226,7 @@ def _count_lost(n: Matrix, d: Any, times: Mapping[sp.Symbol, sp.Expr]) -> int:
 
     No polynomial divides by them, because at s = 0 the dead times make them.
     """
-    held = dampers(n, d)
-    rows = [[e + d * held[i] if i == j else e for j, e in enumerate(row)]
-            for i, row in enumerate(n)]  # fmt: skip
-    whole, above = cofactors(rows, d)
+    whole, above = cofactors(hold(n, d, dampers(n, d)), d)
     shared = reduce(lambda a, b: a.gcd(b), above, whole)
     return min((zeros_at_origin(p.exquo(shared), times) for p in (whole, *above) if p), default=0)
 
@@ -254,7 +244,3 @@ def _ratio(e: sp.Expr, ring: Any) -> tuple[Any, Any]:
     p, q = (ring.from_expr(sp.expand(side)) for side in (above, below))
     made: tuple[Any, Any] = p.cancel(q)
     return made
-
-
-def _lcm(p: Any, q: Any) -> Any:
-    return p * q.exquo(p.gcd(q))

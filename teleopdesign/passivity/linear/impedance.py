@@ -122,7 +122,7 @@ def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:
     elif hasattr(system, "isdtime"):
         made = _from_control(system)
     else:
-        made = _from_sympy(system)
+        made = _coprime(*_ratio(read_expression(system, S, "impedance")))
     if motion == "position":
         return _coprime(made.p, made.q * sp.Poly(S, S))
     return made
@@ -148,22 +148,25 @@ def exact(number: Any, where: str = "") -> sp.Rational:
         raise ModelError(f"{where}expected a finite real number, found {text}") from None
 
 
-def _from_sympy(system: Any) -> Impedance:
+def read_expression(system: Any, symbol: sp.Symbol, where: str) -> sp.Expr:
+    """An expression of one symbol, which is known by its name, with exact numbers.
+
+    where: beginning of the message
+    raises ModelError: no expression (a text, which would be run), another symbol, or infinity
+    """
     try:
-        e = sp.sympify(system, strict=True)  # a text would be run
+        e = sp.sympify(system, strict=True)
     except (sp.SympifyError, TypeError, AttributeError):
-        raise ModelError(
-            f"impedance: expected an expression in s, found {describe_value(system)}"
-        ) from None
+        e = None
     if not isinstance(e, sp.Expr) or e.is_Matrix:
-        raise ModelError(f"impedance: expected an expression in s, found {describe_value(system)}")
-    e = e.xreplace({x: S for x in e.free_symbols if x.name == "s"})
-    if others := {x.name for x in e.free_symbols - {S}}:
-        raise ModelError(f"impedance: values are needed for {', '.join(sorted(others))}")
+        wrong = describe_value(system)
+        raise ModelError(f"{where}: expected an expression in {symbol}, found {wrong}")
+    e = e.xreplace({x: symbol for x in e.free_symbols if x.name == symbol.name})
+    if others := {x.name for x in e.free_symbols - {symbol}}:
+        raise ModelError(f"{where}: values are needed for {', '.join(sorted(others))}")
     if e.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
-        raise ModelError(f"impedance: not finite: {e}")
-    e = e.xreplace({x: exact(x) for x in e.atoms(sp.Float, sp.NumberSymbol)})
-    return _coprime(*_ratio(e))
+        raise ModelError(f"{where}: not finite: {e}")
+    return e.xreplace({x: exact(x) for x in e.atoms(sp.Float, sp.NumberSymbol)})
 
 
 def _ratio(e: sp.Expr) -> tuple[sp.Poly, sp.Poly]:
@@ -175,7 +178,10 @@ def _ratio(e: sp.Expr) -> tuple[sp.Poly, sp.Poly]:
     if e.is_Pow and e.exp.is_Integer:
         p, q = _ratio(e.base)
         _check_degree(max(p.degree(), q.degree()) * abs(int(e.exp)))
-        return _powers(p, q, int(e.exp))
+        if e.exp < 0 and p.is_zero:
+            raise ModelError("impedance: division by zero")
+        power = abs(int(e.exp))
+        return (p**power, q**power) if e.exp > 0 else (q**power, p**power)
     if not (e.is_Add or e.is_Mul):
         raise ModelError(f"impedance: not a rational function of s: {e}")
     p, q = _ratio(e.args[0])
@@ -192,12 +198,6 @@ def _ratio(e: sp.Expr) -> tuple[sp.Poly, sp.Poly]:
             p, q = p.quo(common), q.quo(common)
         _check_degree(max(p.degree(), q.degree()))
     return p, q
-
-
-def _powers(p: sp.Poly, q: sp.Poly, power: int) -> tuple[sp.Poly, sp.Poly]:
-    if power < 0 and p.is_zero:
-        raise ModelError("impedance: division by zero")
-    return (p**power, q**power) if power >= 0 else (q**-power, p**-power)
 
 
 def _check_degree(degree: float) -> None:

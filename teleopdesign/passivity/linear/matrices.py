@@ -21,11 +21,16 @@ def divide_out(n: Matrix, d: Any) -> tuple[Matrix, Any]:
     return [[e.exquo(shared) for e in row] for row in n], d.exquo(shared)
 
 
+def hold(n: Matrix, d: Any, held: Sequence[Any]) -> list[list[Any]]:
+    """Numerators of N/d + diag(held)."""
+    return [
+        [e + d * held[i] if i == j else e for j, e in enumerate(row)] for i, row in enumerate(n)
+    ]
+
+
 def close(n: Matrix, d: Any, held: Sequence[Any]) -> Any:
     """Denominator of (N/d + diag(held))^-1: its roots are the modes that the ports show."""
-    rows = [[e + d * held[i] if i == j else e for j, e in enumerate(row)]
-            for i, row in enumerate(n)]  # fmt: skip
-    return inverse_denominator(rows, d)
+    return inverse_denominator(hold(n, d, held), d)
 
 
 def inverse_denominator(rows: Matrix, below: Any) -> Any:

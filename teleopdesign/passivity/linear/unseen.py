@@ -16,7 +16,7 @@ from ...derive.polynomials import as_poly, element, fraction, is_hurwitz, roots_
 from ...diagrams import Block, Diagram
 from ...realise.lti import S
 from .impedance import exact
-from .matrices import determinant
+from .matrices import determinant, hold
 
 #: share of its size by which a root may lie on the left by rounding alone
 _NEAR = 1e-9
@@ -49,11 +49,7 @@ def unseen_modes(system: Any) -> tuple[complex, ...]:
     made = [[resolvent(a, [row[j] for row in b], c[i]) for j in places] for i in places]
     d = _in_ring(made[0][0][0])
     n = [[_in_ring(made[i][j][1]) + _in_ring([straight[i][j]]) * d for j in places] for i in places]
-    loose, tight = (
-        determinant([[e + (i == j) * factor * d for j, e in enumerate(row)]
-                     for i, row in enumerate(n)])
-        for factor in (sp.QQ(1), sp.QQ(3))
-    )  # fmt: skip
+    loose, tight = (determinant(hold(n, d, [sp.QQ(c)] * len(n))) for c in (1, 3))
     shared = loose.gcd(tight)
     for _ in places[1:]:
         shared = shared.exquo(d)
@@ -67,11 +63,8 @@ def unseen_within(part: Block) -> tuple[complex, ...]:
     states = all_states(Diagram(part.name, (part,), (), outside, ()))
     d, n = states.solve(part.outputs, tuple(dict.fromkeys(part.inputs)))
     shared = reduce(lambda a, b: a.gcd(b), (e for row in n for e in row), d)
-    return not_decaying(as_poly(shared, S)) if d and not any(map(any, _late(shared))) else ()
-
-
-def _late(p: Any) -> list[tuple[int, ...]]:
-    return [k[1:] for k in p]
+    is_late = any(any(k[1:]) for k in shared)
+    return not_decaying(as_poly(shared, S)) if d and not is_late else ()
 
 
 def _polynomial(falling: Sequence[float]) -> sp.Poly:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import cast
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -25,6 +25,7 @@ from ...derive.polynomials import even_part, fraction, where_negative
 from ...realise.lti import S
 from ..linear.gaussian import square_root
 from ..linear.impedance import Impedance
+from ..rate_independent import AbstractRecord
 
 LONGEST = 500  # most periods of a wave that are sampled; each of them releases energy
 _DIGITS = 40  # decimal digits of a first numerical value
@@ -39,7 +40,7 @@ ROUNDING = 2.0**-48
 
 
 @dataclass(frozen=True)
-class GrowingWave:
+class GrowingWave(AbstractRecord):
     """A growing wave at the ports of an impedance: v(t) = Re(V e^(s t)) for t <= 0.
 
     impedance: forces over velocities, N s/m, n by n, in `realise.lti.S`
@@ -51,6 +52,7 @@ class GrowingWave:
     rate: Fraction
     frequency: Fraction
     velocity: tuple[complex, ...]
+    kind = "growing wave"
 
     @property
     def s(self) -> complex:
@@ -68,19 +70,16 @@ class GrowingWave:
         z, v = self.value, np.array(self.velocity)
         return float(-((v.conj() @ z @ v).real / self.s.real + (v @ z @ v / self.s).real) / 4)
 
-    def samples(self, number: int = 20001) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def samples(self, number: int | None = 20001) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Samples of the last part of the wave: time, velocities and forces.
 
-        The span is twelve time constants of growth, or LONGEST periods if they are shorter. If all
-        poles decay, or grow slower than the wave, the force is also that of a motion that started
-        from rest, after its transient.
+        If all poles decay, or grow slower than the wave, the force is also that of a motion that
+        started from rest, after its transient.
 
+        number: of samples, see `last_part`
         returns: time (n,), s; velocities (n, ports), m/s; forces (n, ports), N
         """
-        span = 12.0 / self.s.real
-        if self.frequency:
-            span = min(span, LONGEST * 2 * math.pi / self.s.imag)
-        t = np.linspace(-span, 0.0, number)
+        t, _ = last_part(self.s, number)
         wave = np.exp(self.s * t)[:, None] * np.array(self.velocity)
         return t, wave.real, (wave @ self.value.T).real
 
@@ -89,23 +88,25 @@ class GrowingWave:
 
         0 where the sum is no larger than the rounding of its terms, because it then shows nothing.
         """
-        periods = min(12.0 * self.s.imag / self.s.real / (2 * math.pi), LONGEST)
-        t, v, f = self.samples(2 * int(500 * (1 + periods)) + 1)
-        power = (f * v).sum(axis=1)
-        weights = np.ones(len(t))  # Simpson's rule
-        weights[1:-1:2], weights[2:-1:2] = 4, 2
-        return float(-(t[1] - t[0]) / 3 * drop_rounding(weights * power))
+        _, v, f = self.samples(None)
+        return -drop_rounding(last_part(self.s)[1] * (f * v).sum(axis=1))
 
-    def as_dict(self) -> dict[str, object]:
-        """Plain data, to be written as JSON."""
-        return {
-            "kind": "growing wave",
-            "impedance": [[str(e) for e in row] for row in self.impedance.tolist()],
-            "rate": str(self.rate),
-            "frequency": str(self.frequency),
-            "velocity": [[v.real, v.imag] for v in self.velocity],
-            "energy": self.energy,
-        }
+
+def last_part(s: complex, number: int | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Times of the last part of a motion that grows as e^(s t), and weights of an integral over it.
+
+    The part is twelve time constants of growth (what came before is 1e-10 of it), or LONGEST
+    periods if they are shorter. The weights are those of Simpson's rule.
+
+    number: of times, odd; default: a thousand in each period, and in the whole
+    """
+    span = 12.0 / s.real
+    if s.imag:
+        span = min(span, LONGEST * 2 * math.pi / s.imag)
+    t = np.linspace(-span, 0.0, number or 2 * int(500 * (1 + span * s.imag / (2 * math.pi))) + 1)
+    weights = np.ones(len(t))
+    weights[1:-1:2], weights[2:-1:2] = 4, 2
+    return t, (t[1] - t[0]) / 3 * weights
 
 
 def drop_rounding(terms: np.ndarray) -> float:
@@ -137,16 +138,15 @@ def _evaluate_precisely(
     with mpmath.workdps(digits):
         s = mpmath.mpc(*(mpmath.mpf(x.numerator) / x.denominator for x in (rate, frequency)))
         try:
-            return np.array([[complex(x) for x in row] for row in _numerical(z)(s)])
+            return np.array([[complex(x) for x in row] for row in _compiled(z, "mpmath")(s)])
         except (ZeroDivisionError, OverflowError):
             return np.full(z.shape, np.nan, dtype=complex)
 
 
-@lru_cache(maxsize=8)
-def _numerical(z: sp.ImmutableMatrix) -> Callable[[mpmath.mpc], list[list[mpmath.mpc]]]:
-    return cast(
-        "Callable[[mpmath.mpc], list[list[mpmath.mpc]]]", sp.lambdify(S, z.tolist(), "mpmath")
-    )
+@lru_cache(maxsize=16)
+def _compiled(z: sp.ImmutableMatrix, library: str) -> Callable[[Any], list[list[Any]]]:
+    made: Callable[[Any], list[list[Any]]] = sp.lambdify(S, z.tolist(), library)
+    return made
 
 
 def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
@@ -179,18 +179,11 @@ def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> Growi
 def _is_plainly_passive(z: sp.ImmutableMatrix, s: complex) -> bool:
     """Whether Z + Z^H at s is positive by far more than rounding, computed in double precision."""
     with np.errstate(all="ignore"):
-        value = np.array(_compile_in_doubles(z)(np.complex128(s)), dtype=complex)
+        value = np.array(_compiled(z, "numpy")(np.complex128(s)), dtype=complex)
     if not np.all(np.isfinite(value)):
         return False
     lowest = np.linalg.eigvalsh((value + value.conj().T) / 2)[0]
     return bool(lowest > _PLAIN * np.abs(value).max())
-
-
-@lru_cache(maxsize=8)
-def _compile_in_doubles(z: sp.ImmutableMatrix) -> Callable[[np.complex128], list[list[complex]]]:
-    return cast(
-        "Callable[[np.complex128], list[list[complex]]]", sp.lambdify(S, z.tolist(), "numpy")
-    )
 
 
 def first_wave(
@@ -215,16 +208,12 @@ def growing_wave(z: Impedance) -> GrowingWave | None:
     growing = [w for w in waves if w is not None]
     # the one that grows fastest against its frequency is the plainest to look at
     best = max(growing, key=lambda w: w.rate / w.frequency, default=None)
-    if best is not None and _share(best) > _WEAKEST:
-        return best
+    if best is not None:
+        at = complex(best.value[0, 0])
+        if -at.real / abs(at) > _WEAKEST:
+            return best
     # a mode that grows shows more, where a zero beside it hides it from the axis
     return _find_at_growing_mode(z) or best
-
-
-def _share(wave: GrowingWave) -> float:
-    """-Re Z over abs(Z) at the wave of a one-port: the share that releases energy."""
-    z = complex(wave.value[0, 0])
-    return -z.real / abs(z)
 
 
 def halvings(start: Fraction, number: int) -> Iterable[Fraction]:

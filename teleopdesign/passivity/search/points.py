@@ -1,54 +1,29 @@
-"""Points s of the right half plane at which a search for growing motions looks, 1/s."""
+"""Search for growing motions of a family at a point: where to look, and waves out of its ports.
+
+The search starts beside frequencies with a negative margin, beside poles and over the right half
+plane. Without dead times it knows these frequencies exactly, and modes that grow between dampers.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
 
 import numpy as np
+import sympy as sp
 
 from ...derive.polynomials import roots_of
+from ..linear.conditions import where_it_fails
 from ..linear.family import Family
+from ..linear.gaussian import ZERO, add, multiply, value_at
+from ..linear.matrices import close, dampers
+from ..linear.sweep import passive_margin, zeros_and_poles
+from .growing_wave import GrowingWave, growing_wave, halvings, wave_of
 
+#: most points with a termination that are tested for a motion, a millisecond each
+_MOST = 40
 #: powers of 1/2 by which points approach the axis or a pole, or (reversed) go far out
 _CLOSER = tuple(range(1, 34, 2))
-#: places across a resonance, in half widths from its frequency: the real part of an entry changes
-#: its sign within the first half width
-_ACROSS = (-30.0, -10.0, -3.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 3.0, 10.0, 30.0)
-
-
-def zeros_and_poles(family: Family) -> tuple[np.ndarray, np.ndarray]:
-    """Zeros and poles of the parts of all entries, one part for each dead time; without values."""
-    above, below = [np.zeros(0)], [np.zeros(0)]
-    whole = _parts(family.d)
-    for row in family.n:
-        for entry in row:
-            for p in _parts(entry):
-                for q in whole:
-                    top, bottom = p.cancel(q)
-                    above.append(roots_of(top))
-                    below.append(roots_of(bottom))
-    return np.concatenate(above), np.concatenate(below)
-
-
-def _parts(p: Any) -> list[Any]:
-    """Coefficients of the powers of dead times, polynomials in s alone."""
-    made: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-    for k, c in p.items():
-        made.setdefault(k[1:], {})[(k[0], *(0 for _ in k[1:]))] = c
-    return [p.ring(part) for part in made.values()]
-
-
-def resonances(family: Family) -> np.ndarray:
-    """Frequencies across the width of each resonance, Hz, (n,): a grid alone may miss one.
-
-    Poles on the axis have no width and are left out.
-    """
-    _, poles = zeros_and_poles(family)
-    poles = poles[poles.real < -1e-12 * np.abs(poles)]
-    across = poles.imag[:, None] + poles.real[:, None] * np.array(_ACROSS)
-    f = across.ravel() / (2 * np.pi)
-    return np.asarray(f[(f > 0) & np.isfinite(f)])
 
 
 def near_poles(family: Family) -> np.ndarray:
@@ -79,18 +54,16 @@ def near_axis(frequencies: Sequence[float], closer: Sequence[int]) -> np.ndarray
     return np.asarray((w[:, None] * (2.0 ** -np.array(closer, dtype=float) + 1j)).ravel())
 
 
-def candidates(
-    values: Sequence[np.ndarray], points: np.ndarray
-) -> list[tuple[complex, complex, bool]]:
+def candidates(family: Family, points: np.ndarray) -> list[tuple[complex, complex, bool]]:
     """Points at which two passive terminations seem to make a two-port grow, the best one first.
 
     At such a point the near port with its termination -z_in(s) would grow, and -z_in(s) is a value
     that a passive termination can have. Numerical.
 
-    values: z11, z12, z21, z22 at each point, each (n,);  points: s, 1/s, (n,)
-    returns: (s, value of the far termination, whether the far port is port 1)
+    family: of two ports;  points: s, 1/s, (n,)
+    returns: (s, value of the far termination, whether the far port is port 1), of the best points
     """
-    z11, z12, z21, z22 = values
+    z11, z12, z21, z22 = family.at(points).reshape(-1, 4).T
     with np.errstate(all="ignore"):
         loop = z12 * z21
     scored = [
@@ -98,7 +71,7 @@ def candidates(
         *_score_points(z22, loop, z11, points, True),
     ]
     scored.sort(key=lambda one: -one[0])
-    return [one[1:] for one in scored]
+    return [one[1:] for one in scored[:_MOST]]
 
 
 def _score_points(
@@ -143,3 +116,83 @@ def _best_far(loop: np.ndarray, z22: np.ndarray, s: np.ndarray) -> np.ndarray:
         r = z22.real + np.abs(r * slope - z22.imag) * share
     second = r - z22.real + 1j * (r * slope - z22.imag)
     return np.where(np.isfinite(second) & (s.imag > 0), second, 0)
+
+
+#: of the plainest and of the strongest points: so many are tested exactly
+_TESTED = 20
+
+
+def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWave | None:
+    """A wave that takes energy out of the ports; None where the search has no result.
+
+    frequencies: where to look, Hz, besides those that are known exactly
+    """
+    if family.size == 1 and not family.times:
+        return growing_wave(family.impedance)
+    parts = [near_poles(family), near_axis(frequencies, range(33))]
+    if not family.times:
+        places = where_it_fails(family, "passive")
+        parts += [
+            near_axis([float(x) ** 0.5 / (2 * np.pi) for x in places], range(33)),
+            _modes_between_dampers(family),
+        ]
+    points = np.concatenate(parts)
+    z = family.at(points)
+    finite = np.isfinite(z).all(axis=(1, 2))
+    points, z = points[finite], z[finite]
+    share = passive_margin(z) / np.abs(z).max(axis=(1, 2)) * points.real / np.abs(points)
+    size = np.abs(np.log(np.abs(points) / np.median(np.abs(points))))
+    plainest = np.lexsort((size, np.round(share, 2)))[:_TESTED]  # of equals, neither slow nor fast
+    strongest = np.argsort(share)[:_TESTED]  # where all are weak, rounded shares are all alike
+    for k in dict.fromkeys([*plainest, *strongest]):
+        at = Fraction(points[k].real), Fraction(points[k].imag)
+        wave = wave_of(family.z, *at)
+        if wave is not None and wave.energy > 0 and (family.times or _takes_out(family, wave)):
+            return wave
+    return select_fastest(wave_at(family.z, f) for f in frequencies)
+
+
+def select_fastest(waves: Iterable[GrowingWave | None]) -> GrowingWave | None:
+    """The wave that grows fastest relative to its frequency; None where there is no wave."""
+    growing = [w for w in waves if w is not None]
+    return max(growing, key=lambda w: w.rate / (w.frequency or w.rate), default=None)
+
+
+def wave_at(z: sp.ImmutableMatrix, frequency: float) -> GrowingWave | None:
+    """A growing wave at about that frequency (Hz) that releases energy; None where there is none.
+
+    The rate of growth is halved until a wave releases energy, down to 2^-30 of the frequency: a
+    margin below this share is near rounding.
+    """
+    w = Fraction(2 * np.pi * frequency)
+    for rate in halvings(8 * w, 33):
+        wave = wave_of(z, rate, w)
+        if wave is not None and wave.energy > 0:
+            return wave
+    return None
+
+
+def _modes_between_dampers(family: Family) -> np.ndarray:
+    """Modes that grow between dampers of several strengths: there Z + Z^H is negative, 1/s."""
+    made = [np.zeros(0, dtype=complex)]
+    for factor in (1, 64, Fraction(1, 64)):
+        held = [
+            c * sp.QQ(*Fraction(factor).as_integer_ratio()) for c in dampers(family.n, family.d)
+        ]
+        made.append(roots_of(close(family.n, family.d, held)))
+    s = np.concatenate(made)
+    s = np.where(np.abs(s.imag) < 1e-12 * np.abs(s), s.real, s)
+    return s[(s.real > 0) & (s.imag >= 0)]
+
+
+def _takes_out(family: Family, wave: GrowingWave) -> bool:
+    """Whether V^H (Z + Z^H) V < 0 at the wave, exactly; V: its velocities, read as fractions."""
+    v = [(Fraction(x.real), Fraction(x.imag)) for x in wave.velocity]
+    at, total = (wave.rate, wave.frequency), ZERO
+    for (re, im), row in zip(v, family.n, strict=True):
+        for entry, other in zip(row, v, strict=True):
+            value = value_at(entry, family.d, at)
+            if value is None:
+                return False
+            total = add(total, multiply(multiply((re, -im), value), other))
+    return total[0] < 0

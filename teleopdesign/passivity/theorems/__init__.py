@@ -20,15 +20,11 @@ from ._theorem import Question, Theorem, TopicClaim, Wall
 __all__ = ["THEOREMS", "Question", "Theorem", "TopicClaim", "Wall", "settle"]
 
 
-def _theorems() -> Mapping[str, Theorem]:
-    names = sorted(p.stem for p in Path(__file__).parent.glob("*.py") if p.stem[0] != "_")
-    modules = {name: importlib.import_module(f"{__name__}.{name}") for name in names}
-    stated = {n: m.THEOREM for n, m in modules.items()}
-    by_order = sorted(stated.items(), key=lambda item: item[1].order)
-    return Catalogue(dict(by_order), "theorem")
-
-
-THEOREMS: Mapping[str, Theorem] = _theorems()
+_NAMES = sorted(p.stem for p in Path(__file__).parent.glob("*.py") if p.stem[0] != "_")
+_STATED = {name: importlib.import_module(f"{__name__}.{name}").THEOREM for name in _NAMES}
+THEOREMS: Mapping[str, Theorem] = Catalogue(
+    dict(sorted(_STATED.items(), key=lambda item: item[1].order)), "theorem"
+)
 
 
 def settle(
@@ -41,19 +37,13 @@ def settle(
     """
     answers = []
     for theorem in THEOREMS.values() if theorems is None else theorems:
-        if not theorem.applies(question):
-            continue
-        covered = theorem.covers(question)
         for one in theorem.claims(question):
+            covered = theorem.covers(question)
             claim = restate_for_device(question.device, one.claim, besides=covered)
             one = replace(one, claim=claim)
-            answers.append(_replay(theorem, one) if simulated else one)
+            if simulated and isinstance(claim.verdict, Refutation):
+                motion = theorem.simulate(claim.record)
+                if motion is not None:
+                    one = replace(one, replayed=motion.energy, motion=motion)
+            answers.append(one)
     return answers
-
-
-def _replay(theorem: Theorem, one: TopicClaim) -> TopicClaim:
-    """A refuted claim with its motion replayed in simulation, if the theorem can simulate it."""
-    if not isinstance(one.claim.verdict, Refutation):
-        return one
-    motion = theorem.simulate(one.claim.record)
-    return one if motion is None else replace(one, replayed=motion.energy, motion=motion)

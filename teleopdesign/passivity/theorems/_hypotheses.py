@@ -1,11 +1,11 @@
-"""Hypotheses of a theorem about its numbers: stated beside it, and checked at every call.
+"""Hypotheses of a theorem about its numbers: types of its arguments, checked at every call.
 
-    @require_hypotheses(damping=NOT_NEGATIVE, sample_time=POSITIVE, controller=FREE)
-    def sampled_passivity(controller, *, damping, sample_time): ...
+    @require_hypotheses
+    def sampled_passivity(controller: Free, *, damping: NotNegative, sample_time: Positive): ...
 
-A number outside of the hypotheses is refused in one line, because the theorem does not hold for it.
-A theorem receives its numbers exactly, as rationals, and states them for a prismatic axis; with
-`axis="revolute"` the claim is in the units of that axis.
+A number outside of the hypotheses is refused in one line (ModelError), because the theorem does not
+hold for it. A theorem receives its numbers exactly, as rationals, and states them for a prismatic
+axis; with `axis="revolute"` the claim is in the units of that axis.
 """
 
 from __future__ import annotations
@@ -15,14 +15,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import wraps
-from typing import Any
+from typing import Annotated, Any, get_args
 
 import sympy as sp
 
 from ...base.errors import ModelError, did_you_mean
 from ...base.units import AXES
-from ..claims.axis_units import use_units_of
-from ..claims.claim import Claim
+from ..claims.claim import Claim, use_units_of
 from ..linear.impedance import exact
 
 Claiming = Callable[..., Claim]
@@ -92,37 +91,43 @@ def one_of(*values: Any) -> Hypothesis:
     return Hypothesis(text, lambda x: x in values, (max(values) + 1, min(values) - 1, 0.5))
 
 
-def require_hypotheses(**hypotheses: Hypothesis) -> Callable[[Claiming], Claiming]:
-    """Decorator of a theorem on numbers: checks a hypothesis for each argument at every call.
+Positive = Annotated[Any, POSITIVE]
+PositiveOrNone = Annotated[Any, POSITIVE.or_none()]
+NotNegative = Annotated[Any, NOT_NEGATIVE]
+Real = Annotated[Any, REAL]
+Whole = Annotated[int, WHOLE]
+Free = Annotated[Any, FREE]
+
+
+def require_hypotheses(function: Claiming) -> Claiming:
+    """Decorator of a theorem on numbers: checks the hypothesis of each argument at every call.
 
     The theorem has one more argument, `axis`: "prismatic" or "revolute".
 
     raises ModelError: at a call, an argument that violates its hypothesis; at the definition, an
         argument without a hypothesis
     """
+    signature = inspect.signature(function, eval_str=True)
+    notes = {n: get_args(p.annotation) for n, p in signature.parameters.items()}
+    hypotheses = {n: h for n, found in notes.items() for h in found if isinstance(h, Hypothesis)}
+    if odd := sorted(set(notes) - set(hypotheses)):
+        raise ModelError(f"{function.__name__}: arguments without hypothesis: {odd}")
 
-    def with_hypotheses(function: Claiming) -> Claiming:
-        signature = inspect.signature(function)
-        if odd := sorted(set(signature.parameters) ^ set(hypotheses)):
-            raise ModelError(f"{function.__name__}: without hypothesis, or no argument: {odd}")
+    @wraps(function)
+    def call(*arguments: Any, axis: str = "prismatic", **named: Any) -> Claim:
+        if axis not in AXES:
+            raise ModelError(
+                f'{function.__name__}: axis: found "{axis}", expected {" or ".join(AXES)}'
+                f"{did_you_mean(str(axis), AXES)}"
+            )
+        bound = signature.bind(*arguments, **named)
+        bound.apply_defaults()
+        for name, value in bound.arguments.items():
+            bound.arguments[name] = _receive(function.__name__, name, value, hypotheses[name])
+        return use_units_of(axis, function(*bound.args, **bound.kwargs))
 
-        @wraps(function)
-        def call(*arguments: Any, axis: str = "prismatic", **named: Any) -> Claim:
-            if axis not in AXES:
-                raise ModelError(
-                    f'{function.__name__}: axis: found "{axis}", expected {" or ".join(AXES)}'
-                    f"{did_you_mean(str(axis), AXES)}"
-                )
-            bound = signature.bind(*arguments, **named)
-            bound.apply_defaults()
-            for name, value in bound.arguments.items():
-                bound.arguments[name] = _receive(function.__name__, name, value, hypotheses[name])
-            return use_units_of(axis, function(*bound.args, **bound.kwargs))
-
-        call.hypotheses = hypotheses  # type: ignore[attr-defined]
-        return call
-
-    return with_hypotheses
+    call.hypotheses = hypotheses  # type: ignore[attr-defined]
+    return call
 
 
 def _receive(function: str, name: str, value: Any, needs: Hypothesis) -> Any:

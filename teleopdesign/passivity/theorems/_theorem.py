@@ -6,17 +6,28 @@ hypotheses. Its `THEOREM` says which questions about a device or a diagram the t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any, Literal
 
+import sympy as sp
+
+from ...base.errors import ModelError
 from ...base.frozen import ByValue
-from ...controllers import Stage
+from ...blocks import Body, Value
+from ...controllers import Stage, controller, laws_that_declare
+from ...diagrams import haptic_interface
+from ...effects import EFFECTS
 from ...simulate import Sampling
 from ..claims.claim import Claim, Counterexample, Proof, Refutation, Unknown
 from ..identified import IdentifiedDevice
 from ..law_facts import ANY_TIME, LawFacts, law_facts
-from ..search.by_simulation import SimulatedMotion
+from ..rate_independent import Coulomb, Cycle, Dahl
+from ..search.by_simulation import SimulatedMotion, confirmed_motion
+from ..search.growing_wave import first_wave
+from ..search.stroke_motion import Strokes
 from ._hypotheses import hypotheses_of
 
 Time = Literal["continuous", "sampled", "any"]
@@ -101,6 +112,14 @@ class TopicClaim(ByValue):
     spends_damping: bool = False
     time: Time = "continuous"
 
+    @classmethod
+    def searched(cls, topic: str, claim: Claim) -> TopicClaim:
+        """A claim that a search decided, whose motion was replayed in simulation."""
+        verdict = claim.verdict
+        if isinstance(verdict, Refutation) and isinstance(verdict.record, SimulatedMotion):
+            return cls(topic, claim, verdict.replayed, verdict.record)
+        return cls(topic, claim)
+
     @property
     def heading(self) -> str:
         """Status of the claim in words; a proof for continuous time alone says so."""
@@ -115,15 +134,14 @@ class Theorem:
     mathematics: functions of numbers with their hypotheses (`require_hypotheses`). All claims come
         from these functions, so no claim is made outside of the hypotheses
     order: place among all theorems: continuous time before computers, friction before walls
-    applies: whether the theorem answers a question; default: it is about numbers alone
-    claims: the claims that answer a question, about friction, walls and computers alone
+    claims: the claims that answer a question, about friction, walls and computers alone; none where
+        the theorem says nothing about it. Default: the theorem is about numbers alone
     covers: names of further effects of the device that the theorem covers
     simulate: the motion of a refutation in the compiled simulation; None where not confirmed
     """
 
     mathematics: tuple[Callable[..., Claim], ...]
     order: int
-    applies: Callable[[Question], bool] = lambda question: False
     claims: Callable[[Question], Sequence[TopicClaim]] = lambda question: ()
     covers: Callable[[Question], Sequence[str]] = lambda question: ()
     simulate: Callable[[Counterexample], SimulatedMotion | None] = lambda motion: None
@@ -159,6 +177,49 @@ def refute(
     return Claim(statement, Refutation(how if isinstance(how, str) else how(record), record))
 
 
+def refute_by_wave(
+    statement: str, z: sp.Expr, points: Iterable[tuple[Fraction, Fraction]]
+) -> Claim:
+    """A claim about an impedance (N s/m) that a growing wave refutes, or that is unknown.
+
+    points: rate (1/s) and frequency (rad/s), at which a wave is searched in turn
+    """
+    wave = first_wave(sp.ImmutableMatrix([[z]]), points)
+    how = wave and f"a growing wave at {float(wave.frequency) / (2 * math.pi):.4g} Hz"
+    return refute(statement, wave, how or "", "the condition fails, but no wave was found")
+
+
 def leave_open(topic: str, statement: str, why: str, **more: Any) -> TopicClaim:
     """A claim that no theorem answers."""
     return TopicClaim(topic, Claim(statement, Unknown(why)), **more)
+
+
+def simulate_cycle(cycle: Counterexample) -> SimulatedMotion | None:
+    """Simulate a refuting cycle of one friction element with a Dahl compensator.
+
+    returns: the confirmed motion. None where the simulation does not confirm a release of energy
+        (as close to a limit), would take too long, or where the counterexample is no cycle of one
+        element
+    """
+    if not isinstance(cycle, Cycle) or len(cycle.friction) != 1:
+        return None
+    friction, helps = cycle.friction[0], cycle.compensator
+    if not isinstance(friction, Coulomb | Dahl):
+        return None
+    body = Body("prismatic", {"inertia": Value(1e-3)})
+    body = body.with_effect(EFFECTS["coulomb"], {"level": friction.level})
+    lengths = [helps.level / helps.stiffness]
+    if isinstance(friction, Dahl):
+        presliding = EFFECTS["presliding"].without("bristle_damping")
+        body = body.with_effect(presliding, {"stiffness": friction.stiffness})
+        lengths.append(friction.level / friction.stiffness)
+    bristle = laws_that_declare("bristle_stiffness")[0]
+    values = {bristle.bound: helps.level, bristle.bristle_stiffness: helps.stiffness}
+    law = controller(bristle.name, values)
+    # friction does not depend on speed: a stroke takes about 10 ms
+    strokes = Strokes(cycle.turning_points, speed=300 * max(map(abs, cycle.turning_points)))
+    deflection = min(*lengths, *map(abs, cycle.turning_points)) / 1000
+    try:
+        return confirmed_motion(haptic_interface(body, cancellation=law), strokes, give=deflection)
+    except ModelError:  # lengths so far apart that a simulation of it would take too many steps
+        return None

@@ -19,16 +19,15 @@ from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Cycle, Dahl, symmetric_cycle
 from ._certificates import certificate
-from ._cycle_simulation import simulate_cycle
-from ._hypotheses import POSITIVE, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim, decide
+from ._hypotheses import Positive, require_hypotheses
+from ._theorem import Question, Theorem, TopicClaim, decide, simulate_cycle
 
 #: N/m for each N of level: a bristle so stiff that its length does not matter to a hand
 _STIFFEST = 1e3
 
 
-@require_hypotheses(coulomb_level=POSITIVE, bound=POSITIVE)
-def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
+@require_hypotheses
+def bounded_compensation(*, coulomb_level: Positive, bound: Positive) -> Claim:
     """Is Coulomb friction passive together with any compensator whose force is within a bound?
 
     The bound is the only condition, so the compensator may be sampled, delayed, quantised or driven
@@ -36,7 +35,6 @@ def bounded_compensation(*, coulomb_level: Any, bound: Any) -> Claim:
 
     coulomb_level: f_C, N;  bound: f_D, N
     returns: proved if and only if f_D <= f_C; else refuted by a Dahl compensator in a cycle
-    raises ModelError: an argument that is not > 0
     """
     f_c, f_d = coulomb_level, bound
     return decide(
@@ -80,7 +78,9 @@ def proof_of_level(
 
 def _claims(question: Question) -> list[TopicClaim]:
     device, bound = question.device, question.law.bound
-    assert bound is not None
+    # for friction that deflects before it slides, a bound of the force alone is not sufficient
+    if bound is None or device.presliding is not None:
+        return []
     acting, time = device.acting_force(bound), question.time_of_bound
     claims = [TopicClaim("any law within the level", _compare_level(device, acting), time=time)]
     if question.estimates:
@@ -111,15 +111,13 @@ def _compare_at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
 
 def _covers(question: Question) -> Sequence[str]:
     """Effects of the actuation, where the bound of the acting force is known."""
-    bound = question.law.bound
-    assert bound is not None
-    return () if math.isinf(question.device.acting_force(bound)) else question.device.actuation
+    device, bound = question.device, question.law.bound
+    is_known = bound is not None and math.isfinite(device.acting_force(bound))
+    return device.actuation if is_known else ()
 
 
 THEOREM = Theorem(
     mathematics=(bounded_compensation,),
-    # for friction that deflects before it slides, a bound of the force alone is not sufficient
-    applies=lambda q: q.device.presliding is None and q.law.bound is not None,
     claims=_claims,
     order=10,
     covers=_covers,

@@ -9,40 +9,39 @@ link; and no release of energy in slow free motion, where friction f_2 alone hol
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ..claims.claim import Claim, Evidence, Proof, Refutation
 from ..linear.impedance import decimal
-from ..rate_independent import Coulomb, Cycle, Dahl, Element, Spring, lost_share, symmetric_cycle
+from ..rate_independent import (
+    AbstractElement,
+    Coulomb,
+    Cycle,
+    Dahl,
+    Spring,
+    lost_share,
+    strongest,
+    symmetric_cycle,
+)
 from ._certificates import certificate
-from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
+from ._hypotheses import Free, NotNegative, Positive, Whole, require_hypotheses
 from ._theorem import Theorem
 from .dahl_compensation import dahl_compensation
 
 
-@require_hypotheses(
-    motor_level=POSITIVE,
-    link_level=NOT_NEGATIVE,
-    transmission_stiffness=POSITIVE,
-    compensator_level=POSITIVE,
-    compensator_stiffness=POSITIVE,
-    motor_inertia=POSITIVE,
-    link_inertia=POSITIVE,
-    transmission_damping=NOT_NEGATIVE,
-)
+@require_hypotheses
 def any_environment(
     *,
-    motor_level: Any,
-    link_level: Any,
-    transmission_stiffness: Any,
-    compensator_level: Any,
-    compensator_stiffness: Any,
-    motor_inertia: Any = 1,
-    link_inertia: Any = 1,
-    transmission_damping: Any = 0,
+    motor_level: Positive,
+    link_level: NotNegative,
+    transmission_stiffness: Positive,
+    compensator_level: Positive,
+    compensator_stiffness: Positive,
+    motor_inertia: Positive = 1,
+    link_inertia: Positive = 1,
+    transmission_damping: NotNegative = 0,
 ) -> Claim:
     """Is the joint passive for any environment and any stroke: if and only if f_D <= f_1?
 
@@ -53,7 +52,6 @@ def any_environment(
     motor_inertia, link_inertia: kg;  transmission_damping: c, N s/m
     returns: proved; else refuted by a cycle of the motor, with the link clamped and the force of
         the spring balanced by the environment
-    raises ModelError: an argument outside of its hypothesis
     """
     f_1, f_d = motor_level, compensator_level
     statement = (
@@ -82,24 +80,16 @@ def any_environment(
     return Claim(statement, Proof(method, (made,), float(f_1 - f_d), "N", equality))
 
 
-@require_hypotheses(
-    motor_level=POSITIVE,
-    link_level=POSITIVE,
-    transmission_stiffness=POSITIVE,
-    compensator_level=POSITIVE,
-    compensator_stiffness=POSITIVE,
-    rng=FREE,
-    paths=WHOLE,
-)
+@require_hypotheses
 def free_motion(
     *,
-    motor_level: float,
-    link_level: float,
-    transmission_stiffness: float,
-    compensator_level: float,
-    compensator_stiffness: float,
-    rng: np.random.Generator | int = 0,
-    paths: int = 2000,
+    motor_level: Positive,
+    link_level: Positive,
+    transmission_stiffness: Positive,
+    compensator_level: Positive,
+    compensator_stiffness: Positive,
+    rng: Free = 0,
+    paths: Whole = 2000,
 ) -> Claim:
     """Does slow free motion of the joint never release energy?
 
@@ -113,13 +103,12 @@ def free_motion(
     compensator_level: f_D, N;  compensator_stiffness: sigma_D, N/m
     rng: draws the random paths, or the seed of the generator that does;  paths: their number
     returns: refuted by a closed path, or evidence, because the searched paths are not all motions
-    raises ModelError: an argument outside of its hypothesis
     """
     rng, levels = np.random.default_rng(rng), (motor_level, link_level, compensator_level)
     f_1, f_2, f_d = map(float, levels)
     k, sigma = float(transmission_stiffness), float(compensator_stiffness)
     helps = Dahl(f_d, sigma)
-    against: list[Element] = [Coulomb(f_1), Spring(f_2, k)]
+    against: list[AbstractElement] = [Coulomb(f_1), Spring(f_2, k)]
     texts = [decimal(x) for x in (*levels, transmission_stiffness, compensator_stiffness)]
     statement = (
         f"slow free motion of a joint (motor {texts[0]} N, link {texts[1]} N behind {texts[3]} "
@@ -132,9 +121,9 @@ def free_motion(
         compensator_level=f_d,
         compensator_stiffness=sigma,
     )
-    cycle = (
-        _worst_cycle(helps, against) if margin < 0 else _search_cycle(helps, against, rng, paths)
-    )
+    cycle = _worst_cycle(helps, against) if margin < 0 else None
+    if margin >= 0:
+        cycle = strongest(_paths(helps, against, rng, paths))
     if cycle is not None and cycle.energy > 0:
         return Claim(statement, Refutation("a closed path of the motor", cycle))
     searched = (
@@ -166,7 +155,7 @@ def free_motion_margin(
     return min(motor_level + link_level - compensator_level, motor_level - stuck)
 
 
-def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:
+def _worst_cycle(helps: Dahl, against: Sequence[AbstractElement]) -> Cycle | None:
     """The symmetric cycle that releases most energy per travel, of a grid of amplitudes."""
     stuck = against[1]
     elastic = stuck.level / stuck.stiffness if isinstance(stuck, Spring) else 1.0
@@ -178,36 +167,20 @@ def _worst_cycle(helps: Dahl, against: Sequence[Element]) -> Cycle | None:
     return max(cycles, key=lambda c: c.energy / c.turning_points[0])
 
 
-def _search_cycle(
-    helps: Dahl, against: Sequence[Element], rng: np.random.Generator, paths: int
-) -> Cycle | None:
-    """The closed path that releases most, of cycles with steps and random paths; None if none."""
+def _paths(
+    helps: Dahl, against: Sequence[AbstractElement], rng: np.random.Generator, number: int
+) -> Iterator[Cycle]:
+    """Cycles with a step back and forth at each reversal, and so many random closed paths."""
     lengths = [helps.level / helps.stiffness]
     lengths += [e.level / e.stiffness for e in against if isinstance(e, Dahl | Spring)]
-    best = _add_steps(helps, against, lengths)
-    for _ in range(paths):
-        scale = np.exp(rng.uniform(np.log(0.1 * min(lengths)), np.log(10 * max(lengths))))
-        points = scale * rng.standard_normal(rng.integers(2, 11))
-        cycle = Cycle(helps, tuple(against), tuple(float(x) for x in points), rounds=30)
-        if cycle.energy > (best.energy if best else 0.0):
-            best = cycle
-    return best
-
-
-def _add_steps(helps: Dahl, against: Sequence[Element], lengths: Sequence[float]) -> Cycle | None:
-    """Of cycles with a step back and forth at each reversal, the one that releases most.
-
-    lengths: of the bristle and of the spring beside it, m
-    returns: None where none of them releases energy
-    """
-    best: Cycle | None = None
     for a in np.geomspace(0.3 * min(lengths), 3.0 * max(lengths), 24):
         for step in a * np.geomspace(0.003, 0.5, 8):
             points = (a, a - step, a, -a, step - a, -a)
-            cycle = Cycle(helps, tuple(against), tuple(map(float, points)), rounds=30)
-            if cycle.energy > (best.energy if best else 0.0):
-                best = cycle
-    return best
+            yield Cycle(helps, tuple(against), tuple(map(float, points)), rounds=30)
+    for _ in range(number):
+        scale = np.exp(rng.uniform(np.log(0.1 * min(lengths)), np.log(10 * max(lengths))))
+        points = scale * rng.standard_normal(rng.integers(2, 11))
+        yield Cycle(helps, tuple(against), tuple(map(float, points)), rounds=30)
 
 
 THEOREM = Theorem(mathematics=(any_environment, free_motion), order=76)

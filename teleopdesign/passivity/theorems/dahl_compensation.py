@@ -8,7 +8,7 @@ same position. Mahvash, Okamura, ICRA 2006 prove f_D <= f_C for Coulomb friction
 from __future__ import annotations
 
 import math
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import sympy as sp
@@ -19,27 +19,20 @@ from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal
 from ..rate_independent import Coulomb, Cycle, Dahl, dahl_loss, lost_share, symmetric_cycle
 from ._certificates import certificate
-from ._cycle_simulation import simulate_cycle
-from ._hypotheses import POSITIVE, require_hypotheses
-from ._theorem import Question, Theorem, Time, TopicClaim, decide
+from ._hypotheses import Positive, PositiveOrNone, require_hypotheses
+from ._theorem import Question, Theorem, Time, TopicClaim, decide, simulate_cycle
 from .bounded_compensation import cycle_beyond_onset, proof_of_level
 from .lugre import add_bristle_damping
 
 
-@require_hypotheses(
-    coulomb_level=POSITIVE,
-    compensator_level=POSITIVE,
-    compensator_stiffness=POSITIVE,
-    presliding_stiffness=POSITIVE.or_none(),
-    highest_level=POSITIVE.or_none(),
-)
+@require_hypotheses
 def dahl_compensation(
     *,
-    coulomb_level: Any,
-    compensator_level: Any,
-    compensator_stiffness: Any,
-    presliding_stiffness: Any = None,
-    highest_level: Any = None,
+    coulomb_level: Positive,
+    compensator_level: Positive,
+    compensator_stiffness: Positive,
+    presliding_stiffness: PositiveOrNone = None,
+    highest_level: PositiveOrNone = None,
 ) -> Claim:
     """Is the pair of true friction and Dahl compensator passive?
 
@@ -95,7 +88,6 @@ def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: 
 
     coulomb_level: f_C, N;  stiffness: sigma_D, N/m;  amplitude: A, m
     returns: inf where no level releases energy
-    raises ModelError: an argument that is not > 0
     """
     from scipy.optimize import brentq
 
@@ -138,7 +130,6 @@ def largest_one_off_energy(*, level: float, stiffness: float, u: float) -> float
     f_D <= largest_ratio(u, motion="closed paths") f_C.
 
     level: f_D, N;  stiffness: sigma_D, N/m;  u: amplitude in bristle lengths, either way
-    raises ModelError: an argument that is not > 0
     """
     _refuse_not_positive(
         "largest_one_off_energy: expected level, stiffness and amplitude > 0", level, stiffness, u
@@ -252,7 +243,8 @@ def dahl_claim(
 
 def _claims(question: Question) -> list[TopicClaim]:
     """Claims at the estimates, and for all values within the intervals; in continuous time."""
-    assert question.bristle is not None
+    if question.bristle is None:
+        return []
     device, (level, stiffness) = question.device, question.bristle
     ideal = device.presliding is None
     when = ", continuous time" if question.computer is not None and not ideal else ""
@@ -267,7 +259,6 @@ def _claims(question: Question) -> list[TopicClaim]:
 
 THEOREM = Theorem(
     mathematics=(dahl_compensation,),
-    applies=lambda question: question.bristle is not None,
     claims=_claims,
     order=20,
     simulate=simulate_cycle,

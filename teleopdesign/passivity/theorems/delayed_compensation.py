@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -22,10 +21,10 @@ from ...frequency.closed_forms import dahl
 from ...realise.lti import S
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
-from ..search.growing_wave import first_wave, rates_at
+from ..search.growing_wave import rates_at
 from ._certificates import certificate
-from ._hypotheses import NOT_NEGATIVE, require_hypotheses
-from ._theorem import Theorem, decide
+from ._hypotheses import NotNegative, require_hypotheses
+from ._theorem import Theorem, refute_by_wave
 
 #: just above 0.2172336, which is minus the least value of sin(y)/y (at tan y = y, y = 4.4934)
 SINC_LEAST = sp.Rational(21724, 100000)
@@ -52,14 +51,13 @@ def inertia_given_out(*, inertia: float, amplitude: float, frequency: float, del
     return float(np.pi * inertia * amplitude**2 * w**2 * np.sin(w * delay))
 
 
-@require_hypotheses(
-    damping=NOT_NEGATIVE,
-    compensator_stiffness=NOT_NEGATIVE,
-    delay=NOT_NEGATIVE,
-    presliding_stiffness=NOT_NEGATIVE,
-)
+@require_hypotheses
 def delayed_small_motion(
-    *, damping: Any, compensator_stiffness: Any, delay: Any, presliding_stiffness: Any
+    *,
+    damping: NotNegative,
+    compensator_stiffness: NotNegative,
+    delay: NotNegative,
+    presliding_stiffness: NotNegative,
 ) -> Claim:
     """Is small motion passive: friction is then a spring, the compensator a late negative spring.
 
@@ -71,26 +69,20 @@ def delayed_small_motion(
     damping: B, N s/m;  compensator_stiffness: sigma_D, N/m;  delay: tau, s
     presliding_stiffness: sigma_p, N/m
     returns: proved, or refuted by a growing wave; unknown where the search has no wave
-    raises ModelError: an argument outside of its hypothesis
     """
     b, tau, sigma_d, sigma_p = damping, delay, compensator_stiffness, presliding_stiffness
     margin = b - SINC_LEAST * sigma_d * tau
     late = sp.exp(-S * tau) if tau else sp.S(1)
-    z = sp.ImmutableMatrix([[b + (sigma_p - sigma_d * late) / S]])
-    return decide(
+    statement = (
         f"small motion with damping {decimal(b)} N s/m, presliding {decimal(sigma_p)} N/m and a "
-        f"compensator {decimal(sigma_d)} N/m that is {decimal(tau)} s late is passive",
-        sigma_d <= sigma_p and margin >= 0,
-        proof=lambda: Proof(
-            "Re Z >= 0 at every frequency, pole at 0 with residue sigma_p - sigma_D >= 0",
-            (certificate("late_negative_spring", B=b, sigma_D=sigma_d, tau=tau),),
-            float(margin),
-            "N s/m",
-        ),
-        motion=lambda: first_wave(z, _where(float(tau))),
-        how=lambda wave: f"a growing wave at {float(wave.frequency) / (2 * np.pi):.4g} Hz",
-        why_open="the condition fails, but no wave was found",
+        f"compensator {decimal(sigma_d)} N/m that is {decimal(tau)} s late is passive"
     )
+    if sigma_d > sigma_p or margin < 0:
+        z = b + (sigma_p - sigma_d * late) / S
+        return refute_by_wave(statement, z, _where(float(tau)))
+    method = "Re Z >= 0 at every frequency, pole at 0 with residue sigma_p - sigma_D >= 0"
+    made = certificate("late_negative_spring", B=b, sigma_D=sigma_d, tau=tau)
+    return Claim(statement, Proof(method, (made,), float(margin), "N s/m"))
 
 
 def _where(tau: float) -> Iterator[tuple[Fraction, Fraction]]:

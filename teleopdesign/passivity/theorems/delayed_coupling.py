@@ -11,34 +11,24 @@ The product z12 z21 is bounded at high frequency.
 
 from __future__ import annotations
 
-from typing import Any
-
 from ...realise.lti import S
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
-from ..two_port.claims import absolutely_stable
-from ..two_port.two_port import teleoperator_two_port
+from ..two_port.two_port import absolutely_stable, teleoperator_two_port
 from ._certificates import certificate
-from ._hypotheses import NOT_NEGATIVE, REAL, require_hypotheses
+from ._hypotheses import NotNegative, Real, require_hypotheses
 from ._theorem import Theorem
 
 
-@require_hypotheses(
-    master_inertia=NOT_NEGATIVE,
-    master_damping=REAL,
-    slave_inertia=NOT_NEGATIVE,
-    slave_damping=REAL,
-    stiffness=NOT_NEGATIVE,
-    delay=NOT_NEGATIVE,
-)
+@require_hypotheses
 def delayed_spring(
     *,
-    master_inertia: Any,
-    master_damping: Any,
-    slave_inertia: Any,
-    slave_damping: Any,
-    stiffness: Any,
-    delay: Any,
+    master_inertia: NotNegative,
+    master_damping: Real,
+    slave_inertia: NotNegative,
+    slave_damping: Real,
+    stiffness: NotNegative,
+    delay: NotNegative,
 ) -> Claim:
     """Is the teleoperator absolutely stable: if and only if b_m, b_s >= 0 and b_m b_s >= (P T)^2?
 
@@ -46,7 +36,6 @@ def delayed_spring(
     stiffness: P, N/m;  delay: T, one way, s
     returns: proved (equality allowed); else the verdict of `absolutely_stable`, which refutes by a
         wave with a passive termination at one port
-    raises ModelError: an argument outside of its hypothesis
     """
     b_m, b_s, k, late = master_damping, slave_damping, stiffness, delay
     statement = (

@@ -15,7 +15,7 @@ abs(g) <= 1/(2 T) for r = 2, reached at w T = 1 without delay.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import sympy as sp
@@ -24,11 +24,11 @@ from ...base.errors import ModelError
 from ...realise.lti import S
 from ..claims.claim import Claim, Evidence, Proof, Unknown
 from ..linear.impedance import decimal
-from ..linear.positive_real import positive_real
-from ..search.growing_wave import first_wave, rates_at
+from ..linear.judge import positive_real
+from ..search.growing_wave import rates_at
 from ._certificates import certificate
-from ._hypotheses import NOT_NEGATIVE, one_of, require_hypotheses
-from ._theorem import Theorem, refute
+from ._hypotheses import NotNegative, one_of, require_hypotheses
+from ._theorem import Theorem, refute_by_wave
 
 Order = Literal[1, 2]
 #: longest delay, in time constants, for which the maximum of g is searched: 2.5 million samples
@@ -72,22 +72,15 @@ def largest_passive_inertia(
     return damping / _maximum(delay, time_constant)[1]
 
 
-@require_hypotheses(
-    inertia=NOT_NEGATIVE,
-    damping=NOT_NEGATIVE,
-    cancelled=NOT_NEGATIVE,
-    delay=NOT_NEGATIVE,
-    time_constant=NOT_NEGATIVE,
-    order=one_of(1, 2),
-)
+@require_hypotheses
 def cancelled_inertia(
     *,
-    inertia: Any,
-    damping: Any,
-    cancelled: Any,
-    delay: Any,
-    time_constant: Any = 0,
-    order: int = 2,
+    inertia: NotNegative,
+    damping: NotNegative,
+    cancelled: NotNegative,
+    delay: NotNegative,
+    time_constant: NotNegative = 0,
+    order: Annotated[int, one_of(1, 2)] = 2,
 ) -> Claim:
     """Is a device passive if a part of its inertia is cancelled, delayed and low-passed?
 
@@ -97,7 +90,6 @@ def cancelled_inertia(
         without delay decided exactly; else refuted by a growing wave, or, for r = 2 with delay
         between 2 B T and the limit, evidence; unknown where no wave is available, or for a delay of
         more than 10000 time constants
-    raises ModelError: an argument outside of its hypothesis
     """
     m, b, c, tau, t = inertia, damping, cancelled, delay, time_constant
     filtered = f", low-passed of order {order} with {decimal(t)} s" if t else ""
@@ -128,12 +120,7 @@ def cancelled_inertia(
     else:  # the phase of jw at the peaks; far enough up for a margin of 1e-3
         where = [(2 * np.pi * n + np.pi / 2 * (not t)) / float(tau) for n in 2 ** np.arange(0, 14)]
     points = (point for w in where for point in rates_at(Fraction(w), 30))
-    return refute(
-        statement,
-        first_wave(sp.ImmutableMatrix([[z]]), points),
-        lambda wave: f"a growing wave at {float(wave.frequency) / (2 * np.pi):.4g} Hz",
-        "the condition fails, but no wave was found",
-    )
+    return refute_by_wave(statement, z, points)
 
 
 def _maximum(delay: float, time_constant: float) -> tuple[float, float]:

@@ -10,24 +10,21 @@ bodies, less the energy that they take from the bodies, is at most 2 E_0.
 
 from __future__ import annotations
 
-from typing import Any
-
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ._certificates import certificate
-from ._hypotheses import NOT_NEGATIVE, POSITIVE, require_hypotheses
+from ._hypotheses import NotNegative, Positive, require_hypotheses
 from ._theorem import Theorem
 
 
-@require_hypotheses(reserve=NOT_NEGATIVE, travel=POSITIVE)
-def energy_tank(*, reserve: Any, travel: Any) -> Claim:
+@require_hypotheses
+def energy_tank(*, reserve: NotNegative, travel: Positive) -> Claim:
     """Bound of the energy that two ends with energy tanks (`energy_tanks`) release.
 
     reserve: E_0 in each tank, J;  travel: d, largest travel of any sample, m or rad
     returns: proved, if positions are exact, forces act as commanded and from their sample on, and
         counts of energy arrive no larger than they were sent; they may be late, jittered, lost or
         held
-    raises ModelError: an argument outside of its hypothesis
     """
     statement = (
         f"two ends with energy tanks of {decimal(reserve)} J give their bodies at most "

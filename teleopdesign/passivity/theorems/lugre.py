@@ -23,9 +23,9 @@ from ...effects import EFFECTS, SIGNALS
 from ..claims.claim import Claim, Proof, Unknown
 from ..identified import DIGITS
 from ..linear.impedance import decimal, exact
-from ..rate_independent import AbstractMotion, Dahl
+from ..rate_independent import AbstractMotion, Dahl, strongest
 from ._certificates import certificate
-from ._hypotheses import NOT_NEGATIVE, POSITIVE, require_hypotheses
+from ._hypotheses import NotNegative, Positive, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, decide
 
 _STRIBECK = EFFECTS["stribeck"]
@@ -76,22 +76,15 @@ class Jumps(AbstractMotion):
         return out
 
 
-@require_hypotheses(
-    coulomb_level=POSITIVE,
-    static_level=POSITIVE,
-    stiffness=POSITIVE,
-    bristle_damping=NOT_NEGATIVE,
-    viscous_damping=NOT_NEGATIVE,
-    stribeck_velocity=POSITIVE,
-)
+@require_hypotheses
 def lugre_passivity(
     *,
-    coulomb_level: Any,
-    static_level: Any,
-    stiffness: Any,
-    bristle_damping: Any,
-    viscous_damping: Any,
-    stribeck_velocity: Any,
+    coulomb_level: Positive,
+    static_level: Positive,
+    stiffness: Positive,
+    bristle_damping: NotNegative,
+    viscous_damping: NotNegative,
+    stribeck_velocity: Positive,
 ) -> Claim:
     """Is LuGre friction passive: if and only if s2 >= s1 (F_S/F_C - 1)?
 
@@ -167,29 +160,25 @@ def _recoil(
 ) -> Jumps | None:
     """Slow motion and jumps to a high speed that release energy, at the least such high speed."""
     length = levels[1] / stiffness
-    for fast in v_s * np.geomspace(1.0, 1e9, 91):
-        best: Jumps | None = None
-        for travel in length * np.geomspace(1e-6, 3.0, 60):
-            half = ((1e-3 * v_s, 30 * length), (float(fast), float(travel)))
-            legs = (*half, *((-v, x) for v, x in half))
-            made = Jumps(levels, stiffness, dampings, v_s, legs)
-            if made.energy > (best.energy if best else 0.0):
-                best = made
-        if best is not None:
-            return best
-    return None
 
+    def at(fast: float, travel: float) -> Jumps:
+        half = ((1e-3 * v_s, 30 * length), (fast, travel))
+        legs = (*half, *((-v, x) for v, x in half))
+        return Jumps(levels, stiffness, dampings, v_s, legs)
 
-def _applies(question: Question) -> bool:
-    """Whether the question is about a device alone with all parts of LuGre friction identified."""
-    alone = question.cancellation is None and question.wall is None
-    has_parts = "stribeck.extra_static_level" in question.device.body.parameters
-    return alone and has_parts and question.device.presliding is not None
+    travels = (length * np.geomspace(1e-6, 3.0, 60)).tolist()
+    speeds = (v_s * np.geomspace(1.0, 1e9, 91)).tolist()
+    best = (strongest(at(fast, travel) for travel in travels) for fast in speeds)
+    return next((jumps for jumps in best if jumps is not None), None)
 
 
 def _claims(question: Question) -> list[TopicClaim]:
+    """The claim about a device alone with all parts of LuGre friction identified."""
     device = question.device
-    assert device.presliding is not None
+    alone = question.cancellation is None and question.wall is None
+    has_stribeck = "stribeck.extra_static_level" in device.body.parameters
+    if not (alone and has_stribeck and device.presliding is not None):
+        return []
     values = {
         # estimates with the digits of all claims; what has no error is as it was stated
         n: round_near(v.value, digits=DIGITS) if v.stderr > 0 else v.value
@@ -220,7 +209,6 @@ def _claims(question: Question) -> list[TopicClaim]:
 
 THEOREM = Theorem(
     mathematics=(lugre_passivity,),
-    applies=_applies,
     claims=_claims,
     order=50,
     covers=lambda question: question.device.actuation,  # what acts on commands is no part of it

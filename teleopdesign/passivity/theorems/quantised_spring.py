@@ -15,15 +15,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
-from ..rate_independent import AbstractMotion
+from ..rate_independent import AbstractMotion, strongest
 from ._certificates import certificate
-from ._hypotheses import NOT_NEGATIVE, POSITIVE, require_hypotheses
+from ._hypotheses import NotNegative, Positive, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, decide
 
 
@@ -46,34 +45,22 @@ class Flip(AbstractMotion):
 
     def replay(self) -> float:
         """Energy released in two samples, J, each with constant speed."""
-        edge, a = self.step / 2, self.distance
-        high, low = (self._spring_force(edge + side * a) for side in (1, -1))
+        k, step, a = self.stiffness, self.step, self.distance
+        positions = [step / 2 + side * a for side in (1, -1)]
+        high, low = (k * step * math.floor(x / step + 0.5) if step else k * x for x in positions)
         lost = 2 * (self.damping / self.sample_time * (2 * a) ** 2 + self.friction * 2 * a)
         return (high - low) * 2 * a - lost
 
-    def _spring_force(self, position: float) -> float:
-        """Force of the spring at a sample, N, from the rounded position."""
-        if self.step == 0:
-            return self.stiffness * position
-        return self.stiffness * self.step * math.floor(position / self.step + 0.5)
 
-
-@require_hypotheses(
-    stiffness=NOT_NEGATIVE,
-    damping=NOT_NEGATIVE,
-    sample_time=POSITIVE,
-    step=NOT_NEGATIVE,
-    coulomb_level=NOT_NEGATIVE,
-    compensator_level=NOT_NEGATIVE,
-)
+@require_hypotheses
 def quantised_spring(
     *,
-    stiffness: Any,
-    damping: Any,
-    sample_time: Any,
-    step: Any,
-    coulomb_level: Any,
-    compensator_level: Any = 0,
+    stiffness: NotNegative,
+    damping: NotNegative,
+    sample_time: Positive,
+    step: NotNegative,
+    coulomb_level: NotNegative,
+    compensator_level: NotNegative = 0,
 ) -> Claim:
     """Is the virtual spring passive: if and only if K <= min(2 b/T, 2 (f_C - f_D)/Delta)?
 
@@ -82,7 +69,6 @@ def quantised_spring(
     returns: proved, equality included, or refuted by a motion between two positions. With f_D > 0
         the refutation is for a compensator that pushes with f_D along the motion. Unknown where the
         condition fails by too little for the search
-    raises ModelError: an argument outside of its hypothesis
     """
     k, b, late, delta = stiffness, damping, sample_time, step
     f_c, f_d = coulomb_level, compensator_level
@@ -111,7 +97,7 @@ def _flip(values: list[float], scale: float) -> Flip | None:
     flips = [Flip(k, delta, late, b, left, float(a)) for a in scale * np.geomspace(1e-9, 1e9, 400)]
     giving = [f for f in flips if f.energy > 0]
     near = [f for f in giving if f.distance <= 1e3 * scale] or giving[:1]
-    return max(near, key=lambda f: f.energy, default=None)
+    return strongest(near)
 
 
 def stiffest_spring(
@@ -130,17 +116,13 @@ def stiffest_spring(
     return max(min(2 * damping / sample_time, by_steps), 0.0)
 
 
-def _applies(question: Question) -> bool:
-    """Whether the question is about a wall without damping and delay, on encoder steps."""
-    wall, computer = question.wall, question.computer
-    if wall is None or computer is None:
-        return False
-    return bool(computer.encoder_step) and not wall.damping and question.late == 0
-
-
 def _claims(question: Question) -> list[TopicClaim]:
+    """The claim about a wall without damping and delay, on encoder steps."""
     device, wall, computer = question.device, question.wall, question.computer
-    assert wall is not None and computer is not None
+    if wall is None or computer is None or question.late != 0:
+        return []
+    if wall.damping or not computer.encoder_step:
+        return []
     claim = quantised_spring(
         stiffness=wall.stiffness,
         damping=device.damping.low,
@@ -152,4 +134,4 @@ def _claims(question: Question) -> list[TopicClaim]:
     return [TopicClaim("virtual wall, encoder steps", claim, time="sampled")]
 
 
-THEOREM = Theorem(mathematics=(quantised_spring,), applies=_applies, claims=_claims, order=60)
+THEOREM = Theorem(mathematics=(quantised_spring,), claims=_claims, order=60)

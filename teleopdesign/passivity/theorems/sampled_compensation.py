@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -25,9 +24,8 @@ from ..claims.claim import Claim
 from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, Dahl
 from ..search.stroke_motion import Strokes
-from ._cycle_simulation import simulate_cycle
-from ._hypotheses import NOT_NEGATIVE, POSITIVE, WHOLE, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim, leave_open, refute
+from ._hypotheses import NotNegative, Positive, PositiveOrNone, Whole, require_hypotheses
+from ._theorem import Question, Theorem, TopicClaim, leave_open, refute, simulate_cycle
 from .bounded_compensation import bounded_compensation
 
 #: most samples, one way, of a motion that refutes a claim
@@ -116,24 +114,16 @@ class Trembling(AbstractMotion):
         return first + self.friction.leg(there, -self.back)[1]
 
 
-@require_hypotheses(
-    coulomb_level=POSITIVE,
-    compensator_level=POSITIVE,
-    compensator_stiffness=POSITIVE,
-    sample_time=POSITIVE,
-    presliding_stiffness=POSITIVE.or_none(),
-    viscous_damping=NOT_NEGATIVE,
-    late=WHOLE,
-)
+@require_hypotheses
 def sampled_compensation(
     *,
-    coulomb_level: Any,
-    compensator_level: Any,
-    compensator_stiffness: Any,
-    sample_time: Any,
-    presliding_stiffness: Any = None,
-    viscous_damping: Any = 0,
-    late: int = 0,
+    coulomb_level: Positive,
+    compensator_level: Positive,
+    compensator_stiffness: Positive,
+    sample_time: Positive,
+    presliding_stiffness: PositiveOrNone = None,
+    viscous_damping: NotNegative = 0,
+    late: Whole = 0,
 ) -> Claim:
     """Is friction passive together with a Dahl compensator in a computer?
 
@@ -146,7 +136,6 @@ def sampled_compensation(
     returns: for ideal friction proved if and only if f_D <= f_C. For Dahl friction refuted, for all
         numbers, by a motion that trembles once a sample; unknown where this motion would need more
         than `LONGEST` samples to release the energy that its start takes
-    raises ModelError: an argument outside of its hypothesis
     """
     if presliding_stiffness is None:
         return bounded_compensation(coulomb_level=coulomb_level, bound=compensator_level)
@@ -190,16 +179,13 @@ def _find_best(
     return None if best is None or best[1].energy <= 0 else best[1]
 
 
-def _applies(question: Question) -> bool:
-    """Whether the question is about a Dahl bristle in a computer, and presliding friction."""
-    sampled = question.computer is not None and question.device.presliding is not None
-    return sampled and question.bristle is not None and question.late is not None
-
-
 def _claims(question: Question) -> list[TopicClaim]:
-    """The claim about friction and compensator in a computer, at the estimates, for any motion."""
+    """The claim about presliding and a Dahl bristle in a computer, at the estimates, any motion."""
     device, computer = question.device, question.computer
-    assert computer is not None and question.bristle is not None and question.late is not None
+    if device.presliding is None or question.bristle is None:
+        return []
+    if computer is None or question.late is None:
+        return []
     level, stiffness = question.bristle
     if device.bristle_damping.high > 0:
         why = "no theorem covers bristle damping beside a compensator in a computer"
@@ -210,7 +196,7 @@ def _claims(question: Question) -> list[TopicClaim]:
         compensator_level=level,
         compensator_stiffness=stiffness,
         sample_time=computer.period,
-        presliding_stiffness=device.presliding and device.presliding.estimate,
+        presliding_stiffness=device.presliding.estimate,
         viscous_damping=device.damping.estimate,
         late=question.late,
     )
@@ -219,7 +205,6 @@ def _claims(question: Question) -> list[TopicClaim]:
 
 THEOREM = Theorem(
     mathematics=(sampled_compensation,),
-    applies=_applies,
     claims=_claims,
     order=40,
     simulate=simulate_cycle,

@@ -23,23 +23,26 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...base.arguments import describe_value
 from ...base.errors import ModelError
+from ...controllers import from_control
 from ...realise.lti import S
-from ..claims.certificate import positive_real_certificate
+from ..claims.certificate import matrix_certificate
 from ..claims.claim import Claim, prove_by_certificate
-from ..linear.impedance import Impedance, decimal, exact, impedance, readable
-from ..linear.positive_real import NO_WAVE, damping_excess, is_positive_real
+from ..linear.excess import damping_excess, is_positive_real
+from ..linear.impedance import Impedance, decimal, exact, impedance, read_expression, readable
+from ..linear.judge import NO_WAVE
 from ..search.growing_wave import growing_wave
 from ..search.sampled_wave import Z, sampled_wave
-from ._discrete_system import discrete_transfer_function
-from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, REAL, require_hypotheses
+from ._hypotheses import Free, NotNegative, Positive, Real, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, refute
 
+#: relative difference of two periods that counts as rounding of decimals
+_ROUNDING = 1e-9
 
-@require_hypotheses(controller=FREE, damping=NOT_NEGATIVE, sample_time=POSITIVE, stiffness=REAL)
+
+@require_hypotheses
 def sampled_passivity(
-    controller: Any, *, damping: Any, sample_time: Any, stiffness: Any = 0
+    controller: Free, *, damping: NotNegative, sample_time: Positive, stiffness: Real = 0
 ) -> Claim:
     """Is the body with this sampled controller passive at the hand?
 
@@ -51,7 +54,7 @@ def sampled_passivity(
     raises ModelError: not rational in z, or an argument outside of its hypothesis
     """
     late, b, k = sample_time, damping, stiffness
-    law = _law(discrete_transfer_function(controller, sample_time=float(late), z=Z))
+    law = law_in_z(controller, sample_time=float(late))
     operator = travel_operator(law, b, late, k)
     spring = f", a spring {decimal(k)} N/m" if k else ""
     statement = (
@@ -63,7 +66,7 @@ def sampled_passivity(
         margin = float(late) * float(damping_excess(operator))
         verdict = prove_by_certificate(
             "the discrete positive-real test, by bilinear transformation",
-            lambda: positive_real_certificate(text, [[operator.expression]]),
+            lambda: matrix_certificate(text, [[operator.expression]]),
             margin,
             "N s/m",
             "" if margin > 0 else "in the damping",
@@ -87,18 +90,22 @@ def required_damping(controller: Any, *, sample_time: Any, stiffness: Any = 0) -
 
     Arguments as in `sampled_passivity`.
     """
-    late = _positive(sample_time)
-    law = _law(discrete_transfer_function(controller, sample_time=float(late), z=Z))
+    late = exact(sample_time, "sample_time: ")
+    if late <= 0:
+        raise ModelError(f"sample_time: expected a time > 0 s, found {late}")
+    law = law_in_z(controller, sample_time=float(late))
     held = exact(stiffness, "required_damping: stiffness: ")
     operator = travel_operator(law, sp.S(0), late, held)
     return max(-float(late) * float(damping_excess(operator)), 0.0)
 
 
-@require_hypotheses(
-    coupling=FREE, master_damping=NOT_NEGATIVE, slave_damping=NOT_NEGATIVE, sample_time=POSITIVE
-)
+@require_hypotheses
 def sampled_coupling(
-    coupling: Any, *, master_damping: Any, slave_damping: Any, sample_time: Any
+    coupling: Free,
+    *,
+    master_damping: NotNegative,
+    slave_damping: NotNegative,
+    sample_time: Positive,
 ) -> Claim:
     """Is a teleoperator passive whose equal and opposite forces -H(z) (x_m - x_s) are sampled?
 
@@ -118,26 +125,16 @@ def travel_operator(law: sp.Expr, b: sp.Expr, late: sp.Expr, k: sp.Expr) -> Impe
     return impedance(g.subs(Z, (1 + S) / (1 - S)))
 
 
-def _positive(sample_time: Any) -> sp.Expr:
-    late = exact(sample_time, "sample_time: ")
-    if late <= 0:
-        raise ModelError(f"sample_time: expected a time > 0 s, found {late}")
-    return late
+def law_in_z(controller: Any, *, sample_time: float) -> sp.Expr:
+    """H(z) with exact numbers: of an expression, or of a discrete system of python-control.
 
-
-def _law(controller: Any) -> sp.Expr:
-    try:
-        e = sp.sympify(controller, strict=True)  # a text would be run
-    except sp.SympifyError:
-        e = None
-    if not isinstance(e, sp.Expr):
-        wrong = describe_value(controller)
-        raise ModelError(f"controller: found {wrong}, expected an expression of z, or a number")
-    e = e.xreplace({x: Z for x in e.free_symbols if x.name == "z"})
-    if e.free_symbols - {Z}:
-        names = ", ".join(sorted(x.name for x in e.free_symbols - {Z}))
-        raise ModelError(f"controller: values are needed for {names}")
-    e = e.xreplace({x: exact(x) for x in e.atoms(sp.Float)})
+    sample_time: period that the system must have, s
+    raises ModelError: not rational, or ahead of its samples; a system in continuous time, or of
+        another period, several inputs or outputs, or a mode that the transfer function hides
+    """
+    if hasattr(controller, "dt") and hasattr(controller, "nstates"):
+        controller = _transfer_function(controller, sample_time)
+    e = read_expression(controller, Z, "controller")
     above, below = sp.fraction(sp.together(e))
     if not (above.is_polynomial(Z) and below.is_polynomial(Z)) or below == 0:
         raise ModelError(f"controller: expected a rational function of z, found {e}")
@@ -148,13 +145,37 @@ def _law(controller: Any) -> sp.Expr:
     return e
 
 
+def _transfer_function(system: Any, sample_time: float) -> sp.Expr:
+    if not system.isdtime(strict=True):
+        raise ModelError(
+            "controller: found a system in continuous time, expected one in discrete time: "
+            "`control.sample_system` makes one"
+        )
+    if system.dt is not True and abs(system.dt - sample_time) > _ROUNDING * sample_time:
+        raise ModelError(
+            f"controller: is sampled every {system.dt * 1e3:g} ms, the body every "
+            f"{sample_time * 1e3:g} ms: sample both alike"
+        )
+    (stage,) = from_control(system, name="controller").stages
+    if stage.law.shift is None:
+        raise ModelError("controller: expected a transfer function or a state space")
+    law = sp.cancel(stage.law.shift(stage.values, Z))
+    if sp.degree(sp.fraction(law)[1], Z) < len(stage.law.states):
+        raise ModelError(
+            "controller: has a mode that its transfer function does not show, and which may grow: "
+            "give its least form (`control.minreal`)"
+        )
+    return law
+
+
 def _claims(question: Question) -> list[TopicClaim]:
     """Claims about a virtual wall with damping alone, and about a Dahl bristle in small motion.
 
     In small motion the bristle is a negative spring.
     """
     device, computer, wall = question.device, question.computer, question.wall
-    assert computer is not None and question.late is not None
+    if computer is None or question.late is None:
+        return []
     period, claims = computer.period, []
     if wall is not None:
         law = sp.Float(wall.stiffness) + sp.Float(wall.damping) * (Z - 1) / (period * Z)
@@ -180,7 +201,6 @@ def _claims(question: Question) -> list[TopicClaim]:
 
 THEOREM = Theorem(
     mathematics=(sampled_passivity, sampled_coupling),
-    applies=lambda question: question.computer is not None and question.late is not None,
     claims=_claims,
     order=30,
 )

@@ -18,7 +18,6 @@ that are lost and replaced by others.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import sympy as sp
 
@@ -27,24 +26,24 @@ from ...diagrams import Diagram, Moving, wave_variables
 from ...realise.lti import S, linear_blocks
 from ..claims.claim import Claim, Proof, Unknown
 from ..declarations import falsely_linear, is_shipped
-from ..holders import without_holders
 from ..linear.impedance import decimal, exact
-from ..linear.positive_real import positive_real
+from ..linear.judge import positive_real
 from ..linear.unseen import unseen_within
-from ..ports import drop_absent_effects
+from ..ports import drop_absent_effects, without_holders
 from ._certificates import certificate
-from ._hypotheses import FREE, NOT_NEGATIVE, POSITIVE, require_hypotheses
+from ._hypotheses import Free, NotNegative, Positive, require_hypotheses
 from ._theorem import Theorem
 
 
-@require_hypotheses(wave_impedance=POSITIVE, scale=NOT_NEGATIVE, delay_growth=NOT_NEGATIVE)
-def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) -> Claim:
+@require_hypotheses
+def wave_channel(
+    *, wave_impedance: Positive, scale: NotNegative = 1, delay_growth: NotNegative = 0
+) -> Claim:
     """Is a channel of waves passive: does it release no more energy than came in at both ends?
 
     wave_impedance: b, N s/m;  scale: f, factor of arriving waves
     delay_growth: d, largest growth rate of a delay, s/s; delays are continuous, of any length
     returns: proved where f^2 <= 1 - d; else unknown, because no refuting motion is searched
-    raises ModelError: an argument outside of its hypothesis
     """
     b, f, d = wave_impedance, scale, delay_growth
     grows = f"grow by {decimal(d)} s a second at most" if d else "are constant or fall"
@@ -60,8 +59,10 @@ def wave_channel(*, wave_impedance: Any, scale: Any = 1, delay_growth: Any = 0) 
     return Claim(statement, Proof(method, (made,), float(1 - d - f**2), "", equality))
 
 
-@require_hypotheses(master=FREE, slave=FREE, coupling=FREE, wave_impedance=POSITIVE)
-def wave_teleoperator(*, master: Any, slave: Any, coupling: Any, wave_impedance: Any) -> Claim:
+@require_hypotheses
+def wave_teleoperator(
+    *, master: Free, slave: Free, coupling: Free, wave_impedance: Positive
+) -> Claim:
     """Is the teleoperator passive at hand and environment, for constant delays of any length?
 
     Energies add: F_m v_m + F_s v_s is the power into master, slave, controller and channel.

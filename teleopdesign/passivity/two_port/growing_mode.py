@@ -10,7 +10,6 @@ its inverse has a pole at s, unless the sum is singular everywhere.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -26,10 +25,9 @@ from ...derive.polynomials import (
     is_free_of_growth,
     positive_roots,
     roots_of,
-    where_negative,
 )
 from ...realise.lti import S
-from ..linear.conditions import axis_conditions
+from ..linear.conditions import where_it_fails
 from ..linear.family import Family, family_of_matrix
 from ..linear.gaussian import (
     ZERO,
@@ -44,7 +42,8 @@ from ..linear.gaussian import (
     value_at,
 )
 from ..linear.matrices import close, inverse_denominator
-from ..search.growing_wave import LONGEST
+from ..rate_independent import AbstractRecord
+from ..search.growing_wave import last_part
 from ..search.points import candidates, near_axis, near_poles
 from .termination import (
     CLAMPED,
@@ -57,12 +56,9 @@ from .termination import (
     with_resonance,
 )
 
-#: most candidates that are tested exactly, a millisecond each
-_MOST_CANDIDATES = 40
-
 
 @dataclass(frozen=True)
-class GrowingMode:
+class GrowingMode(AbstractRecord):
     """A motion of a two-port between passive terminations that grows from near rest.
 
     impedance: Z (N s/m), rational in s;  terminations: at port 1 and port 2
@@ -76,6 +72,7 @@ class GrowingMode:
     rate: Fraction
     frequency: Fraction
     velocity: tuple[complex, complex]
+    kind = "growing mode"
 
     @property
     def s(self) -> complex:
@@ -97,18 +94,12 @@ class GrowingMode:
         The integral covers the last twelve time constants, or the last LONGEST periods if they are
         shorter. In the second case the result is smaller than `energy`.
         """
-        span = 12.0 / self.s.real  # twelve time constants: what came before is 1e-10 of it
-        if self.frequency:
-            span = min(span, LONGEST * 2 * math.pi / self.s.imag)
-        periods = span * self.s.imag / (2 * math.pi)
-        t = np.linspace(-span, 0.0, 2 * int(500 * (1 + periods)) + 1)
-        weights = np.ones(len(t))  # Simpson's rule
-        weights[1:-1:2], weights[2:-1:2] = 4, 2
+        t, weights = last_part(self.s)
         wave, total = np.exp(self.s * t), 0.0
         for held, v in zip(self.terminations, self.velocity, strict=True):
             if not held.clamped:
                 power = (held.at(self.s) * v * wave).real * (v * wave).real
-                total += float((t[1] - t[0]) / 3 * (weights @ power))
+                total += float(weights @ power)
         return total
 
     def is_confirmed(self) -> bool:
@@ -123,21 +114,6 @@ class GrowingMode:
             rows[row][row] += d * _times_s(self.terminations[k], d.ring)
         q = inverse_denominator(rows, d * s)
         return bool(q) and not is_free_of_growth(as_poly(q, S))
-
-    def as_dict(self) -> dict[str, object]:
-        """Plain data, to be written as JSON."""
-        return {
-            "kind": "growing mode",
-            "impedance": [[str(e) for e in row] for row in self.impedance.tolist()],
-            "terminations": [
-                "clamped" if h.clamped else [str(x) for x in (h.damping, h.inertia, h.stiffness)]
-                for h in self.terminations
-            ],
-            "rate": str(self.rate),
-            "frequency": str(self.frequency),
-            "velocity": [[v.real, v.imag] for v in self.velocity],
-            "energy": self.energy,
-        }
 
 
 @lru_cache(maxsize=8)
@@ -167,12 +143,11 @@ class _Search:
 
     def over_points(self) -> GrowingMode | None:
         """A mode at one of the points of the right half plane at which growth is most likely."""
-        negative = [float(x) ** 0.5 / (2 * np.pi) for x in self._negative_places()]
+        places = where_it_fails(self.family, "absolutely stable")
+        negative = [float(x) ** 0.5 / (2 * np.pi) for x in places]
         steps = (*range(1, 34, 2), *range(35, 68, 4))
         points = np.concatenate([near_axis(negative, steps), near_poles(self.family)])
-        z = self.family.at(points)
-        values = [z[:, 0, 0], z[:, 0, 1], z[:, 1, 0], z[:, 1, 1]]
-        for s, second, turned in candidates(values, points)[:_MOST_CANDIDATES]:
+        for s, second, turned in candidates(self.family, points):
             mode = self._mode_at(round_point(s), far_termination(s, second), turned)
             if mode is not None:
                 return mode
@@ -203,7 +178,8 @@ class _Search:
         Inequalities fail in a narrow band of frequencies, residues fail at a pole that both ways
         between the ports share.
         """
-        narrow = [square_root(x, 30) for x in self._negative_places()]
+        failing = where_it_fails(self.family, "absolutely stable")
+        narrow = [square_root(x, 30) for x in failing]
         shared = [square_root(x, 60) for x in self._shared_poles()]
         for k in range(4, 132, 4):
             places = [(w / 2**k, w) for w in (*narrow, *shared)]
@@ -216,11 +192,6 @@ class _Search:
                         if mode is not None:
                             return mode
         return None
-
-    def _negative_places(self) -> list[Fraction]:
-        """Values of w^2 at which Re z11, Re z22 or Llewellyn's inequality is negative."""
-        tests = axis_conditions(self.family.n, self.family.d, "absolutely stable")
-        return [x for p in tests for x in where_negative(as_poly(p, X))]
 
     def _shared_poles(self) -> list[Fraction]:
         """Values of w^2 of the poles on the axis that z12 and z21 share."""

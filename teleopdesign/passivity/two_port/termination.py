@@ -47,6 +47,12 @@ class Termination:
         """Impedance at s, N s/m, in floating point."""
         return float(self.damping) + float(self.inertia) * s + float(self.stiffness) / s
 
+    @property
+    def as_plain(self) -> object:
+        """Plain data, to be written as JSON."""
+        parts = [str(x) for x in (self.damping, self.inertia, self.stiffness)]
+        return "clamped" if self.clamped else parts
+
     def __str__(self) -> str:
         if self.clamped:
             return "clamped"

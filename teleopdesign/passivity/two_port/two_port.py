@@ -15,7 +15,7 @@ Llewellyn, Proc. IRE 40 (1952) 271. His inequality on the axis is one of several
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -28,8 +28,10 @@ from ...base.finding import Graph, Series
 from ...base.frozen import ByValue
 from ...diagrams.control_parts import entry_of
 from ...realise.lti import S
+from ..claims.claim import Claim
 from ..linear.family import Family, family_of_matrix
-from ..linear.impedance import Impedance, exact, impedance
+from ..linear.impedance import Impedance, exact, impedance, read_expression
+from ..linear.judge import passive_claim, stable_claim
 from ..linear.sweep import passive_margin, stable_margin
 from ..linear.unseen import unseen_modes
 
@@ -45,22 +47,10 @@ class TwoPort:
     z: sp.ImmutableMatrix
     unseen: tuple[complex, ...] = ()
 
-    @property
-    def has_delay(self) -> bool:
-        """Whether some entry has a dead time."""
-        return bool(self.z.has(sp.exp))
-
-    def entry(self, row: int, column: int) -> Impedance:
-        """One entry as a rational function; row and column are 1 or 2.
-
-        raises ModelError: the entry has a dead time
-        """
-        return impedance(self.z[row - 1, column - 1])
-
     @cached_property
     def family(self) -> Family:
         """The two-port as a family of functions, at a point."""
-        return family_of_matrix(self.z.tolist())
+        return replace(family_of_matrix(self.z.tolist()), unseen=self.unseen)
 
     def over(self, frequency: np.ndarray) -> np.ndarray:
         """Impedance matrices at each frequency (Hz), N s/m, (n, 2, 2)."""
@@ -109,19 +99,9 @@ def _is_pair(value: Any) -> bool:
 
 
 def _entry(entry: Any) -> sp.Expr:
-    if hasattr(entry, "isdtime"):
-        entry = impedance(entry)
-    try:
-        e = sp.sympify(entry.expression if isinstance(entry, Impedance) else entry, strict=True)
-    except sp.SympifyError:  # a text among them, which would be run
-        e = None
-    if not isinstance(e, sp.Expr) or e.has(sp.nan, sp.zoo, sp.oo, -sp.oo):
-        raise ModelError(f"two_port: expected an expression in s, found {describe_value(entry)}")
-    e = e.xreplace({x: S for x in e.free_symbols if x.name == "s"})
-    if e.free_symbols - {S}:
-        names = ", ".join(sorted(x.name for x in e.free_symbols - {S}))
-        raise ModelError(f"two_port: values are needed for {names}")
-    e = e.xreplace({x: exact(x) for x in e.atoms(sp.Float)})
+    if hasattr(entry, "isdtime") or isinstance(entry, Impedance):
+        return impedance(entry).expression
+    e = read_expression(entry, S, "two_port")
     for power in e.atoms(sp.exp):
         rate = sp.Poly(power.args[0], S).all_coeffs() if power.args[0].is_polynomial(S) else []
         if len(rate) != 2 or rate[1] != 0 or rate[0] > 0:
@@ -185,3 +165,28 @@ def sweep_margins(
     f = np.geomspace(1e-4, 1e4, 4001) if frequency is None else np.asarray(frequency, dtype=float)
     z = system.over(f)
     return FrequencyMargins(f, passive_margin(z), stable_margin(z))
+
+
+def passive(system: TwoPort) -> Claim:
+    """Is the two-port passive: does no motion of its two ports take energy out (Raisbeck)?
+
+    The positive-real test of the matrix decides, poles on the axis included.
+
+    returns: proved; or refuted by a growing wave; or, with dead times, evidence over frequency;
+        unknown where no proof and no wave is available, or where a mode of a system of
+        python-control that no port shows does not decay
+    """
+    return passive_claim(system.family)
+
+
+def absolutely_stable(system: TwoPort) -> Claim:
+    """Is the two-port stable between any passive terminations (Llewellyn, residues on the axis)?
+
+    `checker/absolute_stability.py` contains the statement and its proof.
+
+    returns: proved; or refuted by a motion that grows by itself between the two passive
+        terminations that the verdict names. With dead times: evidence over frequency, or refuted by
+        a wave with which port 1 releases energy while port 2 has the termination that the verdict
+        names; else unknown
+    """
+    return stable_claim(system.family)

@@ -15,8 +15,9 @@ from passivity.attacks.test_friction import ROUNDING, coulomb, dahl, gain, veloc
 
 from teleopdesign import EFFECTS, Body, Value
 from teleopdesign.base.errors import ModelError
-from teleopdesign.passivity.device_claims import Compensator, friction_claims
+from teleopdesign.passivity.device_claims import Compensator
 from teleopdesign.passivity.identified import identify_device
+from teleopdesign.passivity.theorems import Question, settle
 
 #: half of a 95 % interval in standard errors, a hair within it
 WITHIN = 1.959
@@ -132,7 +133,8 @@ def judged(rng):
     except ModelError as problem:
         assert "nothing can be compensated" in str(problem), (effects, problem)
         return [("refused", False)]
-    claims = friction_claims(device, Compensator(name, float(level), float(second)))
+    stage = Compensator(name, float(level), float(second)).stage
+    claims = settle(Question(device, stage), simulated=False)
     law = dahl(level, level, second) if name == "dahl" else velocity_law(level, second)
     lengths, speeds = [length, level / second if name == "dahl" else length], [speed]
     if period := effects.get("position_dependent_friction", {}).get("period"):
