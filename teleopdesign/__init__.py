@@ -21,7 +21,7 @@ The names that a user types:
     effects       EFFECTS, load_effect
     diagnosis     fit, compare, rank, find_missing, load_answer, describe, propose_experiment
     diagrams      Diagram, haptic_interface, teleoperator, hand, read_diagram, write_diagram
-    controllers   CONTROLLERS, controller, from_control
+    controllers   CONTROLLERS, controller, cancel
     responses     derive_transfers, transfer_functions, bode, simulate_diagram, simulate_many,
                   Sampling, sine
     design        design_compensation
@@ -105,6 +105,7 @@ if TYPE_CHECKING:
     from .blocks import hand as hand
     from .controllers import CONTROLLERS as CONTROLLERS
     from .controllers import Controller as Controller
+    from .controllers import cancel as cancel
     from .controllers import controller as controller
     from .controllers import from_control as from_control
     from .controllers import load_controller as load_controller
@@ -113,6 +114,7 @@ if TYPE_CHECKING:
     from .design import Assumptions as Assumptions
     from .design import Design as Design
     from .design import design as design_compensation
+    from .design import verify as verify
     from .diagnose import Comparison as Comparison
     from .diagnose import Diagnosis as Diagnosis
     from .diagnose import Ranking as Ranking
@@ -183,7 +185,7 @@ GROUPS = {
     "diagrams": (
         "Diagram", "haptic_interface", "teleoperator", "hand", "read_diagram", "write_diagram",
     ),
-    "controllers": ("CONTROLLERS", "controller", "from_control"),
+    "controllers": ("CONTROLLERS", "controller", "cancel"),
     "responses": (
         "derive_transfers", "transfer_functions", "bode", "simulate_diagram", "simulate_many",
         "Sampling", "sine",
@@ -208,8 +210,8 @@ FURTHER = {
         "read_study", "MEASURES", "latin_hypercube", "sobol", "random_samples",
         "sensitivity_samples", "limit", "trade_off", "sensitivities", "fit_simulation",
     ),
-    "recordings": ("Record", "fetch", "measured_impedance"),
-    "exchange": ("to_iosystem",),
+    "recordings": ("Record", "fetch", "measured_impedance", "verify"),
+    "exchange": ("to_iosystem", "from_control"),
 }
 #: these have another name in their folders; type checkers see all others by their imports
 __all__ = ["derive_transfers", "design_compensation", "propose_experiment", "simulate_diagram"]

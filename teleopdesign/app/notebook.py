@@ -239,11 +239,13 @@ def _(get_bench, mo, pages, views):
 @app.cell
 def _(BackgroundTask, TeleopDesignError, bench, mo, pages, set_bench, set_note, set_task):
     options = pages.candidate_options(bench)
-    candidate = mo.ui.dropdown(
-        options=options, value=next(iter(options), None), label="Candidate", searchable=True
-    )
+    first = pages.supported_option(bench)
+    candidate = mo.ui.dropdown(options=options, value=first, label="Candidate", searchable=True)
 
     def add(_):
+        if candidate.value is None:
+            set_note("Choose a candidate first: the records support none of them.")
+            return
         try:
             set_bench(bench.add(*candidate.value))
             set_note("")
@@ -257,7 +259,9 @@ def _(BackgroundTask, TeleopDesignError, bench, mo, pages, set_bench, set_note, 
         except TeleopDesignError as error:
             set_note(str(error))
 
-    add_button = mo.ui.button(label="Add", on_click=add, kind="success", disabled=not options)
+    add_button = mo.ui.button(
+        label="Add", on_click=add, kind="success" if first else "neutral", disabled=not options
+    )
     back_button = mo.ui.button(label="Take back", on_click=take_back, disabled=len(bench.rungs) < 2)
     rank_button = mo.ui.button(
         label="Look for what else is missing",

@@ -16,7 +16,9 @@ from ..base.sentences import (
     with_error_on_page as with_error,
 )
 from ..base.units import unit_after_number, unit_of
+from ..diagnose.adequacy import floors_left, is_adequate
 from ..diagnose.comparison import residual_data
+from ..diagnose.noise_floor import say_floors
 from .workbench import Workbench
 
 if TYPE_CHECKING:
@@ -44,9 +46,14 @@ def _name(rung: Rung) -> str:
     return "your model, re-estimated" if rung.added is None else f"+ {rung.added}"
 
 
+def _name_of_error(bench: Workbench) -> str:
+    """The name of the error on rows that were not fitted: of records, or of blocks in turn."""
+    return "check error" if bench.search.whole.of("check") else "held-out error"
+
+
 def ladder(bench: Workbench) -> str:
     """The errors of every rung as a Markdown table, with the noise floor."""
-    lines = ["| model | fit error | check error |", "|:---|---:|---:|"]
+    lines = [f"| model | fit error | {_name_of_error(bench)} |", "|:---|---:|---:|"]
     for rung in bench.rungs:
         fit, check = (_percent(e) for e in (rung.fit.fit_error, rung.fit.check_error))
         lines.append(f"| {_name(rung)} | {fit} | {check} |")
@@ -57,10 +64,33 @@ def ladder(bench: Workbench) -> str:
 def candidate_options(bench: Workbench) -> dict[str, tuple[str, str]]:
     """Candidates, best first: name on the page -> (effect, place)."""
     return {
-        f"{r.candidate}: check error {_percent(r.fit.check_error)}"
+        f"{r.candidate}: {_name_of_error(bench)} {_percent(r.fit.check_error)}"
         + (f" ({r.note})" if r.note else ""): r.candidate.key
         for r in bench.candidates
     }
+
+
+def supported_option(bench: Workbench) -> str | None:
+    """Name on the page of the best candidate that the records support; None: they support none."""
+    supported = {r.candidate.key for r in bench.state.supported}
+    names = (name for name, key in candidate_options(bench).items() if key in supported)
+    return next(names, None)
+
+
+def verdict(bench: Workbench) -> str:
+    """What the ladder comes to, as Markdown, where no supported candidate is left; else ""."""
+    if not bench.is_ranked or bench.state.supported:
+        return ""
+    state = bench.state
+    left = say_floors(floors_left(state.fit, state.floor))
+    if is_adequate(state.fit, state.floor):
+        names = ", ".join(str(r.added) for r in bench.rungs if r.added is not None)
+        what = f"with {names} the model is adequate" if names else "your model is adequate"
+        return f"**Verdict: {what}.** What is left is noise ({left} noise floors)."
+    return (
+        f"**Verdict: undecided.** {left} noise floors are left, and the records support no further "
+        "effect."
+    )
 
 
 def candidate_rows(bench: Workbench) -> list[dict[str, str]]:
@@ -71,7 +101,7 @@ def candidate_rows(bench: Workbench) -> list[dict[str, str]]:
             "effect": r.candidate.effect.name,
             "at": r.candidate.at,
             "fit error": _percent(r.fit.fit_error),
-            "check error": _percent(r.fit.check_error),
+            _name_of_error(bench): _percent(r.fit.check_error),
             "supported": "yes" if r.candidate.key in supported else "no",
             "note": r.note,
         }
@@ -82,11 +112,12 @@ def candidate_rows(bench: Workbench) -> list[dict[str, str]]:
 def compare_rungs(bench: Workbench, one: int, other: int) -> str:
     """Errors and parameters of two rungs side by side, as a Markdown table."""
     first, second = bench.rungs[one].fit, bench.rungs[other].fit
+    name = _name_of_error(bench)
     lines = [
         f"| | {_name(bench.rungs[one])} | {_name(bench.rungs[other])} |",
         "|:---|---:|---:|",
         f"| fit error | {_percent(first.fit_error)} | {_percent(second.fit_error)} |",
-        f"| check error | {_percent(first.check_error)} | {_percent(second.check_error)} |",
+        f"| {name} | {_percent(first.check_error)} | {_percent(second.check_error)} |",
     ]
     names = dict.fromkeys([*first.model.parameters, *second.model.parameters])
     for name in names:

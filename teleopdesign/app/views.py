@@ -162,6 +162,7 @@ def ladder_view(
     return mo.vstack(
         [
             mo.md(pages.ladder(bench)),
+            *([mo.md(words)] if (words := pages.verdict(bench)) else ()),
             place_side_by_side(candidate, buttons["add"], buttons["back"]),
             place_side_by_side(buttons["rank"], buttons["all"]),
             mo.ui.table(pages.candidate_rows(bench), selection=None, page_size=8)

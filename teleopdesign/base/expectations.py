@@ -173,6 +173,8 @@ def _make_any_check(parts: tuple[Any, ...]) -> TypeCheck | None:
             return deeper[0]
         words = [w for w in dict.fromkeys(w.expected for w in wrong) if w != "None"]
         hints = [w.hint for w in wrong if w.hint]
+        if "a Controller" in words and type(value).__module__.startswith("control."):
+            hints.append(": td.from_control(system) makes a controller of it")
         return WrongValue("", value, join_names(words, "or"), *hints[:1])
 
     return check

@@ -3,7 +3,7 @@
 from ..base.arguments import check_arguments
 from ..effects import BLOCK_EFFECTS, with_block_effects
 from .body import Body
-from .body_equation import BodyEquation
+from .body_equation import BodyEquation, compose_equation
 from .carried_force import solve_carried_force
 from .environment import CONTACT
 from .environments import free_space, hand, hunt_crossley, soft_rubber, spring_damper
@@ -25,6 +25,7 @@ __all__ = [
     "BodyEquation",
     "MatrixImpedance",
     "Value",
+    "compose_equation",
     "free_space",
     "hand",
     "hunt_crossley",

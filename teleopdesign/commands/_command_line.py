@@ -15,8 +15,10 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
+from typing import Any, NoReturn
 
 from .. import __version__, commands
+from ..base.errors import did_you_mean
 from ._failures import TRACEBACK, failure
 from ._options import check_outputs
 from ._paths import check_paths
@@ -118,9 +120,30 @@ def close_output() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser whose refusal of a command or an option names the nearest one."""
+
+    def parse_args(  # type: ignore[override]
+        self, args: Sequence[str] | None = None, namespace: Any = None
+    ) -> argparse.Namespace:
+        options: argparse.Namespace
+        options, rest = self.parse_known_args(args, namespace)
+        if rest:
+            command: _Parser = getattr(options, "command_parser", self)
+            word = rest[0].partition("=")[0]
+            near = did_you_mean(word, command._option_string_actions)
+            command.error(f"unrecognized arguments: {' '.join(rest)}{near}")
+        return options
+
+    def error(self, message: str) -> NoReturn:
+        word, _, choices = message.partition("invalid choice: ")[2].partition(" (choose from ")
+        names = [name.strip("')") for name in choices.split(", ") if choices]
+        super().error(message + did_you_mean(word.strip("'"), names))
+
+
 def parser() -> argparse.ArgumentParser:
     """The parser for the arguments of all commands."""
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="teleopdesign",
         description="Friction in haptic interfaces and teleoperators: find what a model lacks.",
         epilog=f"from a log to a compensation:\n{EXAMPLES}",
@@ -144,5 +167,5 @@ def parser() -> argparse.ArgumentParser:
             subparser.epilog = f"examples:\n{examples.rstrip().lstrip(chr(10))}"
             subparser.formatter_class = argparse.RawDescriptionHelpFormatter
         subparser.description = command.__doc__
-        subparser.set_defaults(run=command.run, parser=parser)
+        subparser.set_defaults(run=command.run, parser=parser, command_parser=subparser)
     return parser

@@ -36,10 +36,12 @@ from ._declarations import (
 from ._exact import exact_decimal, make_exact, resolvent
 from ._from_control import from_control, invert_plant, matrices_of, unit_state
 from ._measured import measured_frequencies, measured_plant
+from ._of_effects import CANCEL, cancel, cancelling_law, why_not_cancelled
 from ._opaque import calls_in, is_call, opaque_laws
 from ._state_space import is_of_matrices, sides_of
 
 __all__ = [
+    "CANCEL",
     "CONTROLLERS",
     "SIGNALS",
     "Ability",
@@ -51,6 +53,8 @@ __all__ = [
     "exact_decimal",
     "broken_declarations",
     "calls_in",
+    "cancel",
+    "cancelling_law",
     "catalogue",
     "controller",
     "equation_of",
@@ -72,6 +76,7 @@ __all__ = [
     "scheduled_force_feedback",
     "symbols_of",
     "unit_state",
+    "why_not_cancelled",
 ]
 
 
@@ -101,11 +106,14 @@ def catalogue(extra: Iterable[str | Path | ControlLaw] = ()) -> Mapping[str, Con
 def controller(name: str | ControlLaw, values: Mapping[str, float]) -> Controller:
     """A control law with these parameter values (SI).
 
-    name: of a law of the catalogue, or a user's law (`load_controller`)
+    name: of a law of the catalogue, "cancel" with parameters of effects such as
+        "cogging.amplitude" (as `cancel`), or a user's law (`load_controller`)
     raises ModelError: no such law, or a value that is missing, unknown or out of bounds
     """
     if isinstance(name, ControlLaw):
         return Controller((Stage(name, values),))
+    if name == CANCEL:
+        return Controller((Stage(cancelling_law(tuple(values)), values),))
     if name not in CONTROLLERS:
         raise ModelError(f"controller: {unknown('law', name, CONTROLLERS)}")
     return Controller((Stage(CONTROLLERS[name], values),))

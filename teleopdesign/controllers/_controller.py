@@ -78,6 +78,11 @@ class Controller:
         known = [t for t in times if t is not None]
         return sum(known) if known and len(known) == len(times) else None
 
+    @property
+    def reads_command(self) -> bool:
+        """Whether a law reads the force that is commanded without this controller."""
+        return any(stage.law.reads_command for stage in self.stages)
+
     def names(self) -> dict[str, float]:
         """Every parameter as "law.parameter" -> value (SI)."""
         return {f"{g.name}.{n}": float(v) for g in self.stages for n, v in g.values.items()}

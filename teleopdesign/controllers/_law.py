@@ -4,8 +4,9 @@ A law sees `now.input` (the signal wired to the block), the motion that it acts 
 `speed` = abs(velocity), `travel_rate`), its hidden states and `now.period`, the duration of a
 sample, 0 in continuous time. `speed` is apart from `velocity` so that the linear form can freeze
 it; `travel_rate` is the travel of the last sample over its duration, velocity itself in continuous
-time. Every form of the law (transfer function, python-control system, sampled step of the kernel)
-is derived from it.
+time; `command` is the force commanded without this law, for laws that declare to read it. Every
+form of the law (transfer function, python-control system, sampled step of the kernel) is derived
+from it.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ Ability = Literal["bound", "bristle_stiffness", "smoothing", "filter_bandwidth",
 
 SIGNALS = {
     name: sp.Symbol(name, real=True)
-    for name in ("input", "velocity", "speed", "travel_rate", "period")
+    for name in ("input", "velocity", "speed", "travel_rate", "period", "command")
 }
 
 
@@ -63,6 +64,7 @@ class ControlLaw:
     States whose rate or step uses `travel_rate` are updated at a sample before the output is
     computed; all others advance from one sample to the next with their inputs held.
     takes: "force" if the input must not be the motion itself; "": any input
+    reads_command: whether the law uses `now.command`
     transfer(values, s): transfer function from the input, if the states do not determine it
     shift(values, z): transfer function in z of a law that exists only in a computer, stepped each
         `period` (a parameter of the law, s); its output is held in between. A law that is linear,
@@ -85,6 +87,7 @@ class ControlLaw:
     states: Mapping[str, ControllerState] = field(default_factory=dict)
     linear: bool = False
     takes: Literal["", "force"] = ""
+    reads_command: bool = False
     transfer: Callable[[Mapping[str, float], sp.Symbol], sp.Expr] | None = None
     shift: Callable[[Mapping[str, float], sp.Symbol], sp.Expr] | None = None
     sampled: Callable[[Mapping[str, float], float], Stage] | None = None

@@ -7,12 +7,17 @@ The law leaves F_C sgn(v) a/(a + abs(v)) of Coulomb friction. This has the same 
 no energy where the true level is at least F_C.
 """
 
-from ..effects import Parameter
+from types import SimpleNamespace
+
+from ..effects import EFFECTS, Parameter
 from ._controller import ControlLaw
+
+_SMOOTHED = EFFECTS["smoothed_coulomb"]
 
 
 def law(now, p):
-    return p.level * now.velocity / (p.smoothing_velocity + now.speed)
+    force = _SMOOTHED.law(SimpleNamespace(velocity=now.velocity), p)
+    return force.subs(abs(now.velocity), now.speed)
 
 
 CONTROLLER = ControlLaw(
@@ -20,9 +25,7 @@ CONTROLLER = ControlLaw(
     linear=True,
     parameters={
         "level": Parameter("force", "F_C: level that is cancelled"),
-        "smoothing_velocity": Parameter(
-            "velocity", "a: speed at which half of the level is reached"
-        ),
+        "smoothing_velocity": _SMOOTHED.parameters["smoothing_velocity"],
     },
     bound="level",
     smoothing="smoothing_velocity",

@@ -22,5 +22,7 @@ if TYPE_CHECKING:
     from .quasi_static import residual_friction as residual_friction
     from .refine import TunedControllers as TunedControllers
     from .refine import refine as refine
+    from .verify import Verification as Verification
+    from .verify import verify as verify
 
 __getattr__, __dir__, __all__ = lazy_face(__name__)

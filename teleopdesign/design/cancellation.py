@@ -18,7 +18,7 @@ from ..base.sentences import round_down, round_up
 from ..base.shown import Shown
 from ..base.units import unit_after_number, unit_of
 from ..blocks import Body
-from ..controllers import Controller, controller, laws_that_declare
+from ..controllers import CANCEL, Controller, controller, laws_that_declare
 from ..realise.acting_bound import largest_acting_force
 from ..realise.friction_interval import FrictionInterval
 from ..realise.reach import Reach
@@ -53,6 +53,14 @@ class ProposedController(Shown):
     def law(self) -> str:
         """Name of the first law of the controller."""
         return self.controller.stages[0].law.name
+
+    @property
+    def words(self) -> str:
+        """The law, and the effects that it cancels: "cancel (cogging, coulomb)"."""
+        if self.law != CANCEL:
+            return self.law
+        names = (n.split(".")[1] for n in self.controller.names() if n.count(".") > 1)
+        return f"{CANCEL} ({', '.join(dict.fromkeys(names))})"
 
 
 #: part of the largest passive stiffness that a Dahl cancellation takes on a presliding device
@@ -186,6 +194,7 @@ def smoothing_name(names: Iterable[str], *, block: str = "") -> str | None:
     names: such as "law.parameter", after `block` if that is stated
     """
     declared = {f"{block}{law.name}.{law.smoothing}" for law in laws_that_declare("smoothing")}
+    declared.add(f"{block}{CANCEL}.smoothing_velocity")
     return next((name for name in names if name in declared), None)
 
 

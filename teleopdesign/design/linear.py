@@ -13,16 +13,15 @@ from collections.abc import Mapping
 import numpy as np
 import sympy as sp
 
-from ..blocks import Body, Value
+from ..base.errors import ModelError
+from ..blocks import Body
 from ..controllers import Controller
 from ..diagrams import Diagram, four_cases
-from ..effects import EFFECTS
-from ..frequency import FrequencyResponse, bode
+from ..frequency import FrequencyResponse, bode, describing_function
 from ..frequency.closed_forms import dahl
+from ..frequency.frozen_friction import without_friction
 from .quasi_static import force_needed
 from .stated_motion import StatedMotion
-
-FRICTION = ("friction_level", "friction_factor", "friction_speed", "friction_shape")
 
 
 def linear_cases(hybrid: Diagram, motion: StatedMotion) -> dict[str, Diagram]:
@@ -66,29 +65,21 @@ def _linear(diagram: Diagram, motion: StatedMotion) -> Diagram:
     damping, stiffness = _equal_friction(body, motion)
     for block in diagram.controls:
         assert isinstance(block.controller, Controller)
-        stage = block.controller.stages[0]
-        level, bristle = stage.value_of("bound"), stage.value_of("bristle_stiffness")
-        if level is not None and bristle is not None:
-            less = _equal_dahl(level, bristle, motion)
-            damping, stiffness = damping - less[0], stiffness - less[1]
+        if all(stage.law.linear for stage in block.controller.stages):
+            continue
+        if (less := _equal_force(block.controller, motion)) is not None:
+            damping, stiffness = damping - less.imag / motion.omega, stiffness - less.real
             diagram = diagram.without(block.name)
     return diagram.with_block("Z_M", without_friction(body, damping=damping, stiffness=stiffness))
 
 
-def without_friction(body: Body, *, damping: float = 0.0, stiffness: float = 0.0) -> Body:
-    """The body without friction; a damper (N s/m) and spring (N/m) are added, sums at least 0."""
-    for effect in [e for e in reversed(body.effects) if e.role in FRICTION]:
-        body = body.without_effect(effect.name)
-    for name, parameter, more in (
-        ("viscous", "damping", damping),
-        ("spring", "stiffness", stiffness),
-    ):
-        full = f"{name}.{parameter}"
-        if not body.has(name):
-            body = body.with_effect(EFFECTS[name])
-        value = max(body.parameters[full].value + more, 0.0)
-        body = body.with_values({full: Value(value)})
-    return body
+def _equal_force(law: Controller, motion: StatedMotion) -> complex | None:
+    """First harmonic of a law that the motion drives, N/m or N m/rad; None: it has none."""
+    try:
+        harmonic = describing_function(law, amplitude=motion.amplitude, frequency=motion.frequency)
+    except ModelError:
+        return None
+    return complex(harmonic)
 
 
 def _equal_friction(body: Body, motion: StatedMotion) -> tuple[float, float]:

@@ -23,8 +23,10 @@ from ..realise.reach import Reach
 from ..simulate import Sampling
 from .assumptions import Assumptions, sampling_of
 from .cancellation import ProposedController
+from .expected import ExpectedError
 from .felt_impedance import FeltImpedance
 from .force_feedback import FeedbackLoop
+from .other_effects import LEVEL
 from .prediction import Prediction
 from .quasi_static import ResidualFriction
 
@@ -40,6 +42,8 @@ class Design(Shown, ByValue):
     cancellation: C; None where no cancellation is certain to be passive
     other: the second-best law for C;  other_left: force error of the hybrid with that law
     force_feedback: H;  loop: its loop at rest;  prediction: force errors of the four cases
+    expected: force error of the case that the recorded sensors allow, as an interval
+    not_cancelled: effects of the body that C does not make up for -> why
     impedance: Zhat_M that a hand feels, simulated and by describing functions
     residual: friction left in slow steady motion, in the middle of the travel
     transparency: T of the four cases, by linear theory, with the load in place of the hand
@@ -59,6 +63,8 @@ class Design(Shown, ByValue):
     force_feedback: ProposedController
     loop: FeedbackLoop
     prediction: Prediction
+    expected: ExpectedError
+    not_cancelled: Mapping[str, str]
     impedance: FeltImpedance
     residual: ResidualFriction
     transparency: FrequencyResponse
@@ -70,6 +76,14 @@ class Design(Shown, ByValue):
     def notes(self) -> tuple[str, ...]:
         """Warnings, to be read with the numbers."""
         return tuple(look(self, "notes"))
+
+    @property
+    def follows_level(self) -> bool:
+        """Whether C follows the friction level over place, load, speed or direction."""
+        names = () if self.cancellation is None else self.cancellation.controller.names()
+        parts = {n.split(".")[1] for n in names}
+        levels = (e.name for e in self.body.effects if e.role in LEVEL)
+        return any(name in parts for name in levels if name != "coulomb")
 
     @property
     def held(self) -> FeedbackLoop:
@@ -134,6 +148,8 @@ class Design(Shown, ByValue):
             "loop_held_rigidly": _loop(self.held),
             "motion": asdict(self.prediction.motion),
             "prediction": {case: asdict(p) for case, p in self.prediction.cases.items()},
+            "expected": asdict(self.expected),
+            "not_cancelled": dict(self.not_cancelled),
             "taken_rigid_in_simulation": self.prediction.rigid,
             "left_out_of_linear": self.prediction.left_out,
             "felt_impedance": _impedance(self.impedance),

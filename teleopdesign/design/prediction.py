@@ -89,19 +89,22 @@ def simulated_error(diagram: Diagram, motion: StatedMotion, sampling: Sampling) 
     return float(np.std(steady_cycle(diagram, motion, sampling)["E"].values))
 
 
-def predict(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> Prediction:
+def predict(
+    hybrid: Diagram, motion: StatedMotion, sampling: Sampling, *, linear: Diagram
+) -> Prediction:
     """Predict the force error of the four cases along a prescribed motion.
 
     hybrid: a device with C and H (either may be absent), without a hand
+    linear: the same with the part of C that linear theory has, that of friction
     raises ModelError: not even the device without compensation can be simulated
     """
-    linear, left_out = linear_error(hybrid, motion)
+    by_theory, left_out = linear_error(linear, motion)
     simulated, rigid = _simulable(hybrid, motion, sampling)
     runs, failed = _simulate_cases(simulated, motion, sampling)
     speed = f"{led_motion(simulated, 'L')}_velocity"
     curves = force_velocity(runs, velocity=speed, after=(CYCLES - 1) / motion.frequency)
     cases = {
-        case: _case(case, diagram, motion, linear[case], curves, failed.get(case, ""))
+        case: _case(case, diagram, motion, by_theory[case], curves, failed.get(case, ""))
         for case, diagram in four_cases(hybrid, every=True).items()
     }
     return Prediction(motion, cases, curves, left_out, simulated, rigid)

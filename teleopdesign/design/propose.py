@@ -24,9 +24,17 @@ from .cancellation import (
     smoothed_cancellation,
     smoothing_name,
 )
+from .expected import ExpectedError, expected_error, unexplained_force
 from .felt_impedance import felt_impedance
 from .force_feedback import FeedbackLoop, force_feedback, identified_delay, whole_inertia
 from .linear import transparency
+from .other_effects import (
+    following_cancellation,
+    late_force_claim,
+    not_cancelled,
+    with_forces,
+    with_gains_divided_out,
+)
 from .outcome import Design
 from .prediction import Prediction, predict
 from .quasi_static import SHARES, residual_friction
@@ -47,8 +55,12 @@ FILTER, FILTER_SHARE = 50.0, 0.1
 
 @dataclass(frozen=True)
 class Trial:
-    """One choice of C with its H, and the force error predicted for both."""
+    """One choice of C with its H, and the force error predicted for both.
 
+    friction: the part of C that cancels friction, alone
+    """
+
+    friction: ProposedController | None
     cancellation: ProposedController | None
     force_feedback: ProposedController
     loop: FeedbackLoop
@@ -99,10 +111,12 @@ def design(
         force_feedback=best.force_feedback,
         loop=best.loop,
         prediction=best.prediction,
+        expected=_error_to_expect(best, diagnosis, at, settings, reach),
+        not_cancelled=not_cancelled(body, best.cancellation),
         impedance=felt_impedance(best.prediction.hybrid, motion, sampling_of(settings, reach)),
         residual=residual_friction(
             body,
-            cancellation=best.cancellation.controller if best.cancellation else None,
+            cancellation=best.friction.controller if best.friction else None,
             force_feedback=best.force_feedback.controller,
             speeds=reach.peak_speed * SHARES,
             position=motion.centre,
@@ -111,6 +125,24 @@ def design(
         claims=_claims(best, body, friction, reach, settings),
         verdict=diagnosis.verdict,
         left=diagnosis.left,
+    )
+
+
+def _error_to_expect(
+    best: Trial, diagnosis: Diagnosis, at: str, settings: Assumptions, reach: Reach
+) -> ExpectedError:
+    """The force error of what can be built with the recorded sensors."""
+    case = "hybrid" if reach.measures_force else "MBC" if best.cancellation else "none"
+    cases, error = best.prediction.cases, diagnosis.after.check_error
+    floor = error / max(diagnosis.left, 1.0)
+    return expected_error(
+        case,
+        four_cases(best.prediction.hybrid, every=True)[case],
+        best.prediction.motion,
+        sampling_of(settings, reach),
+        simulated=cases[case].simulated,
+        without=cases["none"].simulated,
+        unexplained=unexplained_force(diagnosis.experiment, at, error=error, floor=floor),
     )
 
 
@@ -132,7 +164,7 @@ def cancellations(
     """The laws for C that are passive within all intervals; none if no level is certain."""
     if friction is None:
         return []
-    gain = acting_gain(body, reach, errors=assumptions.errors)
+    gain = command_gain(body, reach, errors=assumptions.errors)
     level = cancelled_level(friction, body, reach, gain, assumptions)
     if level is None:
         return []
@@ -154,7 +186,14 @@ def cancellations(
         period=assumptions.sample_period,
         filter_bandwidth=assumptions.velocity_bandwidth,
     )
-    return [*laws, smoothed]
+    follows = following_cancellation(smoothed, body, reach, assumptions, gain=gain)
+    return [*laws, smoothed if follows is None else follows]
+
+
+def command_gain(body: Body, reach: Reach, *, errors: float) -> float:
+    """Upper bound of the acting force per commanded force, once C has divided its gains out."""
+    rest, ratio = with_gains_divided_out(body, reach=reach, errors=errors)
+    return ratio * acting_gain(rest, reach, errors=errors)
 
 
 def _trial(
@@ -169,7 +208,8 @@ def _trial(
         and assumptions.sample_period is not None
         and assumptions.delay is not None
     )
-    names = option.controller.names() if option else {}
+    whole = with_forces(option, body, assumptions)
+    names = whole.controller.names() if whole else {}
     smoothing = smoothing_name(names)
     h, loop = force_feedback(
         body,
@@ -180,13 +220,17 @@ def _trial(
         delay=_total_delay(body, assumptions) + assumptions.sample_period,
         smoothing_velocity=0.0 if smoothing is None else names[smoothing],
     )
-    diagram = haptic_interface(
-        body,
-        cancellation=option.controller if option else None,
-        force_feedback=h.controller,
+    diagram, linear = (
+        haptic_interface(
+            body,
+            cancellation=one.controller if one else None,
+            force_feedback=h.controller,
+        )
+        for one in (whole, option)
     )
     sampling = sampling_of(assumptions, reach)
-    return Trial(option, h, loop, diagram, predict(diagram, motion, sampling))
+    prediction = predict(diagram, motion, sampling, linear=linear)
+    return Trial(option, whole, h, loop, diagram, prediction)
 
 
 def _total_delay(body: Body, assumptions: Assumptions) -> float:
@@ -202,7 +246,7 @@ def _with_load(best: Trial, body: Body, assumptions: Assumptions) -> Diagram:
     return haptic_interface(
         body,
         hand=Body(body.axis, {"inertia": inertia}),
-        cancellation=best.cancellation.controller if best.cancellation else None,
+        cancellation=best.friction.controller if best.friction else None,
         force_feedback=best.force_feedback.controller,
     )
 
@@ -216,19 +260,25 @@ def _claims(
 ) -> Mapping[str, tuple[Claim, ...]]:
     """The claims on passivity of each case."""
     by_case: dict[str, list[Claim]] = {case: [] for case in four_cases(best.diagram, every=True)}
-    if best.cancellation is not None and friction is not None:
-        gain = acting_gain(body, reach, errors=assumptions.errors)
+    late = _total_delay(body, assumptions)
+    if best.friction is not None and friction is not None:
+        gain = command_gain(body, reach, errors=assumptions.errors)
         by_case["MBC"] = cancellation_claims(
             body,
-            best.cancellation,
+            best.friction,
             friction,
             reach,
             gain=gain,
-            late=_total_delay(body, assumptions),
+            late=late,
             errors=assumptions.errors,
+            fraction=assumptions.fraction,
         )
-        compliant = compliant_claim(body, best.cancellation, friction, gain=gain)
+        compliant = compliant_claim(body, best.friction, friction, gain=gain)
         by_case["MBC"] += [compliant] if compliant is not None else []
+    assert assumptions.sample_period is not None
+    held = late + assumptions.sample_period
+    if (of_place := late_force_claim(body, reach, assumptions, late=held)) is not None:
+        by_case["MBC"].append(of_place)
     by_case["FF"] = [feedback_claim(body, best.force_feedback.controller)]
     for case, diagram in four_cases(best.prediction.hybrid, every=True).items():
         by_case[case].append(

@@ -76,10 +76,11 @@ def _force_along(law: sp.Expr, body: Body, values: dict[sp.Symbol, Array]) -> Ar
     return np.broadcast_to(np.asarray(call(*values.values()), dtype=float), rows)
 
 
-def slow_output(controller: Controller, force: Array, velocity: Array) -> Array:
+def slow_output(controller: Controller, drive: Array, velocity: Array) -> Array:
     """Steady output of a controller at an input and a velocity, (n,) each.
 
-    States have their steady value at that velocity; a low-pass passes, a bristle slides.
+    States have their steady value at that velocity; a low-pass passes, a bristle slides, a clock
+    stands at 0. The command without the controller is 0.
     """
     signals = {n: CONTROL_SIGNALS[n] for n in CONTROL_SIGNALS}
     equation = controller.equation("slow", signals)
@@ -87,29 +88,31 @@ def slow_output(controller: Controller, force: Array, velocity: Array) -> Array:
     output = equation.output
     for state, rate in equation.rates.items():
         here = rate.subs(CONTROL_SIGNALS["travel_rate"], travel).subs(sp.Abs(travel), speed)
-        output = output.subs(state, sp.solve(here, state)[0])
+        steady = sp.solve(here, state)
+        output = output.subs(state, steady[0] if steady else 0)
     numbers = {parameter_symbol("slow", n): v for n, v in controller.names().items()}
+    numbers[CONTROL_SIGNALS["command"]] = 0.0
     call = sp.lambdify([CONTROL_SIGNALS["input"], travel, speed], output.subs(numbers), "numpy")
-    force_out = call(force, velocity, np.abs(velocity))
+    force_out = call(drive, velocity, np.abs(velocity))
     return np.broadcast_to(np.asarray(force_out, dtype=float), velocity.shape)
 
 
 def quasi_static_error(diagram: Diagram, motion: StatedMotion, *, rows: int = 2000) -> Array:
     """Force error R_D - R_M along a cycle in slow motion at R_D = 0, (rows,)."""
-    _, _, velocity, _ = motion.cycle(rows)
+    _, position, velocity, _ = motion.cycle(rows)
     (body,) = (b.body for b in diagram.bodies if b.name == "Z_M")
     assert isinstance(body, Body)
     force, _ = force_needed(body, motion, rows=rows)
-    return remaining_force(diagram, force, velocity)
+    return remaining_force(diagram, force, position, velocity)
 
 
-def remaining_force(diagram: Diagram, force: Array, velocity: Array) -> Array:
+def remaining_force(diagram: Diagram, force: Array, position: Array, velocity: Array) -> Array:
     """The part (n,) of a resisting force (n,) that C and H leave to the hand in slow motion."""
     gain = np.zeros_like(force)
     for block in diagram.controls:
         assert isinstance(block.controller, Controller)
         if block.name == "C":
-            force = force - slow_output(block.controller, np.zeros_like(force), velocity)
+            force = force - slow_output(block.controller, position, velocity)
         elif block.name == "H":
             gain = slow_output(block.controller, np.ones_like(force), velocity)
     left: Array = force / (1 + gain)
@@ -155,7 +158,7 @@ def residual_friction(
     level, _ = law_along(body, body.level(), signals)
     device = haptic_interface(body, cancellation=cancellation, force_feedback=force_feedback)
     rows = {
-        case: remaining_force(d, np.array(level), speeds)
+        case: remaining_force(d, np.array(level), signals[SIGNALS["position"]], speeds)
         for case, d in four_cases(device, every=True).items()
     }
     return ResidualFriction(speeds, rows)

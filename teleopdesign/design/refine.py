@@ -124,9 +124,10 @@ def _range(design: Design) -> tuple[dict[str, float], dict[str, tuple[float, flo
             bounds[f"C.{smoothing}"] = (a, a * FARTHEST)
         else:
             law = design.cancellation.controller.stages[0].law
-            stiffness = c[f"{law.name}.{law.bristle_stiffness}"]
-            start[f"C.{law.name}.{law.bristle_stiffness}"] = stiffness
-            bounds[f"C.{law.name}.{law.bristle_stiffness}"] = (stiffness / FARTHEST, stiffness)
+            bristle = law.bristle_stiffness or "presliding.stiffness"
+            if (stiffness := c.get(f"{law.name}.{bristle}")) is not None:
+                start[f"C.{law.name}.{bristle}"] = stiffness
+                bounds[f"C.{law.name}.{bristle}"] = (stiffness / FARTHEST, stiffness)
     return start, bounds
 
 

@@ -22,6 +22,7 @@ from ..base.units import unit_of
 from ..blocks import Body, Value
 from ..controllers import Controller
 from ..diagrams import Diagram, haptic_interface
+from ..frequency.frozen_friction import without_friction
 from ..passivity import (
     Claim,
     Evidence,
@@ -42,7 +43,6 @@ from ..realise.reach import Reach
 from ..realise.tips import led_motion
 from ..simulate import Sampling
 from .cancellation import ProposedController
-from .linear import without_friction
 from .prediction import steady_cycle
 from .stated_motion import StatedMotion
 
@@ -92,17 +92,28 @@ def cancellation_claims(
     gain: float,
     late: float,
     errors: float,
+    fraction: float,
 ) -> list[Claim]:
     """Claims on friction and its cancellation, at the worst ends of all intervals.
 
     gain: acting force per commanded force;  late: delay of the cancellation's force, s
     errors: half width of the intervals in standard errors
+    fraction: largest part of the level that a cancellation which follows the level has anywhere
     """
     # what actuation makes of a command is in its gain and in how late it is
     actuation = [e.name for e in body.effects if e.role == "actuation"]
     open_ones = effects_left_open(body, reach, errors=errors)
     left = {name: why for name, why in open_ones.items() if name not in actuation}
-    claims = _friction_claims(body, chosen, friction, reach, gain=gain, late=late, errors=errors)
+    if not chosen.controller.stages[0].law.bound:  # the least level stands for every other one
+        least = round_down(friction.lowest.low, digits=4)
+        part = _decimal(round_up(fraction * least, digits=6))
+        claim = bounded_compensation(coulomb_level=_decimal(least), bound=part)
+        words = f"at the least level, and in proportion at every other, {claim.statement}"
+        claims = [replace(claim, statement=words)]
+    else:
+        claims = _friction_claims(
+            body, chosen, friction, reach, gain=gain, late=late, errors=errors
+        )
     return [extend_to_device(c, over=friction.over, left=left) for c in claims]
 
 

@@ -17,7 +17,7 @@ from ..base.errors import ModelError
 from ..blocks import Body
 from ..controllers import Controller
 from .junctions import Junction
-from .parts import ANY, AnyBlock, Attached, Block, Control, Moving
+from .parts import ANY, AnyBlock, Attached, Block, Control, Moving, reads_command
 from .wiring import Diagram
 
 TEXTS = {
@@ -29,6 +29,7 @@ TEXTS = {
     "E": "force error R_D - R_M",
     "R_FF": "force that the force feedback H adds",
     "R_MBC": "force that the motion-based cancellation C adds",
+    "R_B": "force commanded without the motion-based cancellation C",
     "R_P": "force that the passivity controller P adds",
     "L": "motion of the device",
     "L_D": "reference of the motion",
@@ -59,9 +60,8 @@ def haptic_interface(
     ANY stands for a block of which only the place is known.
     raises ModelError: `analog` names no controller, or the position loop uses a velocity
     """
-    for name in analog:
-        if name not in ("C", "H", "K"):
-            raise ModelError(f'haptic interface: analog: no controller "{name}", has C, H, K')
+    if unknown := set(analog) - {"C", "H", "K"}:
+        raise ModelError(f'haptic interface: analog: no controller "{min(unknown)}", has C, H, K')
     blocks: list[Block] = [Moving("Z_M", device, "L", "R_A", {"R_M": -1}, "R_V")]
     command, on_hand = {"R_D": 1}, {"R_V": -1}
     junctions = [Junction("E", {"R_D": 1, "R_M": -1})]
@@ -72,12 +72,14 @@ def haptic_interface(
     if force_feedback is not None:
         blocks.append(Control("H", force_feedback, "E", "R_FF", "L", "H" in analog))
         command["R_FF"] = 1
-    if cancellation is not None:
-        blocks.append(Control("C", cancellation, "L", "R_MBC", "L", "C" in analog))
-        command["R_MBC"] = 1
     if passivity is not None:
         blocks.append(Control("P", passivity, "R_M", "R_P", "L"))
         command["R_P"] = 1
+    if cancellation is not None:
+        others = ("R_B",) * reads_command(cancellation)
+        junctions += [Junction(name, dict(command)) for name in others]
+        blocks.append(Control("C", cancellation, "L", "R_MBC", "L", "C" in analog, others=others))
+        command["R_MBC"] = 1
     if position_loop is None:
         outside["R_D"] = "force"
     else:

@@ -163,7 +163,7 @@ class Control:
     motion: of a body, or a junction or kinematics of motions; blank: the law receives no velocity
     analog: realised by electronics, so that no computer samples it
     entry: place in a system of several inputs and outputs whose states it shares
-    others: further signals that a law reads which is only code
+    others: further signals, of a law that is only code, or the command that a law reads
     """
 
     name: str
@@ -178,8 +178,10 @@ class Control:
     def __post_init__(self) -> None:
         check_name(self.name, where="block")
         check_names(f"block {self.name}: others", *self.others)
-        if self.others and not self.is_code:
-            raise ModelError(f"{self.name}: others are for a law that is known as code alone")
+        if self.others and not (self.is_code or reads_command(self.controller)):
+            raise ModelError(
+                f"{self.name}: others are for a law that is known as code alone, or reads a command"
+            )
         check_names(f"block {self.name}", self.input, self.output)
         if self.motion:  # blank: none
             check_name(self.motion, where=f"block {self.name}: motion")
@@ -208,6 +210,11 @@ class Control:
         """Whether a stage is a measured frequency response, known only at its frequencies."""
         stages = self.controller.stages if isinstance(self.controller, Controller) else ()
         return any(stage.law.response is not None for stage in stages)
+
+
+def reads_command(controller: Controller | AnyBlock) -> bool:
+    """Whether a law reads the force that is commanded without its block."""
+    return isinstance(controller, Controller) and controller.reads_command
 
 
 Block = Moving | Attached | Linked | Control

@@ -15,7 +15,7 @@ from __future__ import annotations
 from ..blocks import Body
 from ..controllers import Controller
 from .junctions import Junction
-from .parts import ANY, AnyBlock, Attached, Block, Control, Moving, PortRole
+from .parts import ANY, AnyBlock, Attached, Block, Control, Moving, PortRole, reads_command
 from .wiring import Diagram
 
 TEXTS = {
@@ -31,6 +31,8 @@ TEXTS = {
     "F_P": "force of the coupling on the slave, its negative on the master",
     "F_Cm": "force that the cancellation adds at the master",
     "F_Cs": "force that the cancellation adds at the slave",
+    "B_m": "force commanded to the master's actuator without C_m",
+    "B_s": "force commanded to the slave's actuator without C_s",
     "U_m": "force commanded to the master's actuator",
     "U_s": "force commanded to the slave's actuator",
 }
@@ -74,7 +76,9 @@ def teleoperator(
             blocks.append(Attached(name, held, motion, passive, role=roles[name]))
             on_body[passive] = 1
         if cancellation is not None:
-            blocks.append(Control(f"C_{side}", cancellation, motion, force, motion))
+            others = (f"B_{side}",) if reads_command(cancellation) else ()
+            blocks.append(Control(f"C_{side}", cancellation, motion, force, motion, others=others))
+            junctions += [Junction(name, dict(command)) for name in others]
             command[force] = 1
         junctions += [Junction(f"F_{side}", on_body), Junction(f"U_{side}", command)]
     outside = {"F_u": "force", "F_d": "force"}

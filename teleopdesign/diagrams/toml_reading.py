@@ -19,7 +19,7 @@ from ..base.toml import Table, describe_toml_value, read_toml
 from ..base.units import AXES, QUANTITIES
 from ..blocks import Body, with_block_effects
 from ..blocks.described import body_of
-from ..controllers import CONTROLLERS, ControlLaw, Controller, Stage
+from ..controllers import CANCEL, CONTROLLERS, ControlLaw, Controller, Stage, cancelling_law
 from ..effects import EFFECTS, Effect
 from ..measurement.description import BODY, body_from
 from .expressions import read_expression
@@ -37,7 +37,7 @@ WIRING = {
     "moving": ("motion", "command", "loads", "driver"),
     "attached": ("motion", "force", "sign", "role"),
     "linked": ("motions", "forces", "sign", "role"),
-    "control": ("input", "output", "motion", "analog"),
+    "control": ("input", "output", "motion", "analog", "others"),
 }
 
 
@@ -141,7 +141,8 @@ def _block(name: str, table: Table, known: _Known) -> Block:
         source, made = (_string(table, key) for key in ("input", "output"))
         along = _string(table, "motion") if "motion" in table.content else ""
         law = _controller(table, known)
-        return Control(name, law, source, made, along, table.flag("analog", False))
+        others = tuple(_strings(table, "others"))
+        return Control(name, law, source, made, along, table.flag("analog", False), others=others)
     if kind == "linked":
         motions, forces = (tuple(_strings(table, key)) for key in ("motions", "forces"))
         z, role = read_matrices(table, len(motions)), _role(name, table)
@@ -233,14 +234,29 @@ def _controller(table: Table, known: _Known) -> Controller | AnyBlock:
 
 
 def _stage(table: Table, known: _Known) -> Stage:
-    law = known.laws[table.choice("law", known.laws)]
+    name = table.choice("law", (*known.laws, CANCEL))
     parameters = table.table("parameters")
-    parameters.allow(law.parameters)
-    values = {name: parameters.number(name) for name in law.parameters}
+    if name == CANCEL:
+        parameters = replace(parameters, content=_flat(parameters.content))
     try:
-        return Stage(law, values)
+        law = known.laws[name] if name != CANCEL else _cancelling(parameters, known)
+        parameters.allow(law.parameters)
+        return Stage(law, {name: parameters.number(name) for name in law.parameters})
     except ModelError as error:
         raise ExperimentError(f"{parameters.where()}: {error}") from error
+
+
+def _cancelling(parameters: Table, known: _Known) -> ControlLaw:
+    return cancelling_law(tuple(parameters.content), known.effects)
+
+
+def _flat(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters of effects, written cogging.amplitude = 0.1 or in a table of the effect."""
+    flat: dict[str, Any] = {}
+    for name, value in content.items():
+        inner = value if isinstance(value, Mapping) else {"": value}
+        flat |= {f"{name}.{n}" if n else name: v for n, v in inner.items()}
+    return flat
 
 
 def _string(table: Table, key: str) -> str:

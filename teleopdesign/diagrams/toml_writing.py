@@ -17,7 +17,7 @@ from ..base.errors import ExperimentError, ModelError, quote
 from ..base.files import write_text
 from ..base.toml import inline_text, key_text, string_text
 from ..blocks import Body, Value, with_block_effects
-from ..controllers import CONTROLLERS, ControlLaw, Controller
+from ..controllers import CANCEL, CONTROLLERS, ControlLaw, Controller, Stage, cancelling_law
 from ..effects import EFFECTS, Effect
 from .expressions import read_expression
 from .junctions import Junction, Kinematics
@@ -68,7 +68,7 @@ def diagram_text(
         lines += [] if kind is not None else _wiring_lines(block)
         if isinstance(block, Control):
             lines += ["analog = true"] if block.analog else []
-            lines += _laws(block, laws)
+            lines += _laws(block, laws, known)
         elif not isinstance(block, Linked):
             lines += _body(block.name, block.body, known)
     if kind is None:
@@ -118,6 +118,7 @@ def _wiring_lines(block: Block) -> list[str]:
         assert isinstance(block, Control)
         keys = {"kind": "control", "input": block.input, "output": block.output}
         keys |= {"motion": block.motion} if block.motion else {}
+        keys |= {"others": block.others} if block.others else {}
     keys |= {"role": block.role} if isinstance(block, Attached | Linked) and _states(block) else {}
     return [f"{k} = {_value(v)}" for k, v in keys.items()]
 
@@ -149,12 +150,21 @@ def body_lines(table: str, body: Body) -> list[str]:
     return lines
 
 
-def _laws(block: Control, known: Mapping[str, ControlLaw]) -> Iterator[str]:
+def _is_known(stage: Stage, laws: Mapping[str, ControlLaw], effects: Mapping[str, Effect]) -> bool:
+    name = stage.law.name
+    if name == CANCEL:
+        return cancelling_law(tuple(stage.law.parameters), effects) is stage.law
+    return laws.get(name) is stage.law
+
+
+def _laws(
+    block: Control, laws: Mapping[str, ControlLaw], effects: Mapping[str, Effect]
+) -> Iterator[str]:
     if not isinstance(block.controller, Controller):
         return
     stages = block.controller.stages
     for stage in stages:
-        if known.get(stage.law.name) is not stage.law:
+        if not _is_known(stage, laws, effects):
             raise ModelError(
                 f'{block.name}: law "{stage.law.name}" is none of the package: name your file to '
                 'writer and reader, laws=controllers.catalogue(["my_law.py"]); a system of '

@@ -26,6 +26,7 @@ ACTUATION_ORDER = (
     "position_dependent_gain",
     "actuator_lag",
     "actuation_delay",
+    "actuator_dead_zone",
     "actuator_saturation",
 )
 

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from .loop import loop_gain as loop_gain
     from .margins import gain_margin as gain_margin
     from .margins import phase_margin as phase_margin
+    from .matrix_response import MatrixResponse as MatrixResponse
+    from .matrix_response import matrix_response as matrix_response
     from .measured_response import measured_impedance as measured_impedance
     from .measured_response import measured_response as measured_response
     from .measured_response import simulated_response as simulated_response
     from .response import FrequencyResponse as FrequencyResponse
-    from .response import MatrixResponse as MatrixResponse
     from .response import bode as bode
-    from .response import matrix_response as matrix_response
 
 __getattr__, __dir__, __all__ = lazy_face(__name__)

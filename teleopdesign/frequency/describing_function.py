@@ -53,6 +53,11 @@ class LawExpressions:
         used = tuple(sorted(self.output.free_symbols, key=str))
         return used, sp.lambdify(used, self.output, "numpy", cse=True)
 
+    @cached_property
+    def steps(self) -> dict[tuple[sp.Symbol, ...], _Call]:
+        """Slopes and rests of the states as a function of these signals, once they are compiled."""
+        return {}
+
 
 def first_harmonic(
     law: LawExpressions, signals: Mapping[sp.Symbol, np.ndarray], *, frequency: float | np.ndarray
@@ -89,8 +94,10 @@ def _close_cycle(
     law: LawExpressions, signals: Mapping[sp.Symbol, np.ndarray], step: float
 ) -> dict[sp.Symbol, np.ndarray]:
     """Hidden states in the middle of each step of a cycle that ends where it began."""
-    states = [*law.rates]
-    call = _slopes_and_rest(law, [*signals])
+    states, read = [*law.rates], (*signals,)
+    if read not in law.steps:
+        law.steps[read] = _slopes_and_rest(law, [*signals])
+    call = law.steps[read]
     rows = np.column_stack([*signals.values()]).tolist()
     start = np.zeros(len(states))
     for _ in range(_MOST_CYCLES):
@@ -186,20 +193,22 @@ def describing_function(
 
 
 def driven_gain(
-    of: Controller, *, amplitude: float, frequency: float
+    of: Controller, *, amplitude: float, frequency: float, law: LawExpressions | None = None
 ) -> Callable[[complex], complex]:
     """Gain of a controller for the first harmonic of its input, while a motion goes on.
 
+    law: `controller_law` of the controller, for many calls
     amplitude, frequency: of that motion, which determines the speed in the controller
     returns: phasor of the input (1: in phase with position) -> complex gain. If the gain depends on
         speed, inputs of another phase have another gain; size matters only to nonlinear laws
     """
-    law, motion, phase = controller_law(of), cycle_values(amplitude, frequency), middles()
+    expressions = law or controller_law(of)
+    motion, phase = cycle_values(amplitude, frequency), middles()
 
     def gain(drive: complex) -> complex:
         signal = drive.real * np.sin(phase) + drive.imag * np.cos(phase)
         signals = controller_signals(motion) | {CONTROL_SIGNALS["input"]: signal}
-        return complex(first_harmonic(law, signals, frequency=frequency)) / drive
+        return complex(first_harmonic(expressions, signals, frequency=frequency)) / drive
 
     if not all(stage.law.linear for stage in of.stages):
         return gain

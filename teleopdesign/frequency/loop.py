@@ -26,6 +26,7 @@ from ..diagrams import Control, Diagram
 from ..realise.lti import S, as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
 from . import sampled_margins
+from .frozen_friction import cancellations_left_over
 from .late_envelope import unity_grid
 from .late_loop import LateRatio, count_loop, crossings, loop_as_written
 from .late_zeros import count_growing
@@ -53,6 +54,7 @@ class LoopGain(Shown):
     sampled: the loop in discrete time, where this controller alone samples: its margins are exact.
         None where others sample too: those of `held` then count as their response over frequency
     counted: the loop with all states, where nothing samples or is measured
+    left_over: other controllers that cancel friction while friction is left out
     """
 
     expression: sp.Expr
@@ -63,6 +65,7 @@ class LoopGain(Shown):
     growing: int = 0
     sampled: SampledLoop | None = None
     counted: LateRatio | None = field(default=None, compare=False, repr=False)
+    left_over: tuple[str, ...] = ()
 
     def __call__(self, s: Any) -> Any:
         """Value at complex s (1/s), a number or an array of any shape."""
@@ -112,8 +115,9 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
     counted = None
     if not linear.held and not gain.atoms(AppliedUndef):
         counted = count_loop(diagram, controller, speed=speed)
+    over = cancellations_left_over(diagram, linear.left_out)
     made = gain, controller, linear.left_out, linear.held, fastest, growing, sampled, counted
-    return LoopGain(*made)
+    return LoopGain(*made, over)
 
 
 def delay_margin(loop: LoopGain | control.TransferFunction) -> float:

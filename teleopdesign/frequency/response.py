@@ -7,25 +7,24 @@ symbolic forms of a diagram of many axes would fill pages.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
-import sympy as sp
 from numpy.typing import NDArray
 
 from ..base.errors import ModelError, did_you_mean
 from ..base.files import write_netcdf
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
-from ..derive import symbol_values, with_values
-from ..derive.elimination import rows
-from ..diagrams import Diagram, Moving
-from ..realise.lti import linear_blocks, numerical
-from ..realise.parted import linear_parted
+from ..derive import with_values
+from ..diagrams import Diagram
+from ..realise.lti import numerical
 from ..realise.tips import linear_tips
+from .frozen_friction import cancellations_left_over, growing_modes, with_frozen_friction
+from .quasi_linear import quasi_linear
 
 if TYPE_CHECKING:
     import control
@@ -50,7 +49,11 @@ class FrequencyResponse(Shown, ByValue):
 
     frequency: Hz, (n,);  magnitude: in `unit`, (cases, n);  phase: degrees, unwrapped, (cases, n)
     output, input: signals;  left_out: case -> names without linear form
-    speed: m/s or rad/s, at which smoothed friction and schedules are frozen
+    speed: m/s or rad/s, at which friction, its cancellation and schedules are frozen
+    amplitude: m or rad, of the motion for which nonlinear laws have their first harmonic; 0: none
+    unstable: case -> modes of the whole diagram that grow, in words; "" where none does, and no
+        entry where that is not known
+    left_over: case -> controllers that cancel friction while friction is left out
     measured: whether the response was measured: it is drawn as points instead of lines
     """
 
@@ -64,6 +67,9 @@ class FrequencyResponse(Shown, ByValue):
     left_out: Mapping[str, tuple[str, ...]]
     speed: float = 0.0
     measured: bool = False
+    amplitude: float = 0.0
+    unstable: Mapping[str, str] = field(default_factory=dict)
+    left_over: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @cached_property
     def data(self) -> xarray.Dataset:
@@ -136,27 +142,40 @@ def bode(
     given: str | tuple[str, ...] = "",
     frequency: np.ndarray | Sequence[float] | None = None,
     speed: float = 0.0,
+    amplitude: float = 0.0,
 ) -> FrequencyResponse:
     """Frequency response from one signal to another, for one diagram or several cases.
+
+    Friction has no linear form. It enters as a damper at a stated speed, or by its first harmonic
+    at a stated amplitude; else it is left out, and the result says so. Whether modes of the whole
+    diagram grow, in continuous time, is part of the result.
 
     A controller in discrete time is sampled and held, up to half its sampling rate.
 
     given: prescribed motions; output "E", input and given "L" give the apparent mechanism impedance
         Zhat_M. For a body with a compliant transmission, the motion of the tip is prescribed
     frequency: Hz, default 0.1 to 1000
-    speed: m/s or rad/s, at which smoothed friction and schedules are frozen
+    speed: m/s or rad/s, at which friction, its cancellation and schedules are frozen
+    amplitude: m or rad, of the motion "L" at every frequency: nonlinear laws have their describing
+        functions there, as in `quasi_linear_impedance`; default: at 200 frequencies
+    raises ModelError: frequencies below 0, speed and amplitude together, no describing function
     """
     cases = cases_of(diagrams)
-    f = np.geomspace(0.1, 1000.0, 2001) if frequency is None else np.asarray(frequency, dtype=float)
+    if amplitude and speed:
+        raise ModelError("bode: speed and amplitude: found both, expected one of them")
+    steps = 200 if amplitude else 2001
+    f = np.geomspace(0.1, 1000.0, steps) if frequency is None else np.asarray(frequency, float)
     if f.ndim != 1 or not np.all(np.isfinite(f)) or np.any(f < 0):
         raise ModelError("bode: frequency: expected numbers in Hz from 0, in one row")
-    rows, left_out = [], {}
-    for name, diagram in cases.items():
-        expression, linear = with_values(
-            diagram, output=output, input=input, given=given, speed=speed, held=True
-        )
-        rows.append(numerical(expression)(2j * np.pi * f))
-        left_out[name] = linear.left_out
+    signals = _Signals(output, input, given)
+    made = {
+        name: _first_harmonics(one, signals, amplitude, f)
+        if amplitude
+        else _freeze(one, signals, abs(speed), f)
+        for name, one in cases.items()
+    }
+    diagram = next(iter(cases.values()))
+    rows = [one.values for one in made.values()]
     values = np.array(rows)
     return FrequencyResponse(
         tuple(cases),
@@ -166,9 +185,41 @@ def bode(
         ratio_unit(linear_tips(diagram), output, input),
         output,
         input,
-        left_out,
+        {name: one.left_out for name, one in made.items()},
         speed=abs(speed),
+        amplitude=amplitude,
+        unstable={n: one.modes for n, one in made.items() if one.modes is not None},
+        left_over={name: one.left_over for name, one in made.items()},
     )
+
+
+class _Signals(NamedTuple):
+    output: str
+    input: str
+    given: str | tuple[str, ...]
+
+
+class _Case(NamedTuple):
+    """One case of a response: values over frequency, what is left out, modes that grow."""
+
+    values: NDArray[np.complex128]
+    left_out: tuple[str, ...] = ()
+    left_over: tuple[str, ...] = ()
+    modes: str | None = None
+
+
+def _first_harmonics(diagram: Diagram, of: _Signals, amplitude: float, f: Array) -> _Case:
+    return _Case(quasi_linear(diagram, of.output, of.input, of.given, amplitude, f))
+
+
+def _freeze(diagram: Diagram, of: _Signals, speed: float, f: Array) -> _Case:
+    frozen = with_frozen_friction(diagram, speed) if speed else diagram
+    expression, linear = with_values(
+        frozen, output=of.output, input=of.input, given=of.given, speed=speed, held=True
+    )
+    modes = None if of.given else growing_modes(frozen, speed=speed)
+    over = cancellations_left_over(frozen, linear.left_out)
+    return _Case(numerical(expression)(2j * np.pi * f), linear.left_out, over, modes)
 
 
 def phase_of(values: NDArray[np.complex128], frequency: Array) -> Array:
@@ -214,90 +265,3 @@ def cases_of(diagrams: Diagram | Mapping[str, Diagram]) -> dict[str, Diagram]:
     if not diagrams:
         raise ModelError("diagrams: found none, expected a diagram, or several by case")
     return dict(diagrams)
-
-
-@dataclass(frozen=True, eq=False)
-class MatrixResponse(Shown, ByValue):
-    """Response of several outputs to several inputs.
-
-    data: complex, over frequency (Hz), output and input;  left_out: names without linear form
-    """
-
-    data: xarray.DataArray
-    left_out: tuple[str, ...]
-
-    def singular_values(self) -> np.ndarray:
-        """Gains over all directions, (frequencies, min(outputs, inputs)), largest first."""
-        return np.linalg.svd(self.data.values, compute_uv=False)
-
-    def frd(self) -> control.FRD:
-        """The response as a python-control frequency response."""
-        from ..base import python_control as control
-
-        values = np.moveaxis(self.data.values, 0, -1)
-        return control.frd(values, 2 * np.pi * self.data["frequency"].values)
-
-
-def matrix_response(
-    diagram: Diagram,
-    outputs: Sequence[str],
-    inputs: Sequence[str],
-    frequency: np.ndarray | Sequence[float],
-    *,
-    given: Sequence[str] = (),
-    speed: float = 0.0,
-) -> MatrixResponse:
-    """Response of each output to each input, with all other inputs zero.
-
-    frequency: (n,), Hz
-    given: prescribed motions, in place of the forces that drive them; for a body with a compliant
-        transmission, the motion of its tip
-    speed: at which smoothed friction and schedules are frozen, m/s or rad/s
-    raises ModelError: an unknown signal, an input that is not free, a loop without a solution
-    """
-    import xarray
-
-    diagram, led = linear_parted(diagram, tuple(given))
-    inputs, outputs = ([led.get(n, n) for n in names] for names in (inputs, outputs))
-    given = list(led.values())
-    drivers = {b.motion: b.driver for b in diagram.blocks if isinstance(b, Moving)}
-    free = [s for s in diagram.outside if s not in {drivers.get(m) for m in given}]
-    free += given
-    for name in (*outputs, *inputs):
-        diagram.signal(name)
-    if bound := [name for name in inputs if name not in free]:
-        raise ModelError(f'{diagram.name}: signal "{bound[0]}" is not from outside')
-    unknown = [s for s in diagram.signals if s not in free]
-    form = linear_blocks(diagram, speed=speed, held=True)
-    values = symbol_values(form)
-    s = 2j * np.pi * np.asarray(frequency, dtype=float)
-    system = rows(diagram)
-    matrix = np.zeros((len(s), len(system), len(unknown)), dtype=complex)
-    right = np.zeros((len(s), len(system), len(inputs)), dtype=complex)
-    for i, row in enumerate(system):
-        for name, coefficient in row.items():
-            target, names, sign = (right, inputs, -1) if name in inputs else (matrix, unknown, 1)
-            if name in names:
-                over = numerical(sp.sympify(coefficient).xreplace(values))
-                target[:, i, names.index(name)] = sign * over(s)
-    try:
-        solved = np.linalg.solve(matrix, right)
-    except np.linalg.LinAlgError:
-        raise ModelError(f"{diagram.name}: the wiring does not determine all signals") from None
-    # a free signal responds to itself
-    chosen = [
-        solved[:, unknown.index(o)]
-        if o in unknown
-        else np.tile(np.array([complex(o == i) for i in inputs]), (len(s), 1))
-        for o in outputs
-    ]
-    data = xarray.DataArray(
-        np.stack(chosen, axis=1),
-        {
-            "frequency": ("frequency", np.asarray(frequency), {"units": "Hz"}),
-            "output": list(outputs),
-            "input": list(inputs),
-        },
-        ("frequency", "output", "input"),
-    )
-    return MatrixResponse(data, form.left_out)

@@ -163,25 +163,7 @@ def identify_device(
         friction that deflects before it slides and a level without an upper bound
     """
     body = without_absent(body, surely=True)
-    friction = friction_interval(body, reach, errors=NINETY_FIVE)
-    if friction is None:
-        raise ModelError("passivity: the device has no friction to compensate")
-    if basis is not None and basis.bound is not None:
-        lowest = Interval(*(min(x, basis.bound) for x in vars(friction.lowest).values()))
-        over = "" if friction.over == ANY_MOTION else f"{friction.over}, "
-        over = f"{over}the cells that the residual covers"
-        friction = replace(friction, lowest=lowest, over=over)
-    if friction.lowest.low <= 0:
-        raise ModelError(
-            f"passivity: the friction level may be as low as {friction.lowest.low:.3g} "
-            f"{unit_of('force', body.axis)} within its 95 % interval (at {friction.where_lowest}): "
-            "nothing can be compensated for certain"
-        )
-    if friction.presliding is not None and math.isinf(friction.highest.high):
-        raise ModelError(
-            f"passivity: no upper bound of the friction level over {friction.over}: friction that "
-            "gives before it slides needs one; give the experiment whose records say how far"
-        )
+    friction = _friction_of(body, reach, basis)
     damping = damping_interval(body, reach, errors=NINETY_FIVE)
     bristle = body.parameters.get("presliding.bristle_damping")
     bristles = Interval(0.0, 0.0, 0.0)
@@ -220,6 +202,30 @@ def identify_device(
         ),
         basis,
     )
+
+
+def _friction_of(body: Body, reach: Reach | None, basis: Basis | None) -> FrictionInterval:
+    """The friction that a claim may rest on;  raises ModelError: as `identify_device`."""
+    friction = friction_interval(body, reach, errors=NINETY_FIVE)
+    if friction is None:
+        raise ModelError("passivity: the device has no friction to compensate")
+    if basis is not None and basis.bound is not None:
+        lowest = Interval(*(min(x, basis.bound) for x in vars(friction.lowest).values()))
+        over = "" if friction.over == ANY_MOTION else f"{friction.over}, "
+        over = f"{over}the cells that the residual covers"
+        friction = replace(friction, lowest=lowest, over=over)
+    if friction.lowest.low <= 0:
+        raise ModelError(
+            f"passivity: the friction level may be as low as {friction.lowest.low:.3g} "
+            f"{unit_of('force', body.axis)} within its 95 % interval (at {friction.where_lowest}): "
+            "nothing can be compensated for certain"
+        )
+    if friction.presliding is not None and math.isinf(friction.highest.high):
+        raise ModelError(
+            f"passivity: no upper bound of the friction level over {friction.over}: friction that "
+            "gives before it slides needs one; give the experiment whose records say how far"
+        )
+    return friction
 
 
 def effects_left_open(

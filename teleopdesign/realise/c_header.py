@@ -21,7 +21,7 @@ from .late_signals import LateSignals, without_delays
 from .simulated import without_no_delay
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
-_SIGNALS = ("input", "velocity", "travel_rate")
+_COMMAND = "the force commanded without this law"
 _TEXT = """/* {title}
  * Period {period!r} s. Call {name}_start once, then {name}_step once each sample, which returns the
  * output. input: signal of the block;  velocity: of its motion, as the computer estimates it;
@@ -46,9 +46,10 @@ static inline double {name}_phi(double z) {{
 }}
 
 static inline double {name}_step(
-    {name}_state *s, double input, double velocity, double travel_rate) {{
+    {name}_state *s, double input, double velocity, double travel_rate{command}) {{
     const double speed = fabs(velocity);
-    (void)s, (void)input, (void)velocity, (void)travel_rate, (void)speed;
+    const double T = {period!r};
+    (void)s, (void)input, (void)velocity, (void)travel_rate, (void)speed, (void)T;
 {body}
 }}
 
@@ -141,8 +142,7 @@ def as_c_header(controller: Controller, *, period: float, name: str = "controlle
 
     ahead = [x for x in states if x in equation.before]
     later = [x for x in states if x not in equation.before]
-    body = [f"    const double T = {period!r};", "    (void)T;"]
-    body += [*(ring.recall() for ring in rings), *stepped(ahead)]
+    body = [*(ring.recall() for ring in rings), *stepped(ahead)]
     body += [f"    const double output = {code(equation.output)};"]
     body += [*(ring.retain(code(ring.kept)) for ring in rings), *stepped(later)]
     rows = [f"    double x{i}; /* {x} */" for i, x in enumerate(states)]
@@ -151,6 +151,7 @@ def as_c_header(controller: Controller, *, period: float, name: str = "controlle
         title=re.sub(r"[^ -~]|\*/", " ", repr(controller)),
         period=period,
         name=name,
+        command=f", double command /* {_COMMAND} */" * made.reads_command,
         guard=f"{name.upper()}_H",
         fields="\n".join([*rows, *(r.field() for r in rings)] or ["    char none; /* no state */"]),
         zeros="\n".join(zeros or ["    s->none = 0;"]),

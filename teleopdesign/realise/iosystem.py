@@ -207,8 +207,8 @@ def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> An
     assert isinstance(part.controller, Controller)
     v = motion_of(names.diagram, part.motion)[1] if part.motion else sp.S(0)
     signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
-    signals["period"] = sp.S(0)
     others = tuple(map(signal, part.others))
+    signals |= {"period": sp.S(0)} | ({"command": others[0]} if others else {})
     equation = part.controller.equation(part.name, signals, others=others, code=True)
     states = sorted(equation.rates, key=str)
     rates = [equation.rates[s] for s in states]

@@ -19,6 +19,8 @@ from .late_signals import LateSignals, without_delays
 SignalReader = Callable[[str], sp.Symbol]
 #: the velocity of a controller without a motion: no law may use it
 NO_VELOCITY = sp.Symbol("no_velocity", real=True)
+#: the command of a controller without one among its other signals
+NO_COMMAND = sp.Symbol("no_command_read", real=True)
 
 
 def _uses(effect: Effect, signal: sp.Symbol) -> bool:
@@ -80,9 +82,13 @@ def place_controller(
     """
     assert isinstance(part.controller, Controller)
     signals = {"input": input, "velocity": speed, "speed": sp.Abs(speed), "travel_rate": rate}
-    signals["period"] = period
+    signals |= {"period": period, "command": others[0] if others else NO_COMMAND}
     made = part.controller.equation(part.name, signals, others=others, code=True)
-
+    if any(e.has(NO_COMMAND) for e in (made.output, *made.rates.values())):
+        raise ModelError(
+            f'{part.name}: its law reads the command without it, and none is wired: others=("X",) '
+            "says which"
+        )
     equation = without_delays(made, part.name, late)
     kept = [*equation.rates.values(), *equation.steps.values(), *(e for e, _ in late.values())]
     if any(e.has(NO_VELOCITY) for e in (equation.output, *kept)):

@@ -13,13 +13,16 @@ import numpy as np
 
 from ..base.errors import GrowsWithoutBound, ModelError
 from ..base.expectations import describe_value
+from ..diagrams import Diagram, Moving
 from ..realise.delays import is_whole
 
 if TYPE_CHECKING:
     from ..realise.kernel import Timing
+    from .trajectory import Trajectory
 
 
-Input = float | np.ndarray | Callable[[np.ndarray], np.ndarray]
+Pair = tuple[Any, Any]
+Input = float | np.ndarray | Pair | Callable[[np.ndarray], np.ndarray]
 
 
 def samples_of(duration: float, period: float) -> int:
@@ -94,6 +97,55 @@ class TableOverTime:
 
     def __call__(self, t: np.ndarray) -> np.ndarray:
         return np.asarray(np.interp(t, self.time, self.samples))
+
+
+def with_recorded(inputs: Mapping[str, Input], duration: float) -> dict[str, Input]:
+    """The inputs with a function for each pair of times (n,), s, and samples (n,) at these times.
+
+    duration: s, all of which the times of a pair must cover
+    raises ModelError: times that do not rise or do not cover the run, or another number of samples
+    """
+    return {
+        name: _table_of_pair(name, value, duration) if isinstance(value, tuple) else value
+        for name, value in inputs.items()
+    }
+
+
+def _table_of_pair(name: str, pair: Pair, duration: float) -> TableOverTime:
+    expected = "a number, a function, samples, or a pair (times, samples)"
+    if len(pair) != 2:
+        raise ModelError(f'input "{name}": found {len(pair)} values, expected {expected}')
+    time, samples = (np.asarray(x, dtype=float) for x in pair)
+    if time.ndim != 1 or time.shape != samples.shape or len(time) < 2:
+        raise ModelError(
+            f'input "{name}": found times {time.shape} and samples {samples.shape}, expected two '
+            "rows of one length"
+        )
+    if not (np.diff(time) > 0).all():
+        raise ModelError(f'input "{name}": its times do not rise')
+    # the last sample is held for as long as it lasted
+    end = time[-1] + (time[-1] - time[-2])
+    if time[0] > 0 or end < duration * (1 - 1e-9):
+        raise ModelError(
+            f'input "{name}": its times are {time[0]:g} to {time[-1]:g} s, the run 0 to '
+            f"{duration:g} s"
+        )
+    return TableOverTime(time, samples)
+
+
+def refuse_results(
+    diagram: Diagram, inputs: Mapping[str, Input], motion: Mapping[str, Trajectory]
+) -> None:
+    """Refuse the force that prescribes a motion as an input: it is what the motion takes."""
+    for block in diagram.blocks:
+        if not isinstance(block, Moving) or block.motion not in motion:
+            continue
+        force = inputs.get(block.driver, 0.0)
+        if callable(force) or np.any(force):
+            raise ModelError(
+                f"{diagram.name}: {block.driver} is the force that moves {block.motion} as "
+                "prescribed: it is a result, expected among the inputs or the motions, not in both"
+            )
 
 
 def half_steps(timing: Timing) -> np.ndarray:

@@ -11,11 +11,20 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ..base.errors import ModelError, UnknownSignal, did_you_mean, unknown
-from ..diagrams import Diagram, Moving, with_shared_states
+from ..diagrams import Diagram, with_shared_states
 from ..realise.delays import delay_in_samples, is_whole
 from ..realise.simulated import prepare_for_simulation, realise_in_computer, refuse_massless
 from . import on_grid
-from .on_grid import Input, StepLadder, delay_in_steps, input_table, samples_of, whole_steps
+from .on_grid import (
+    Input,
+    StepLadder,
+    delay_in_steps,
+    input_table,
+    refuse_results,
+    samples_of,
+    whole_steps,
+    with_recorded,
+)
 from .sampling import SAMPLED, Sampling
 from .trajectory import Trajectory
 
@@ -45,14 +54,15 @@ def prepare(
 
     The arguments are those of `simulate`.
     """
-    motion, inputs, initial = dict(motion or {}), dict(inputs or {}), dict(initial or {})
+    motion, initial = dict(motion or {}), dict(initial or {})
+    inputs = with_recorded(inputs or {}, duration)
     for name in inputs:
         if name not in diagram.outside:
             raise UnknownSignal(
                 f'{diagram.name}: "{name}" is not from outside, inputs are '
                 f"{', '.join(diagram.outside)}{did_you_mean(name, diagram.outside)}"
             )
-    _refuse_results(diagram, inputs, motion)
+    refuse_results(diagram, inputs, motion)
     positive = {"duration": duration, "step": step, "give": give}
     for name, value in positive.items():
         if not 0 < value < float("inf"):
@@ -64,21 +74,6 @@ def prepare(
         if name not in states:
             raise UnknownSignal(f"initial: {unknown('state', name, states)}")
     return Setup(body, made, setting, duration, step, inputs, motion, initial)
-
-
-def _refuse_results(
-    diagram: Diagram, inputs: Mapping[str, Input], motion: Mapping[str, Trajectory]
-) -> None:
-    """Refuse the force that prescribes a motion as an input: it is what the motion takes."""
-    for block in diagram.blocks:
-        if not isinstance(block, Moving) or block.motion not in motion:
-            continue
-        force = inputs.get(block.driver, 0.0)
-        if callable(force) or np.any(force):
-            raise ModelError(
-                f"{diagram.name}: {block.driver} is the force that moves {block.motion} as "
-                "prescribed: it is a result, expected among the inputs or the motions, not in both"
-            )
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,6 +14,7 @@ from ..base.errors import ModelError, did_you_mean
 from ..base.files import write_beside, write_netcdf
 from ..base.frozen import ByName, ByValue
 from ..base.shown import Shown, figure_of
+from ..blocks import Body
 from ..diagrams import Diagram
 from .on_grid import Input, describe_rounding
 from .sampling import SAMPLED, Sampling
@@ -103,7 +104,8 @@ def simulate(
 ) -> Simulation:
     """Simulate a diagram from t = 0: all its signals over time.
 
-    inputs: signals from outside (SI): a number, a function of time, a `sine`, or samples (those
+    inputs: signals from outside (SI): a number, a function of time, a `sine`, a pair (times,
+        samples) as it was recorded, linear in between, or samples on the grid of the run (those
         that the computer reads: one a sample; others: one each half `step`, linear in between where
         a run needs a shorter step); 0 by default
     motion: motions that are prescribed; the force that this takes becomes a result (R_V)
@@ -115,30 +117,40 @@ def simulate(
     every_step: rows at every inner step instead of every sample (continuous: of 1 ms)
     estimate_error: run again with half and a quarter of the step (7 times the work) and return for
         each signal an attribute `step_error`, the largest difference between the three over its
-        largest size; large where stick and slip make motion chaotic
+        largest size; large where stick and slip make motion chaotic. Where ideal friction is a
+        bristle, `give_error` is in the same way the difference to a run with a tenth of the give
     jit: False runs the generated code in plain Python, as a nonlinear python-control system among
         the controllers does in any case: some hundred times slower
     raises ModelError: block without laws, unknown signal, step refused or force not finite
     """
-    setup = prepare(
-        diagram,
-        duration=duration,
-        inputs=inputs,
-        motion=motion,
-        initial=initial,
-        computer=computer,
-        step=step,
-        give=give,
-        jit=jit,
-    )
+    arguments: dict[str, Any] = {"duration": duration, "inputs": inputs, "motion": motion}
+    arguments |= {"initial": initial, "computer": computer, "step": step, "jit": jit}
+    setup = prepare(diagram, give=give, **arguments)
     rows, timing = setup.run_resolved(long_step=long_step, every_step=every_step)
     result = _label_rows(setup, rows, timing, every_step)
     if estimate_error:
         columns = setup.program.layout.columns
-        errors = _step_errors(setup, rows, timing, every_step)
-        for name, error in zip(columns, errors, strict=True):
-            result.data[name].attrs["step_error"] = float(error)
+        errors = {"step_error": _step_errors(setup, rows, timing, every_step)}
+        if _is_bristle(diagram):
+            stiffer = prepare(diagram, give=give / 10, **arguments)
+            errors["give_error"] = _give_errors(stiffer, rows)
+        for kind, sizes in errors.items():
+            for name, error in zip(columns, sizes, strict=True):
+                result.data[name].attrs[kind] = float(error)
     return result
+
+
+def _give_errors(stiffer: Setup, rows: np.ndarray) -> np.ndarray:
+    """Largest relative difference of each column to a run whose friction gives less."""
+    again, _ = stiffer.run_resolved(long_step="refine", every_step=False)
+    stride = max(round((len(rows) - 1) / max(len(again) - 1, 1)), 1)
+    return _differences([rows[::stride][: len(again)], again])
+
+
+def _is_bristle(diagram: Diagram) -> bool:
+    """Whether a body has friction without a shape, which the simulation makes a bristle."""
+    roles = [{e.role for e in b.body.effects} for b in diagram.bodies if isinstance(b.body, Body)]
+    return any("friction_level" in of and "friction_shape" not in of for of in roles)
 
 
 def _step_errors(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -> np.ndarray:
@@ -152,6 +164,11 @@ def _step_errors(setup: Setup, rows: np.ndarray, timing: Timing, every_step: boo
     for finer in (2, 4):
         again, _ = setup.run(setup.timing(finer * timing.inner), every_step=every_step)
         runs.append(again[:: finer if every_step else 1])
+    return _differences(runs)
+
+
+def _differences(runs: list[np.ndarray]) -> np.ndarray:
+    """Largest difference of each column between runs (rows, columns), over its largest size."""
     spread = np.max(runs, axis=0) - np.min(runs, axis=0)
     size = np.maximum(np.abs(runs[-1]).max(axis=0), np.finfo(float).tiny)
     return np.asarray(spread.max(axis=0) / size)

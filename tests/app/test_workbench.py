@@ -50,6 +50,15 @@ def test_after_the_missing_effect_no_candidate_is_supported_and_the_diagnosis_na
     assert [c.key for c in diagnosis.missing] == [("stribeck", "device")]
 
 
+@pytest.mark.slow
+def test_only_a_supported_candidate_is_preselected_and_the_end_has_a_verdict(bench):
+    first = pages.supported_option(bench)
+    assert first is not None and first.startswith("stribeck") and pages.verdict(bench) == ""
+    end = bench.add("stribeck", "device").rank()
+    assert end.candidates and pages.supported_option(end) is None
+    assert "the model is adequate" in pages.verdict(end)
+
+
 def test_where_no_parameter_is_moved_nothing_is_computed_again(bench, monkeypatch):
     name = "device.coulomb.level"
     nearly = (

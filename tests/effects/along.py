@@ -36,6 +36,9 @@ OTHER = {
     "backlash.gap": 1e-3,  # m; part of the travel
     "contact_hardening.power": 1.5,
     "shear_thinning.exponent": 0.5,
+    "actuator_dead_zone.half_width": 0.3,  # N; a part of the commands
+    "stops.lower": -2e-3,  # m; part of the travel
+    "stops.upper": 2e-3,
     # N, N/m: of elements that slip in turn, together less than `LEVEL`
     "maxwell_slip.level_2": 0.1,
     "maxwell_slip.level_3": 0.06,

@@ -50,6 +50,7 @@ REPEATS = {
     "position_dependent_friction": "period",
     "position_dependent_gain": None,
     "spring": None,
+    "stops": None,
     "torque_ripple": "period",
 }
 

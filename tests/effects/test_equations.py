@@ -42,6 +42,7 @@ def wave(s, p):
 
 #: effect -> its law on signals s (its states among them), parameters p and those of others, o
 LAWS = {
+    "actuator_dead_zone": lambda s, p, o: sgn(s.command) * max(abs(s.command) - p.half_width, 0.0),
     "actuator_gain": lambda s, p, o: p.gain * s.command,
     "actuator_lag": lambda s, p, o: s.output,
     "actuator_saturation": lambda s, p, o: min(max(s.command, -p.limit), p.limit),
@@ -68,6 +69,12 @@ LAWS = {
     "quadratic_drag": lambda s, p, o: p.drag * s.velocity**2 * sgn(s.velocity),
     "shear_thinning": lambda s, p, o: (
         p.drag * s.velocity * (s.velocity**2 + 1e-10) ** ((p.exponent - 1) / 2)
+    ),
+    "smoothed_coulomb": lambda s, p, o: (
+        p.level * s.velocity / (p.smoothing_velocity + abs(s.velocity))
+    ),
+    "stops": lambda s, p, o: (
+        p.stiffness * (max(s.position - p.upper, 0.0) + min(s.position - p.lower, 0.0))
     ),
     "spring": lambda s, p, o: p.stiffness * s.position,
     "stribeck": lambda s, p, o: p.extra_static_level / exp((s.velocity / p.stribeck_velocity) ** 2),

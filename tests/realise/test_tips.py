@@ -11,7 +11,7 @@ from teleopdesign.design.quasi_static import slow_body
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS, SIGNALS, load_effect
 from teleopdesign.frequency import bode, measured_impedance, transfer_function
-from teleopdesign.frequency.response import matrix_response
+from teleopdesign.frequency.matrix_response import matrix_response
 from teleopdesign.passivity import hand_port
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.tips import with_tips

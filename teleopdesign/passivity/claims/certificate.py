@@ -119,7 +119,6 @@ def storage_certificate(
     used += [e for pair in invariant.values() for e in pair]
     names = {s.name for e in used for s in sp.sympify(e).free_symbols} | {*signs}
     known = {*rates, *constants, *(prefix + x for x in signs for prefix in ("abs_", "sign_"))}
-    cases = [" ".join(case) for case in product(("1", "-1"), repeat=len(signs))]
     content = {
         "kind": "storage",
         "title": title,
@@ -135,19 +134,22 @@ def storage_certificate(
             n: {"expression": checker_text(h), "rate": checker_text(rate)}
             for n, (h, rate) in invariant.items()
         },
-        "proofs": {
-            goal: {
-                case: [
-                    [checker_text(w), dict(powers), checker_text(e)]
-                    for w, powers, e in by_case.get(case, by_case.get("", ()))
-                ]
-                for case in cases
-            }
-            for goal, by_case in proofs.items()
-        },
+        "proofs": {goal: _cases(by_case, signs) for goal, by_case in proofs.items()},
         "example": _text({n: e for n, e in example.items() if n in {*names, *rates, *constants}}),
     }
     return seal(content)
+
+
+def _cases(by_case: Mapping[str, Sequence[Term]], signs: Sequence[str]) -> dict[str, list[Any]]:
+    """The terms of an identity for each combination of signs."""
+    cases = [" ".join(case) for case in product(("1", "-1"), repeat=len(signs))]
+    return {
+        case: [
+            [checker_text(w), dict(powers), checker_text(e)]
+            for w, powers, e in by_case.get(case, by_case.get("", ()))
+        ]
+        for case in cases
+    }
 
 
 def _text(expressions: Mapping[str, sp.Expr | int]) -> dict[str, str]:

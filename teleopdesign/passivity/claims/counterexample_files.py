@@ -76,8 +76,8 @@ def _make_counterexample(c: dict[str, Any]) -> Counterexample:
     if c["kind"] not in _KINDS:
         raise ModelError(f'no kind of motion "{c["kind"]}"')
     kind = _KINDS[c["kind"]]
-    hints, given = get_type_hints(kind), {n: x for n, x in c.items() if n not in ("kind", "energy")}
-    fields = {n: _value(x, hints[n]) for n, x in given.items()}
+    hints = get_type_hints(kind)
+    fields = {n: _value(x, hints[n]) for n, x in c.items() if n not in ("kind", "energy")}
     record: Counterexample = sampled_wave(**fields) if kind is SampledWave else kind(**fields)
     if isinstance(record, GrowingMode) and not record.is_confirmed():
         raise ValueError("the two-port does not grow between these terminations")

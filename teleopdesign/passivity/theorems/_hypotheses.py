@@ -1,7 +1,7 @@
 """Hypotheses of a theorem about its numbers: types of its arguments, checked at every call.
 
     @require_hypotheses
-    def sampled_passivity(controller: Free, *, damping: NotNegative, sample_time: Positive): ...
+    def sampled_passivity(controller: Free, *, damping: NonNegative, sample_time: Positive): ...
 
 A number outside of the hypotheses is refused in one line (ModelError), because the theorem does not
 hold for it. A theorem receives its numbers exactly, as rationals, and states them for a prismatic
@@ -93,7 +93,7 @@ def one_of(*values: Any) -> Hypothesis:
 
 Positive = Annotated[Any, POSITIVE]
 PositiveOrNone = Annotated[Any, POSITIVE.or_none()]
-NotNegative = Annotated[Any, NOT_NEGATIVE]
+NonNegative = Annotated[Any, NOT_NEGATIVE]
 Real = Annotated[Any, REAL]
 Whole = Annotated[int, WHOLE]
 Free = Annotated[Any, FREE]
@@ -109,7 +109,7 @@ def require_hypotheses(function: Claiming) -> Claiming:
     """
     signature = inspect.signature(function, eval_str=True)
     notes = {n: get_args(p.annotation) for n, p in signature.parameters.items()}
-    hypotheses = {n: h for n, found in notes.items() for h in found if isinstance(h, Hypothesis)}
+    hypotheses = {n: h for n, some in notes.items() for h in some if isinstance(h, Hypothesis)}
     if odd := sorted(set(notes) - set(hypotheses)):
         raise ModelError(f"{function.__name__}: arguments without hypothesis: {odd}")
 

@@ -26,7 +26,7 @@ from ..rate_independent import (
     symmetric_cycle,
 )
 from ._certificates import certificate
-from ._hypotheses import Free, NotNegative, Positive, Whole, require_hypotheses
+from ._hypotheses import Free, NonNegative, Positive, Whole, require_hypotheses
 from ._theorem import Theorem
 from .dahl_compensation import dahl_compensation
 
@@ -35,13 +35,13 @@ from .dahl_compensation import dahl_compensation
 def any_environment(
     *,
     motor_level: Positive,
-    link_level: NotNegative,
+    link_level: NonNegative,
     transmission_stiffness: Positive,
     compensator_level: Positive,
     compensator_stiffness: Positive,
     motor_inertia: Positive = 1,
     link_inertia: Positive = 1,
-    transmission_damping: NotNegative = 0,
+    transmission_damping: NonNegative = 0,
 ) -> Claim:
     """Is the joint passive for any environment and any stroke: if and only if f_D <= f_1?
 

@@ -23,7 +23,7 @@ from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ..search.growing_wave import rates_at
 from ._certificates import certificate
-from ._hypotheses import NotNegative, require_hypotheses
+from ._hypotheses import NonNegative, require_hypotheses
 from ._theorem import Theorem, refute_by_wave
 
 #: just above 0.2172336, which is minus the least value of sin(y)/y (at tan y = y, y = 4.4934)
@@ -54,10 +54,10 @@ def inertia_given_out(*, inertia: float, amplitude: float, frequency: float, del
 @require_hypotheses
 def delayed_small_motion(
     *,
-    damping: NotNegative,
-    compensator_stiffness: NotNegative,
-    delay: NotNegative,
-    presliding_stiffness: NotNegative,
+    damping: NonNegative,
+    compensator_stiffness: NonNegative,
+    delay: NonNegative,
+    presliding_stiffness: NonNegative,
 ) -> Claim:
     """Is small motion passive: friction is then a spring, the compensator a late negative spring.
 

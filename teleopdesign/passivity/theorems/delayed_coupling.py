@@ -16,19 +16,19 @@ from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ..two_port.two_port import absolutely_stable, teleoperator_two_port
 from ._certificates import certificate
-from ._hypotheses import NotNegative, Real, require_hypotheses
+from ._hypotheses import NonNegative, Real, require_hypotheses
 from ._theorem import Theorem
 
 
 @require_hypotheses
 def delayed_spring(
     *,
-    master_inertia: NotNegative,
+    master_inertia: NonNegative,
     master_damping: Real,
-    slave_inertia: NotNegative,
+    slave_inertia: NonNegative,
     slave_damping: Real,
-    stiffness: NotNegative,
-    delay: NotNegative,
+    stiffness: NonNegative,
+    delay: NonNegative,
 ) -> Claim:
     """Is the teleoperator absolutely stable: if and only if b_m, b_s >= 0 and b_m b_s >= (P T)^2?
 

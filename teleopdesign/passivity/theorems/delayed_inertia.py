@@ -27,7 +27,7 @@ from ..linear.impedance import decimal
 from ..linear.judge import positive_real
 from ..search.growing_wave import rates_at
 from ._certificates import certificate
-from ._hypotheses import NotNegative, one_of, require_hypotheses
+from ._hypotheses import NonNegative, one_of, require_hypotheses
 from ._theorem import Theorem, refute_by_wave
 
 Order = Literal[1, 2]
@@ -75,11 +75,11 @@ def largest_passive_inertia(
 @require_hypotheses
 def cancelled_inertia(
     *,
-    inertia: NotNegative,
-    damping: NotNegative,
-    cancelled: NotNegative,
-    delay: NotNegative,
-    time_constant: NotNegative = 0,
+    inertia: NonNegative,
+    damping: NonNegative,
+    cancelled: NonNegative,
+    delay: NonNegative,
+    time_constant: NonNegative = 0,
     order: Annotated[int, one_of(1, 2)] = 2,
 ) -> Claim:
     """Is a device passive if a part of its inertia is cancelled, delayed and low-passed?

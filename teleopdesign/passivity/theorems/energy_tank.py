@@ -13,12 +13,12 @@ from __future__ import annotations
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ._certificates import certificate
-from ._hypotheses import NotNegative, Positive, require_hypotheses
+from ._hypotheses import NonNegative, Positive, require_hypotheses
 from ._theorem import Theorem
 
 
 @require_hypotheses
-def energy_tank(*, reserve: NotNegative, travel: Positive) -> Claim:
+def energy_tank(*, reserve: NonNegative, travel: Positive) -> Claim:
     """Bound of the energy that two ends with energy tanks (`energy_tanks`) release.
 
     reserve: E_0 in each tank, J;  travel: d, largest travel of any sample, m or rad

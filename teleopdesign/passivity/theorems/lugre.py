@@ -25,7 +25,7 @@ from ..identified import DIGITS
 from ..linear.impedance import decimal, exact
 from ..rate_independent import AbstractMotion, Dahl, strongest
 from ._certificates import certificate
-from ._hypotheses import NotNegative, Positive, require_hypotheses
+from ._hypotheses import NonNegative, Positive, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, decide
 
 _STRIBECK = EFFECTS["stribeck"]
@@ -82,8 +82,8 @@ def lugre_passivity(
     coulomb_level: Positive,
     static_level: Positive,
     stiffness: Positive,
-    bristle_damping: NotNegative,
-    viscous_damping: NotNegative,
+    bristle_damping: NonNegative,
+    viscous_damping: NonNegative,
     stribeck_velocity: Positive,
 ) -> Claim:
     """Is LuGre friction passive: if and only if s2 >= s1 (F_S/F_C - 1)?

@@ -22,7 +22,7 @@ from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, strongest
 from ._certificates import certificate
-from ._hypotheses import NotNegative, Positive, require_hypotheses
+from ._hypotheses import NonNegative, Positive, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, decide
 
 
@@ -55,12 +55,12 @@ class Flip(AbstractMotion):
 @require_hypotheses
 def quantised_spring(
     *,
-    stiffness: NotNegative,
-    damping: NotNegative,
+    stiffness: NonNegative,
+    damping: NonNegative,
     sample_time: Positive,
-    step: NotNegative,
-    coulomb_level: NotNegative,
-    compensator_level: NotNegative = 0,
+    step: NonNegative,
+    coulomb_level: NonNegative,
+    compensator_level: NonNegative = 0,
 ) -> Claim:
     """Is the virtual spring passive: if and only if K <= min(2 b/T, 2 (f_C - f_D)/Delta)?
 

@@ -24,7 +24,7 @@ from ..claims.claim import Claim
 from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, Dahl
 from ..search.stroke_motion import Strokes
-from ._hypotheses import NotNegative, Positive, PositiveOrNone, Whole, require_hypotheses
+from ._hypotheses import NonNegative, Positive, PositiveOrNone, Whole, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, leave_open, refute, simulate_cycle
 from .bounded_compensation import bounded_compensation
 
@@ -122,7 +122,7 @@ def sampled_compensation(
     compensator_stiffness: Positive,
     sample_time: Positive,
     presliding_stiffness: PositiveOrNone = None,
-    viscous_damping: NotNegative = 0,
+    viscous_damping: NonNegative = 0,
     late: Whole = 0,
 ) -> Claim:
     """Is friction passive together with a Dahl compensator in a computer?

@@ -33,7 +33,7 @@ from ..linear.impedance import Impedance, decimal, exact, impedance, read_expres
 from ..linear.judge import NO_WAVE
 from ..search.growing_wave import growing_wave
 from ..search.sampled_wave import Z, sampled_wave
-from ._hypotheses import Free, NotNegative, Positive, Real, require_hypotheses
+from ._hypotheses import Free, NonNegative, Positive, Real, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, refute
 
 #: relative difference of two periods that counts as rounding of decimals
@@ -42,7 +42,7 @@ _ROUNDING = 1e-9
 
 @require_hypotheses
 def sampled_passivity(
-    controller: Free, *, damping: NotNegative, sample_time: Positive, stiffness: Real = 0
+    controller: Free, *, damping: NonNegative, sample_time: Positive, stiffness: Real = 0
 ) -> Claim:
     """Is the body with this sampled controller passive at the hand?
 
@@ -103,8 +103,8 @@ def required_damping(controller: Any, *, sample_time: Any, stiffness: Any = 0) -
 def sampled_coupling(
     coupling: Free,
     *,
-    master_damping: NotNegative,
-    slave_damping: NotNegative,
+    master_damping: NonNegative,
+    slave_damping: NonNegative,
     sample_time: Positive,
 ) -> Claim:
     """Is a teleoperator passive whose equal and opposite forces -H(z) (x_m - x_s) are sampled?

@@ -35,7 +35,7 @@ from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, Coulomb, Dahl
 from ._certificates import certificate
-from ._hypotheses import NotNegative, Positive, PositiveOrNone, Whole, require_hypotheses
+from ._hypotheses import NonNegative, Positive, PositiveOrNone, Whole, require_hypotheses
 from ._theorem import Question, Theorem, Time, TopicClaim, decide, leave_open
 
 _SYMBOLS = sp.symbols("velocity level smoothing", real=True)
@@ -95,8 +95,8 @@ def velocity_compensation(
     *,
     coulomb_level: Positive,
     compensator_level: Positive,
-    smoothing_velocity: NotNegative = 0,
-    viscous_damping: NotNegative = 0,
+    smoothing_velocity: NonNegative = 0,
+    viscous_damping: NonNegative = 0,
     presliding_stiffness: PositiveOrNone = None,
     sample_time: PositiveOrNone = None,
     late: Whole = 0,

@@ -31,13 +31,13 @@ from ..linear.judge import positive_real
 from ..linear.unseen import unseen_within
 from ..ports import drop_absent_effects, without_holders
 from ._certificates import certificate
-from ._hypotheses import Free, NotNegative, Positive, require_hypotheses
+from ._hypotheses import Free, NonNegative, Positive, require_hypotheses
 from ._theorem import Theorem
 
 
 @require_hypotheses
 def wave_channel(
-    *, wave_impedance: Positive, scale: NotNegative = 1, delay_growth: NotNegative = 0
+    *, wave_impedance: Positive, scale: NonNegative = 1, delay_growth: NonNegative = 0
 ) -> Claim:
     """Is a channel of waves passive: does it release no more energy than came in at both ends?
 

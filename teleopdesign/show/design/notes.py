@@ -55,7 +55,7 @@ def _friction(design: Design) -> list[str]:
             "taken from the model, without a record of it."
         )
     lowest, highest = friction.lowest.estimate, friction.highest.estimate
-    if highest > 1.001 * lowest:
+    if highest > 1.001 * lowest and not design.follows_level:
         lines.append(
             f"Friction lies between {lowest:.4g} and {highest:.4g} {unit} over {friction.over}: "
             f"its lowest level is cancelled, so that up to {highest - lowest:.3g} {unit} more than "

@@ -13,6 +13,7 @@ from ...base.sentences import unit_at_axis, with_standard_error
 from ...base.units import unit_of
 from ..figures.style import CASES, TWO_COLUMNS
 from ..registry import shows
+from .headline import headline
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -31,6 +32,7 @@ SHOWN = 10
 def design_text(design: Design) -> str:
     """The whole design as text of at most `WIDTH` columns."""
     parts = [
+        headline(design),
         [f'Design for "{design.experiment}", {design.place}', *_friction(design)],
         _assumptions(design),
         _proposals(design),
@@ -91,16 +93,20 @@ def _proposals(design: Design) -> list[str]:
     if design.cancellation is None:
         lines.append("  C: none")
     else:
-        lines.append(f"  C: {design.cancellation.law}")
-        lines += [f"    {r}" for r in design.cancellation.reasons]
+        lines.append(f"  C: {design.cancellation.words}")
+        by_why: dict[str, list[str]] = {}
+        for r in design.cancellation.reasons:
+            by_why.setdefault(r.why, []).append(str(r).removesuffix(f": {r.why}"))
+        lines += [f"    {', '.join(numbers)}: {why}" for why, numbers in by_why.items()]
     if design.other is not None:
         unit = unit_of("force", design.body.axis)
         left = design.prediction.cases["hybrid"].simulated
         lines.append(
-            f"    rather than {design.other.law}, with which the hybrid leaves "
+            f"    rather than {design.other.words}, with which the hybrid leaves "
             f"{design.other_left:.3g} {unit} rms, not {left:.3g}"
         )
-    lines.append("  H: low-pass with a gain k b/(b + abs(v)) before it")
+    needs = "" if design.reach.measures_force else ", once there is a force sensor"
+    lines.append(f"  H: low-pass with a gain k b/(b + abs(v)) before it{needs}")
     lines += [f"    {r}" for r in design.force_feedback.reasons]
     lines.append(f"    {_loop(design)}")
     return lines

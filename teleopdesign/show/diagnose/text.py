@@ -42,16 +42,23 @@ def ladder_html(diagnosis: Diagnosis) -> str:
     rows.append(("noise floor", "", f"{100 * diagnosis.floor.value:.2f} %"))
     sentences = (f"{joint}: {sentence(one)}" for joint, one in diagnosis.joints.items())
     note = "; ".join(sentences) or sentence(diagnosis)
-    return html_table("Diagnosis", ("added", "fit error", "check error"), rows, note=note)
+    return html_table(
+        "Diagnosis", ("added", "fit error", name_of_error(diagnosis)), rows, note=note
+    )
+
+
+def name_of_error(diagnosis: Diagnosis) -> str:
+    """The name of the error on rows that were not fitted: of records, or of blocks in turn."""
+    return "check error" if diagnosis.check == "records" else "held-out error"
 
 
 @shows("text")
 def ladder_text(diagnosis: Diagnosis) -> str:
     """The ladder as a table, with parameters, noise floor and verdict."""
-    lines = [f"{'added':<42}{'fit error':>10}{'check error':>13}"]
+    lines = [f"{'added':<42}{'fit error':>10}{name_of_error(diagnosis):>15}"]
     for row in diagnosis.rungs:
         name = "(your model, re-estimated)" if row.added is None else f"+ {row.title}"
-        lines.append(f"{name:<42}{100 * row.fit_error:>9.2f}%{100 * row.check_error:>12.2f}%")
+        lines.append(f"{name:<42}{100 * row.fit_error:>9.2f}%{100 * row.check_error:>14.2f}%")
         if row.added is not None:
             lines += _describe_addition(diagnosis, row)
     if diagnosis.joints:
@@ -59,7 +66,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     lines += [str(offset) for offset in diagnosis.offsets]
     lines += [str(shift) for shift in diagnosis.record_shift.values()]
     lines.append(
-        f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%"
+        f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>14.2f}%"
         f"  ({diagnosis.floor.source})"
     )
     source = f" ({diagnosis.bandwidth_source})" if diagnosis.bandwidth_source else ""
@@ -81,7 +88,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
 
 def _lines_of_joints(diagnosis: Diagnosis) -> list[str]:
     """What follows the ladder of an arm: errors of each joint, and what is said of it."""
-    lines = [f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>12.2f}%", ""]
+    lines = [f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>14.2f}%", ""]
     lines.append(f"{'joint':<20}{'before':>10}{'after':>10}{'floor':>10}")
     for joint, one in diagnosis.joints.items():
         ends = [row.joints[joint].check_error for row in (diagnosis.before, diagnosis.after)]
@@ -102,7 +109,7 @@ def _lines_of_rest(diagnosis: Diagnosis) -> list[str]:
     """What the final model leaves: near reversals, what trees learn of it, what repeats."""
     lines = []
     if (near := diagnosis.near_reversals) is not None:
-        lines.append(f"check error {near}")
+        lines.append(f"{name_of_error(diagnosis)} {near}")
     if diagnosis.learnable is not None:
         lines.append(f"black box: {diagnosis.learnable}")
     if diagnosis.repeats is not None:

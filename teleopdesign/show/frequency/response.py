@@ -15,6 +15,8 @@ from ..registry import shows
 from .axes import PageColumns, legend_below, look, mark_degrees, panels, points, share_abscissa
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import matplotlib.axes
     import matplotlib.figure
     import numpy as np
@@ -29,11 +31,23 @@ def response_text(response: FrequencyResponse) -> str:
     head = f"Frequency response {response.input} to {response.output}, {f[0]:g} to {f[-1]:g} Hz"
     if response.measured:
         return f"{head}, measured"
-    lines = [f"{head}, at speed {response.speed:g}"]
+    at = f"speed {response.speed:g}" if not response.amplitude else f"{response.amplitude:g} of L"
+    lines = [f"{head}, at {at}"]
     for case, gone in response.left_out.items():
         zero = "zero at every frequency, " if response.is_zero(case) else ""
         lines.append(f"  {case}: {zero}left out: {', '.join(gone) or 'nothing'}")
+        if modes := response.unstable.get(case):
+            lines.append(f"    UNSTABLE: a mode of the whole diagram grows, {modes}")
+        if over := _left_over(response.left_over.get(case, ())):
+            lines.append(f"    {over}: state speed= or amplitude=")
     return "\n".join(lines)
+
+
+def _left_over(names: Sequence[str]) -> str:
+    """Words on cancellations whose friction is left out; "" for none."""
+    if not names:
+        return ""
+    return f"friction is left out, its cancellation {', '.join(names)} is not"
 
 
 @shows("text")
@@ -42,7 +56,9 @@ def matrix_response_text(response: MatrixResponse) -> str:
     shape = f"{len(response.data['output'])} outputs from {len(response.data['input'])} inputs"
     f = response.data["frequency"].values
     gone = f"; left out: {', '.join(response.left_out)}" if response.left_out else ""
-    return f"Response of {shape}, {f[0]:g} to {f[-1]:g} Hz{gone}"
+    over = f"; {words}" if (words := _left_over(response.left_over)) else ""
+    grows = f"; UNSTABLE: {response.unstable}" if response.unstable else ""
+    return f"Response of {shape}, {f[0]:g} to {f[-1]:g} Hz{gone}{over}{grows}"
 
 
 @shows("text")
@@ -51,6 +67,7 @@ def loop_text(loop: LoopGain) -> str:
     held = f"; sampled and held: {', '.join(loop.held)}" if loop.held else ""
     gone = ", ".join(loop.left_out) or "nothing"
     held += ", margins by an approximation" if loop.held and loop.sampled is None else ""
+    held += f"; {words}" if (words := _left_over(loop.left_over)) else ""
     return f"Gain round the loop of {loop.controller}; left out: {gone}{held}"
 
 
@@ -80,14 +97,14 @@ def plot_bode(
             size = one.magnitude[one.row(name)]
             upper.plot(one.frequency, 20 * np.log10(size), **style)
             lower.plot(one.frequency, _unwrap_beside(one, response, name), **style)
-    unit = response.unit
-    upper.set_ylabel(
-        "magnitude (dB)" if unit == "1" else f"magnitude (dB re 1 {unit_at_axis(unit)})"
-    )
-    lower.set_ylabel("phase (deg)")
+    ratio = f"{_symbol(response.output)}/{_symbol(response.input)}"
+    unit = "" if response.unit == "1" else f" re 1 {unit_at_axis(response.unit)}"
+    upper.set_ylabel(f"$|{ratio}|$ (dB{unit})")
+    lower.set_ylabel(rf"$\angle\,{ratio}$ (deg)")
     mark_degrees(lower)
     ends = float(response.frequency[0]), float(response.frequency[-1])
     share_abscissa(upper, lower, "frequency (Hz)", ends, columns)
+    _warn(upper, response)
     if measured is not None or len(response.cases) > 1:
         legend_below(figure, upper)
     return figure
@@ -125,17 +142,38 @@ def plot_nyquist(
     if unit == "1" and low < -1 < high:
         axis.plot(-1, 0, "+", color="#000000", markersize=6)
     beside = "" if unit == "1" else f" ({unit_at_axis(unit)})"
-    axis.set_xlabel(f"real part{beside}")
-    axis.set_ylabel(f"imaginary part{beside}")
+    ratio = f"{_symbol(response.output)}/{_symbol(response.input)}"
+    axis.set_xlabel(f"real part of ${ratio}${beside}")
+    axis.set_ylabel(f"imaginary part of ${ratio}${beside}")
     (left, right), (lowest, highest) = axis.get_xlim(), axis.get_ylim()
     # room for labels, and no emptier page than the curve's shape
     height = 0.6 + (width - 0.6) * (highest - lowest) / (right - left)
     figure.set_size_inches(width, min(max(height, 1.6), 4.5))
+    _warn(axis, response)
     axis.set_aspect("equal", adjustable="box")
     axis.grid(True)
     if measured is not None or len(response.cases) > 1:
         legend_below(figure, axis)
     return figure
+
+
+def _warn(axis: matplotlib.axes.Axes, response: FrequencyResponse) -> None:
+    """Above the figure: the cases that are unstable, and those that leave out only friction."""
+    lines = []
+    for words, cases in (
+        ("unstable", response.unstable),
+        ("friction left out", response.left_over),
+    ):
+        if names := [case for case in response.cases if cases.get(case)]:
+            lines.append(f"{words}: {', '.join(names) if len(response.cases) > 1 else 'yes'}")
+    if lines:
+        axis.set_title("; ".join(lines), loc="left", fontsize=7, color="#B00000", pad=3)
+
+
+def _symbol(signal: str) -> str:
+    """The name of a signal as mathematics, with its last part as an index."""
+    name, _, index = signal.partition("_")
+    return rf"\mathrm{{{name}}}_{{\mathrm{{{index}}}}}" if index else rf"\mathrm{{{name}}}"
 
 
 def _name(one: FrequencyResponse, case: str) -> str:
