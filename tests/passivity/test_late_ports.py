@@ -37,7 +37,7 @@ def held(*laws, damping=1.0, read="x", sign=-1):
     return Diagram("late", (mass, *controls), (force,), {"f": "force"}, ())
 
 
-def judged(diagram):
+def interval_claim(diagram):
     (one,) = linear_claims(diagram, ports(diagram))
     return one.claim
 
@@ -54,7 +54,7 @@ def judged(diagram):
 )
 def test_a_late_spring_is_passive_up_to_the_delay_that_its_damping_pays_for(delay, status):
     """Re Z = b - K sin(w T)/w >= 0 at all w if and only if K T <= b: 100 N/m, 1 N s/m."""
-    claim = judged(held(late(delay), ratio([100.0], [1.0])))
+    claim = interval_claim(held(late(delay), ratio([100.0], [1.0])))
     assert claim.status == status
     if status == "refuted":
         assert claim.record.replay() > 0
@@ -113,7 +113,7 @@ def test_a_dead_time_in_a_loop_of_laws_counts_with_its_poles(gain, delay, status
         Control("C", ratio([gain], [1.0]), "e", "y", "x"),
     )
     sums = (Junction("e", {"x": 1, "z": 1}), Junction("u", {"y": -1}))
-    claim = judged(Diagram("loop", parts, sums, {"f": "force"}, ()))
+    claim = interval_claim(Diagram("loop", parts, sums, {"f": "force"}, ()))
     assert claim.status == status, claim
 
 
@@ -130,7 +130,7 @@ def test_a_dead_time_in_a_loop_of_laws_counts_with_its_poles(gain, delay, status
 )
 def test_beside_a_mode_that_laws_with_a_dead_time_cancel_there_is_no_evidence(laws, stays):
     diagram = held(*laws, damping=5.0)
-    assert judged(diagram).holds is (None if stays else True)
+    assert interval_claim(diagram).holds is (None if stays else True)
 
 
 def test_a_pole_at_a_frequency_of_a_sweep_has_no_margin_there():

@@ -24,7 +24,7 @@ from ..linear.signs import Signs
 from ..ports import drop_absent_effects, nonlinear_parts, ports, without_friction
 from .box import IntervalClaim, ValueBox
 from .linear import states_over
-from .worst import Worst, judged
+from .worst import Worst, interval_claim
 
 #: effects that the two conditions cover completely, with their values
 _FRICTION: dict[str, tuple[str, ...]] = {"coulomb": ("level",), "presliding": ("stiffness",)}
@@ -45,18 +45,18 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> IntervalClaim:
         if whole is None and against:
             how = f"{against[0].statement}: {against[0].verdict}"
             there = replace(worst, point=point)
-            return judged(statement, "refuted", there, box, "", how, at_worst=against[0])
+            return interval_claim(statement, "refuted", there, box, "", how, at_worst=against[0])
     if any(whole is None for _, whole, _ in answers):
         why = "at some vertex neither a theorem nor a motion settles friction with its cancellation"
-        return judged(statement, "unknown", worst, box, "", why)
+        return interval_claim(statement, "unknown", worst, box, "", why)
     if _vertices_decide(middle, box) and _rest_is_passive(middle, box):
         how = (
             "each condition on friction and cancellation is monotone in each value, so that the "
             f"{len(points) - 1} vertices decide; the linear rest by Bernstein coefficients"
         )
-        return judged(statement, "proved", worst, box, "", how, at_worst=answers[-1][1])
+        return interval_claim(statement, "proved", worst, box, "", how, at_worst=answers[-1][1])
     how = "proved at each of these points alone"
-    return judged(statement, "evidence", worst, box, "", how, at_worst=answers[-1][1])
+    return interval_claim(statement, "evidence", worst, box, "", how, at_worst=answers[-1][1])
 
 
 def _claims_at(diagram: Diagram) -> tuple[Claim | None, list[Claim]]:

@@ -37,7 +37,7 @@ from ...frequency.late_zeros import Terms, count_growing, exact_terms, terms_of
 from ...realise.lti import S
 from .box import IntervalClaim, Status, ValueBox
 from .late_cells import LateSum, is_zero_free
-from .worst import judged, search_worst
+from .worst import interval_claim, search_worst
 
 _STATEMENT = "every pole has a negative real part"
 
@@ -66,12 +66,12 @@ def judge_late(
         radius = holds_root(exact_terms(p, times, there), root) if root.real > 0 else None
         if radius is not None and root.real > radius:
             how = f"a pole at {root:.4g} 1/s, within {radius:.1g} 1/s: by Rouche's theorem"
-            return judged(_STATEMENT, "refuted", worst, box, "1/s", how)
+            return interval_claim(_STATEMENT, "refuted", worst, box, "1/s", how)
         how = (
             "at the worst point of the search a pole is beyond the axis, or too near to it, and "
             "not shown"
         )
-        return judged(_STATEMENT, "unknown", worst, box, "1/s", how)
+        return interval_claim(_STATEMENT, "unknown", worst, box, "1/s", how)
     cells = None
     if _starts_stable(p, times, box):
         cells = try_within_effort(lambda: is_zero_free(LateSum.of(p, times, box)), None)
@@ -83,7 +83,7 @@ def judge_late(
             "floats with all rounding bounded, without a certificate"
         )
     bound = {"proved_margin": 0.0} if cells is not None else {}
-    return judged(_STATEMENT, status, worst, box, "1/s", how, **bound)
+    return interval_claim(_STATEMENT, status, worst, box, "1/s", how, **bound)
 
 
 def _starts_stable(p: Any, times: Mapping[sp.Symbol, sp.Expr], box: ValueBox) -> bool:

@@ -27,7 +27,7 @@ from ..linear_diagrams import linear_claims
 from ..ports import drop_absent_effects, ports
 from .box import IntervalClaim, Status, ValueBox, nonlinear_within
 from .late import judge_late
-from .worst import MarginFunction, Worst, judged, pole_margin, port_margin, search_worst
+from .worst import MarginFunction, Worst, interval_claim, pole_margin, port_margin, search_worst
 
 #: names of claims -> units of their margins
 CLAIMS = {"passive": "N s/m", "absolutely stable": "1", "stable": "1/s"}
@@ -74,7 +74,7 @@ def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> I
         )
     if not is_well_posed(middle, all_states(middle)):
         worst = Worst(box.centre, float("nan"), 1)
-        return judged(_STABLE, "unknown", worst, box, "1/s", _ILL_POSED)
+        return interval_claim(_STABLE, "unknown", worst, box, "1/s", _ILL_POSED)
     p = normalise(states.determinant())
     if states.times:
         return judge_late(p, states.times, box, points, seed)
@@ -95,9 +95,9 @@ def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) 
         how = (
             f"a pole with real part {-worst.margin:.4g} 1/s; not Hurwitz by Routh's scheme, exactly"
         )
-        return judged(_STABLE, "refuted", worst, box, "1/s", how)
+        return interval_claim(_STABLE, "refuted", worst, box, "1/s", how)
     if not _is_hurwitz(signs, p):
-        return judged(_STABLE, "evidence", worst, box, "1/s", _explain_no_proof(signs))
+        return interval_claim(_STABLE, "evidence", worst, box, "1/s", _explain_no_proof(signs))
     how = _describe_effort(signs, "its characteristic polynomial is nowhere zero on the axis")
     shares = (Fraction(str(round(share, 6))) for share in _SHARES)
     shifts = (Fraction(worst.margin).limit_denominator(10**6) * share for share in shares)
@@ -108,7 +108,7 @@ def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) 
         moved = _move_axis(p, bound)
         return (stability_certificate(title, moved, names=box.names, ends=box.exact, signs=signs),)
 
-    made = judged(_STABLE, "proved", worst, box, "1/s", how, proved_margin=float(bound))
+    made = interval_claim(_STABLE, "proved", worst, box, "1/s", how, proved_margin=float(bound))
     return _proof(made, certificates)
 
 
@@ -137,13 +137,13 @@ def judge_linear(
     if exact.status == "refuted":
         worst = worst if worst.margin < 0 else replace(worst, margin=-np.inf)
         how = str(exact.verdict)
-        return judged(statement, "refuted", worst, box, unit, how, at_worst=exact)
+        return interval_claim(statement, "refuted", worst, box, unit, how, at_worst=exact)
     if exact.holds and not family.times and _is_shown(signs, family, claim):
         bound = Fraction(0) if claim != "passive" else _bound(signs, family, worst.margin)
         how = _describe_effort(signs, "its conditions are polynomials of one sign")
         worst = replace(worst, margin=max(worst.margin, float(bound)))
         more = {"proved_margin": float(bound), "at_worst": exact}
-        made = judged(statement, "proved", worst, box, unit, how, **more)
+        made = interval_claim(statement, "proved", worst, box, unit, how, **more)
         title = f"{alone.name}: {statement}"
         return _proof(made, lambda: _certificates(signs, family, claim, bound, title))
     status: Status = "evidence" if exact.holds else "unknown"
@@ -153,7 +153,7 @@ def judge_linear(
         how = f"at the worst point of the search: {exact.verdict}"
     elif not family.times:
         how = _explain_no_proof(signs)
-    return judged(statement, status, worst, box, unit, how, at_worst=exact)
+    return interval_claim(statement, status, worst, box, unit, how, at_worst=exact)
 
 
 def _is_shown(signs: Signs, family: Family, claim: str, margin: Fraction = Fraction(0)) -> bool:
@@ -306,4 +306,4 @@ def judge_at_points(
     how = f"{name} is {worst.margin:.4g} there" if failed else f"{name}: nothing is proved"
     status: Status = "refuted" if failed else "unknown" if unknown else "evidence"
     how = f"unknown at {len(unknown)} points: {unknown[0]}" if status == "unknown" else how
-    return judged(f"{name} holds", status, worst, box, next(filter(None, units), ""), how)
+    return interval_claim(f"{name} holds", status, worst, box, next(filter(None, units), ""), how)

@@ -18,7 +18,7 @@ from ..ports import drop_absent_effects, ports, without_holders
 from .box import IntervalClaim, ValueBox, box_of, nonlinear_within
 from .friction import judge_friction
 from .linear import CLAIMS, judge_at_points, judge_linear, judge_stability
-from .worst import Worst, judged
+from .worst import Worst, interval_claim
 
 
 @check_types
@@ -56,7 +56,9 @@ def claim_over_intervals(
     except TooMuchEffort as problem:
         worst = Worst(box.centre, float("nan"), 0)
         what = f'it is "{claim}"'
-        made = judged(what, "unknown", worst, box, CLAIMS[claim], f"no linear form: {problem}")
+        made = interval_claim(
+            what, "unknown", worst, box, CLAIMS[claim], f"no linear form: {problem}"
+        )
     return _finish(diagram, intervals, made)
 
 

@@ -122,7 +122,7 @@ def _coefficients(p: Any) -> Callable[[np.ndarray], np.ndarray]:
     return lambda point: np.array(call(*(*point, *(0.0,) * (count - len(point)))), dtype=float)
 
 
-def judged(
+def interval_claim(
     statement: str, status: Status, worst: Worst, box: ValueBox, unit: str, how: str, **more: Any
 ) -> IntervalClaim:
     """The claim from its status, its worst point and its words; more: further fields."""

@@ -138,13 +138,13 @@ def _evaluate_precisely(
     with mpmath.workdps(digits):
         s = mpmath.mpc(*(mpmath.mpf(x.numerator) / x.denominator for x in (rate, frequency)))
         try:
-            return np.array([[complex(x) for x in row] for row in _compiled(z, "mpmath")(s)])
+            return np.array([[complex(x) for x in row] for row in _numeric_matrix(z, "mpmath")(s)])
         except (ZeroDivisionError, OverflowError):
             return np.full(z.shape, np.nan, dtype=complex)
 
 
 @lru_cache(maxsize=16)
-def _compiled(z: sp.ImmutableMatrix, library: str) -> Callable[[Any], list[list[Any]]]:
+def _numeric_matrix(z: sp.ImmutableMatrix, library: str) -> Callable[[Any], list[list[Any]]]:
     made: Callable[[Any], list[list[Any]]] = sp.lambdify(S, z.tolist(), library)
     return made
 
@@ -179,7 +179,7 @@ def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> Growi
 def _is_plainly_passive(z: sp.ImmutableMatrix, s: complex) -> bool:
     """Whether Z + Z^H at s is positive by far more than rounding, computed in double precision."""
     with np.errstate(all="ignore"):
-        value = np.array(_compiled(z, "numpy")(np.complex128(s)), dtype=complex)
+        value = np.array(_numeric_matrix(z, "numpy")(np.complex128(s)), dtype=complex)
     if not np.all(np.isfinite(value)):
         return False
     lowest = np.linalg.eigvalsh((value + value.conj().T) / 2)[0]

@@ -120,7 +120,7 @@ def friction_of(at):
     return resisted
 
 
-def judged(rng):
+def interval_claim(rng):
     effects, (force, length, speed) = random_device(rng)
     level = near(rng, force) if rng.random() < 0.4 else force * float(rng.uniform(0.2, 1))
     name = "dahl" if rng.random() < 0.7 else "smoothed_coulomb"
@@ -160,7 +160,7 @@ def judged(rng):
 def test_no_motion_beats_a_claim_that_is_extended_to_a_device(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):
-        counts.update(judged(rng))
+        counts.update(interval_claim(rng))
     print(dict(counts))
     assert counts["proved", False] >= number / 10
     assert number < 40 or counts["unknown", True] + counts["refuted", True] >= number / 10

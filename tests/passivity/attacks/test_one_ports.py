@@ -91,7 +91,7 @@ def _float_roots(p):
     return np.roots(p) if len(p) > 1 and np.all(np.isfinite(p)) else np.zeros(0)
 
 
-def judged(rng, kind):
+def interval_claim(rng, kind):
     ratio = random_ratio(rng, kind)
     claim = positive_real(expression(*ratio))
     point = active_point(rng, ratio)
@@ -136,7 +136,7 @@ def gives_out(wave):
 @attacked(12, 50)
 def test_no_growing_wave_gives_out_energy_where_a_port_is_proved_passive(seed, number):
     rng = np.random.default_rng(seed)
-    counts = Counter(judged(rng, KINDS[k % len(KINDS)]) for k in range(number))
+    counts = Counter(interval_claim(rng, KINDS[k % len(KINDS)]) for k in range(number))
     print(dict(counts))
     assert counts["proved", False] > number / 5
     # the attacker sees what there is to see, or its silence would say nothing

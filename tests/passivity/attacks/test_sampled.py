@@ -129,7 +129,7 @@ def energy_in(travel, p, q, b, k_0):
     return total + k_0 * x * x / 2
 
 
-def judged(rng, kind):
+def interval_claim(rng, kind):
     p, q = law(rng, kind)
     period, size = (Fraction(10) ** int(k) for k in rng.integers(-6, 7, 2))
     k_0 = number(rng) if kind == "negative spring" or rng.random() < 0.2 else Fraction(0)
@@ -157,7 +157,7 @@ def judged(rng, kind):
 @attacked(0, 50)
 def test_no_motion_takes_energy_out_of_a_sampled_body_that_is_proved_passive(seed, number):
     rng = np.random.default_rng(seed)
-    counts = Counter(judged(rng, KINDS[k % len(KINDS)]) for k in range(number))
+    counts = Counter(interval_claim(rng, KINDS[k % len(KINDS)]) for k in range(number))
     print(dict(counts))
     assert counts["proved", False] > number / 6
     assert sum(n for (status, _), n in counts.items() if status == "unknown") <= number / 8

@@ -271,7 +271,7 @@ def _is_pole(z, s, first, second):
         return near > 1e9 * far
 
 
-def judged(rng, kind):
+def interval_claim(rng, kind):
     z = random_matrix(rng, kind)
     if rng.random() < 0.25:
         z = _scaled(rng, z)
@@ -292,7 +292,7 @@ def judged(rng, kind):
 @attacked(2, 15)
 def test_nothing_beats_a_two_port_that_is_proved(seed, number):
     rng = np.random.default_rng(seed)
-    counts = Counter(judged(rng, KINDS[k % len(KINDS)]) for k in range(number))
+    counts = Counter(interval_claim(rng, KINDS[k % len(KINDS)]) for k in range(number))
     print(*counts.items(), sep="\n")
     of = {k: Counter() for k in (0, 1)}
     for one, n in counts.items():
