@@ -84,15 +84,18 @@ def _model_to_describe(
     diagnosis = diagnosis_of_part(experiment, options)
     prepared, before = diagnosis.prepared, diagnosis.before.model
     added = ", ".join(str(r.added) for r in diagnosis.rungs if r.added is not None)
-    held = diagnosis.floor.held
     if options.as_is:
         return before, prepared, None, "Your model, re-estimated:"
     if not added:
         return before, prepared, diagnosis.floor, "Your model, re-estimated:"
-    if not diagnosis.more_is_missing or (diagnosis.missing and not held):
+    if not diagnosis.more_is_missing or diagnosis.missing:
         return diagnosis.model, prepared, diagnosis.floor, f"Your model with {added}:"
-    why = "raise the noise of the sensors" if held else "explain less than half of what it leaves"
-    return before, prepared, None, f"Your model, re-estimated ({added} would {why}):"
+    return (
+        before,
+        prepared,
+        None,
+        f"Your model, re-estimated ({added} would explain less than half of what it leaves):",
+    )
 
 
 def _write(description: ResidualDescription, path: Path, folder: Path) -> None:

@@ -1,6 +1,6 @@
 """Adequacy: whether the remaining error is noise.
 
-The error is compared with the noise floor. A hum, or a single moment, may hold all the rest.
+The error is compared with the noise floor. A hum may hold all the rest.
 Every threshold is a field of `Criteria`.
 """
 
@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 
-from ..measurement.prepare import Prepared
 from .criteria import CRITERIA, Criteria
 from .evidence import check_squares
 from .fit import Fit
 from .noise_floor import NoiseFloor
-from .one_moment import Moment, worst_moment
 from .outside_tone import Tone
 from .ranking import Ranking
 
@@ -37,19 +35,6 @@ class Errors(Protocol):
     def check_error_at_command(self) -> float: ...
     @property
     def blind(self) -> float: ...
-
-
-@dataclass(frozen=True)
-class Floors:
-    """The noise floor of a model: as drawn, and limited by the error of the model.
-
-    drawn: the error that newly drawn readings of the model's motion leave
-    allowed: the floor used in decisions: never above the error that the records themselves leave,
-        nor far above the floor of the user's model
-    """
-
-    drawn: NoiseFloor
-    allowed: NoiseFloor
 
 
 def limit_noise_floor(
@@ -73,18 +58,6 @@ def limit_noise_floor(
             r.fit.check_error for r in ranking.ranked if r.counts and r.candidate.key not in without
         ]
     return replace(drawn, value=min(drawn.value, *left))
-
-
-def allowed_floor(
-    bounded: NoiseFloor, first: NoiseFloor, stated: Fit, *, criteria: Criteria = CRITERIA
-) -> NoiseFloor:
-    """A noise floor, limited by the first floor or by the error of the user's fitted model.
-
-    An effect that multiplies the influence of the sensors would hide its remaining error in their
-    noise.
-    """
-    most = max(criteria.louder * first.value, criteria.hidden * stated.check_error)
-    return bounded.at_most(most)
 
 
 def is_noise(check_error: float, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
@@ -125,13 +98,3 @@ def floors_left(errors: Errors, floor: NoiseFloor) -> float:
 def records_differ(errors: Errors, *, criteria: Criteria = CRITERIA) -> bool:
     """Whether the relative error on the check records is much larger than on the fit records."""
     return errors.check_error >= criteria.differ * errors.fit_error > 0.0
-
-
-def moment_above_noise(
-    fit: Fit, prepared: Prepared, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
-) -> Moment | None:
-    """The one moment that holds all of a model's residual above noise; None: there is none."""
-    if is_adequate(fit, floor, criteria=criteria):
-        return None
-    moment = worst_moment(fit, prepared, floor)
-    return moment if moment is not None and moment.without <= criteria.adequate else None

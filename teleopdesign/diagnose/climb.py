@@ -5,18 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 from .adequacy import is_a_tone
-from .commoner import compare_look_alikes
 from .conclusion import remove_doubtful_rung, with_last_corrected
-from .exchange import compare_alternatives, exchange
 from .ladder_state import LadderSearch, LadderState, look
-from .led_astray import return_from_astray
-from .moves import add, remove
+from .moves import add, add_two, swap
 from .noise_floor import noise_floor
-from .pairs import add_pair, replace_by_pair
 from .rung import Rung
 from .stand_in import stands_in_for_moments, stands_in_for_readings, stands_in_for_values
 from .straight import straighten
-from .together import add_together
 from .transmission import add_transmission
 
 
@@ -30,10 +25,6 @@ def climb(search: LadderSearch, state: LadderState) -> tuple[LadderState, tuple[
             len(state.set_aside) <= search.plan.searched_on
             and (moved := make_next_move(search, state)) is not None
         ):
-            if (back := return_from_astray(search, state, moved)) is not None:
-                search.progress("once more, from values that a candidate led back to")
-                state = look(search, back.rungs, back)
-                continue
             barred = bar_what_explains_nothing(search, state, moved)
             if barred is None:
                 state = look(search, moved.rungs, moved)
@@ -67,11 +58,11 @@ def bar_what_explains_nothing(
     last = replace(new[-1], fit=moved.fit)
     prepared, criteria = search.prepared, search.criteria
     drawn = noise_floor(moved.fit.model, prepared, search.generator())
-    barred = stands_in_for_readings(state.fit, state.floors.drawn, last, drawn, criteria=criteria)
-    if barred is None:
-        barred = stands_in_for_values(
-            state.fit, last, prepared, state.floor, criteria=criteria
-        ) or stands_in_for_moments(state.fit, last, prepared, criteria=criteria)
+    barred = (
+        stands_in_for_readings(state.fit, state.floor, last, drawn, criteria=criteria)
+        or stands_in_for_values(state.fit, last, prepared, state.floor, criteria=criteria)
+        or stands_in_for_moments(state.fit, last, prepared, criteria=criteria)
+    )
     if barred is None:
         return None
     gone = {r.added.key for r in new if r.added is not None}
@@ -81,32 +72,23 @@ def bar_what_explains_nothing(
         supported=tuple(r for r in state.supported if r.candidate.key not in gone),
         barred=(*state.barred, barred),
     )
-    return state.with_floor_limited(criteria) if barred.of_readings else state
+    return state.with_floor_limited() if barred.of_readings else state
 
 
 def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | None:
     """The state after the next move; None: the ladder ends here.
 
-    First, a supported effect is added. Where there is none, a straight line replaces bends, effects
-    that explained equally well are compared again, and a commoner effect replaces a similar one.
-    Then, where more than a tone is left, these moves follow: a pair, a transmission with friction
-    behind it, an exchange, a pair in place of all rungs, many effects at once.
+    First, a supported effect is added. Where there is none, another effect takes the place of one
+    that the records do not tell from it. Where more than a tone is left, two effects are tried that
+    mask each other, and a transmission with friction behind it, because a search with one of the
+    two does not lead to the other.
     """
-    if state.step > search.plan.most_effects:
-        return straighten(search, state)
-    added = add(search, state)
-    if added is not None:
-        fewer = remove(search, added)
-        # else two effects, each of which makes the other superfluous, would alternate for ever
-        return added if fewer is None or fewer.effects in state.visited else fewer
-    for settle in (straighten, compare_alternatives, compare_look_alikes):
-        if (moved := settle(search, state)) is not None:
+    moves = [straighten] if state.step > search.plan.most_effects else [add, straighten, swap]
+    for move in moves:
+        if (moved := move(search, state)) is not None:
             return moved
+    if state.step > search.plan.most_effects or state.set_aside:
+        return None
     if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):
         return None
-    # pairs and exchanges were searched before, with the effects that were set aside
-    if state.set_aside:
-        return None
-    moves = (add_pair, add_transmission, exchange, replace_by_pair, add_together)
-    attempts = (move(search, state) for move in moves)
-    return next((moved for moved in attempts if moved is not None), None)
+    return add_two(search, state) or add_transmission(search, state)

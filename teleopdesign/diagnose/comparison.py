@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
@@ -108,12 +108,16 @@ def compare(
     if loop is not None:
         raise ModelError('compare: a loop is simulated: found by="force", expected "simulation"')
     prepared = prepare(experiment)
+    fit_error, check_error = (force_error(model, prepared.of(use)) for use in ("fit", "check"))
+    drawn = noise_floor(model, prepared, np.random.default_rng(seed))
+    # the noise is no more than what the records themselves leave
+    left = check_error if prepared.of("check") else fit_error
     return Comparison(
         model=model,
         prepared=prepared,
-        fit_error=force_error(model, prepared.of("fit")),
-        check_error=force_error(model, prepared.of("check")),
-        floor=noise_floor(model, prepared, np.random.default_rng(seed)),
+        fit_error=fit_error,
+        check_error=check_error,
+        floor=replace(drawn, value=min(drawn.value, left)),
         data=residual_data(model, prepared),
     )
 

@@ -16,11 +16,8 @@ from ..check import why_silent
 from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .adequacy import moment_above_noise, records_differ
-from .between_rows import floor_between_rows
+from .adequacy import records_differ
 from .candidates import Candidate
-from .criteria import CRITERIA, Criteria
-from .decision import refusal
 from .effort import EFFORTS
 from .error import force_error
 from .error_at_command import refer_to_command
@@ -34,7 +31,6 @@ from .learnable import error_near_reversals, learnable
 from .order import select_other_helpers
 from .plausibility import implausible_effects
 from .probability import probable
-from .ranking import REFUSALS
 from .repeats import repeatability
 from .rung import Rung
 from .rungs import estimate_without, first_rise, reorder_and_refit, without_rise
@@ -60,35 +56,24 @@ def conclude(
     estimated = state.fit
     rungs = with_last_corrected(search, state) if rungs is None else rungs
     set_aside = (*state.barred, *state.set_aside)
-    moment = moment_above_noise(rungs[-1].fit, prepared, floor, criteria=criteria)
     if prepared is not search.whole:
         search.progress("errors on the whole records")
         rungs = tuple(replace(r, fit=_evaluate_on_all(r.fit, search.whole)) for r in rungs)
         steady = without_rise(rungs)
-        hidden = find_hidden_rung(steady, criteria=criteria)
-        if hidden is not None:
-            rung, why = hidden
-            assert rung.added is not None
-            set_aside = (*set_aside, SetAside(rung.added, rung.fit.check_error, why))
-            steady = steady[: steady.index(rung)]
         if len(steady) < len(rungs):
             rungs, estimated = steady, steady[-1].fit
     last, whole = rungs[-1].fit, search.whole
     search.progress("what could be learned")
     trees = learnable(last.model, whole, beside=beside, seed=search.seed)
     repeats = repeatability(last.model, whole, beside=beside)
-    floor = floor_between_rows(last, floor, trees, whole, search.generator(), criteria=criteria)
-    moment = moment if floor is state.floor else None  # else all that is left is noise
     end = LadderEnd(
         search=search,
-        verdict=verdict(rungs, floor, moment, criteria=criteria),
+        verdict=verdict(rungs, floor, criteria=criteria),
         beliefs=_beliefs(rungs, prepared),
         rungs=rungs,
         last=state.ranking,
         estimated=estimated,
         floor=floor,
-        sensor_floor=state.floor,
-        moment=moment,
         learnable=trees,
         near_reversals=error_near_reversals(last.model, whole),
         repeats=repeats,
@@ -174,21 +159,6 @@ def find_doubtful_rung(
     return None
 
 
-def find_hidden_rung(
-    rungs: Sequence[Rung], *, criteria: Criteria = CRITERIA
-) -> tuple[Rung, str] | None:
-    """The first rung that leaves the command too little influence to be believed, with the reason.
-
-    The same was checked when the rung was ranked. A share near its limit changes with the last fit,
-    and from the searched windows to the whole records.
-    """
-    for before, rung in pairwise(rungs):
-        why = refusal(before.fit, rung.fit, criteria=criteria)
-        if why in ("blind", "weak"):
-            return rung, REFUSALS[why]
-    return None
-
-
 def _find_dependent(rungs: Sequence[Rung], rung: Rung, why: str) -> tuple[Rung, str] | None:
     """The last rung whose effect needs that of another rung, with the reason; None: none does.
 
@@ -223,7 +193,6 @@ def remove_doubtful_rung(
     returns: None where no effect is doubtful, or the effect was removed before
     """
     doubted = find_doubtful_rung(rungs, search.prepared, state.fit)
-    doubted = doubted or find_hidden_rung(rungs, criteria=search.criteria)
     if doubted is None:
         return None
     rung, why = _find_dependent(state.rungs, *doubted) or doubted

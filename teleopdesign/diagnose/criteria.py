@@ -7,8 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..check.hidden_motion import FOR_EACH
-
 
 @dataclass(frozen=True)
 class Criteria:
@@ -24,8 +22,9 @@ class Criteria:
     #: standard deviations of its chance part from which a gain counts (one in 30 000 by a normal
     #: law; residuals are not quite normal). Lower: chance gains; higher: short records say nothing
     sure: float = 4.0
-    #: probability of a gain by chance, over the whole catalogue, up to which it counts: one
-    #: catalogue in a hundred. It rules where an adequate model is made of one that is not
+    #: probability by chance up to which moments of one log that agree on an effect count: six agree
+    #: once in 64, seven once in 128. Higher: what acts at a few starts is named; lower: short logs
+    #: say nothing
     by_chance: float = 0.01
     #: part of the noise floor's square from which a gain counts: while a body is stuck or turns,
     #: its friction is known no better. Lower: the method's errors count; higher: weak effects
@@ -45,16 +44,9 @@ class Criteria:
     #: relative difference of two check errors below which they may be equal (with `close`): what a
     #: reader sees as the same figure
     near: float = 0.02
-    #: independent values for each free parameter, at which the smaller model fails, from which a
-    #: larger one counts; as many check a model (`check.hidden_motion`)
-    for_each: float = FOR_EACH
     #: noise floors (in quadrature) by which the check errors of two models must differ, or they are
     #: left open: a right model's error lies between one and about one and a half floors
     open: float = 1.0
-    #: part of the excess of a force over all acting forces that must stay in the sum of the model's
-    #: forces, or others cancel it: none stays where they cancel all of it, all where nothing does.
-    #: Lower: forces are named of which only a sum is known; higher: strong ones are refused
-    stays: float = 0.5
     #: share of the samples where the body slides that may be blind. A quarter: of more, a model
     #: says too little; less would refuse every saturation that was really reached
     blind: float = 0.25
@@ -76,12 +68,6 @@ class Criteria:
     #: part of the squares that one linear step must promise, from which a start is worth a step.
     #: Higher: faster, and effects that are linear in no strength are missed
     worth: float = 0.01
-    #: times that an effect may make sensors count for more than in the user's model: above, what it
-    #: leaves would hide in their noise. As `adequate`: so much more would pass for noise
-    louder: float = 1.8
-    #: part of what the user's model leaves up to which the floor may rise nonetheless: so small a
-    #: rest is explained, whatever its source
-    hidden: float = 0.1
     #: part of the squares of velocity near a tone above which the motion itself may have brought it
     tone_in_motion: float = 0.01
     #: the same at a frequency of the mains: a hum moves the machine by itself (0.03 to 0.12 of the
@@ -91,8 +77,6 @@ class Criteria:
     #: part by which a tone may lie beside the mains: frequencies of networks and clocks of loggers
     #: are off by less. Higher: a resonance near by passes for a hum
     mains_within: float = 0.004
-    #: part of the check squares that a tone must explain to be a candidate force: as `relevant`
-    tone_heard: float = 0.03
     #: probability of an effect that was accepted with nothing but noise left: of 74 on simulated
     #: cases 73 were true, (73 + 1)/(74 + 2)
     true_of_accepted: float = 0.97
@@ -123,8 +107,6 @@ class Criteria:
     #: squares at most. Lower: less than half of the rows that are compared; higher: a missing force
     #: is said to differ from pass to pass
     ahead: float = 0.1
-    #: standard errors of the squares that repeat, below which they may be chance
-    chance: float = 2.0
     #: periods of the bandwidth that a pass holds at least, beside one cycle of the motion. Lower:
     #: the state of hidden parts, such as a bristle, comes from another past; higher: short logs
     #: have no two passes

@@ -10,7 +10,6 @@ from .adequacy import is_adequate
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .evidence import (
-    chance,
     check_score,
     check_squares,
     gain_at_command,
@@ -54,10 +53,9 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = 
     def is_enough(gain: float, score: float) -> bool:
         """Whether a gain of this share of the squares, at this score, is more than chance."""
         return (
-            (score > criteria.sure or _makes_adequate(base, other, floor, criteria))
+            score > criteria.sure
             and gain > criteria.relevant
             and gain > criteria.of_floor * (floor.value / base.check_error) ** 2
-            and chance(score) * len(base.model.known) < criteria.by_chance
         )
 
     return (
@@ -89,31 +87,16 @@ def objection(
 ) -> str:
     """The rule that excludes a candidate whatever it explains, in words; "" where none does.
 
-    A candidate may drive a parameter of the model to a bound although the records showed its
-    effect. Then it describes the records, but is no effect that the model lacks. A candidate with a
-    parameter at a bound is another effect itself, unless it makes the model adequate.
+    A candidate with a parameter at a bound is another effect, unless it makes the model adequate.
     """
     if ranked.refused or ranked.implausible:
         return REFUSALS.get(ranked.refused, ranked.implausible)
-    if floor.jitters and ranked.fit.check_error < criteria.weakened * floor.value:
-        return (
-            "leaves less than the jitter of the clock alone would: it only weakens the error from "
-            "the jitter"
-        )
-    displaced = list_displaced_parameters(base, ranked.fit, least=criteria.close)
-    if gone := [n for n in displaced if not _is_taken_over(n, ranked.candidate)]:
-        return f"drives to a bound what the model needs without this effect: {', '.join(gone)}"
     driven = sorted(set(ranked.fit.at_bound) - set(base.at_bound))
     added = [n for n in driven if n not in base.model.parameters]
     needed = [n for n in added if not ranked.fit.model.declared(n).optional]
     if needed and not _makes_adequate(base, ranked.fit, floor, criteria):
         return f"fits only with {', '.join(needed)} at a bound, where it is another effect"
     return ""
-
-
-def _is_taken_over(name: str, candidate: Candidate) -> bool:
-    """Whether the candidate may replace the whole effect that a parameter belongs to."""
-    return any(name.startswith(f"{candidate.at}.{e}.") for e in candidate.effect.takes_over)
 
 
 def helps_but_is_barred(

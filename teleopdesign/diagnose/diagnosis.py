@@ -26,7 +26,6 @@ from .fingerprint import Fingerprint
 from .learnable import Learnable, NearReversals
 from .model_data import model_of_body
 from .noise_floor import NoiseFloor
-from .one_moment import Moment
 from .record_offsets import Offset
 from .record_shift import RecordShift
 from .recording import DiagnosedRecording
@@ -74,7 +73,6 @@ class Diagnosis(Shown, ByValue):
     learnable: how much of the residual a black box can learn; None without the extra `learn`
     near_reversals: the check error near reversals of the motion; None where there are none
     repeats: how far the residual repeats with the motion; None where no motion is repeated
-    moment: the single time span that holds all of the residual above noise; None: no such span
     on_all_records: check error of the final model estimated on all records; None: not computed,
         because the check error is not much larger than the fit error
     fingerprint: of the experiment;  reading: corrections of its logs, as plain data
@@ -110,7 +108,6 @@ class Diagnosis(Shown, ByValue):
     learnable: Annotated[Learnable | None, INLINE] = None
     near_reversals: NearReversals | None = None
     repeats: Repeatability | None = None
-    moment: Annotated[Moment | None, At("one_moment")] = None
     on_all_records: Error | None = None
     at_bound: tuple[str, ...] = ()
     evidence: tuple[StepEvidence, ...] = ()
@@ -205,7 +202,7 @@ class Diagnosis(Shown, ByValue):
     @property
     def unlikely(self) -> bool:
         """Whether the verdict is undecided only because no effect is probable enough."""
-        of_rungs = verdict(self.rungs, self.floor, self.moment)
+        of_rungs = verdict(self.rungs, self.floor)
         return self.verdict == "undecided" and of_rungs == "effects_missing"
 
     @property
@@ -222,16 +219,7 @@ class Diagnosis(Shown, ByValue):
         """Whether the final model leaves more than noise."""
         if self.joints:
             return any(one.more_is_missing for one in self.joints.values())
-        return not is_adequate(self.after, self.floor) and self.moment is None
-
-    @property
-    def may_be_noise(self) -> bool:
-        """Whether the whole residual may be noise: sensors alone leave as much of the final model.
-
-        The noise floor in use was limited below that value, so that no effect hides in it.
-        """
-        drawn = replace(self.floor, value=self.floor.drawn)
-        return self.more_is_missing and self.floor.held and is_adequate(self.after, drawn)
+        return not is_adequate(self.after, self.floor)
 
     @property
     def left(self) -> float:

@@ -6,7 +6,6 @@ from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .adequacy import is_adequate, limit_noise_floor
-from .clock import with_paying_shift
 from .effort import EFFORTS
 from .evidence import check_squares
 from .fit import Fit, estimate, fit_squares
@@ -32,7 +31,7 @@ def fit(model: Model, experiment: Experiment, *, seed: int = 0) -> Model:
     raises ExperimentError: the experiment lacks what the comparison needs
     """
     search = search_for(experiment, model, seed=seed)
-    fit = with_paying_shift(estimate_stated(search.stated, search.prepared), search.prepared)
+    fit = estimate_stated(search.stated, search.prepared)
     drawn = noise_floor(fit.model, search.prepared, search.generator())
     return correct_fit(search, fit, limit_noise_floor(drawn, fit, Ranking(fit, ()))).model
 

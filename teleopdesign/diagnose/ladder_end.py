@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from ..base.frozen import ByValue
 from .adequacy import is_adequate
@@ -13,7 +13,6 @@ from .free_functions import Belief
 from .ladder_state import LadderSearch
 from .learnable import Learnable, NearReversals
 from .noise_floor import NoiseFloor
-from .one_moment import Moment
 from .ranking import Ranking
 from .repeats import Repeatability
 from .rung import Rung
@@ -27,8 +26,6 @@ class LadderEnd(ByValue):
 
     last: ranking after the last rung, none of which was accepted
     estimated: the last rung's fit, parameters not yet corrected for errors of the readings
-    sensor_floor: error that the sensors alone leave, used for the probability of effects. Where the
-        scatter of a command is noise too (`between_rows`), an effect may imitate it
     beliefs: accepted effect (name, place) -> what it explains beside free functions
     named: accepted effects that are probable enough to be called missing
     silence: why the records tell no effect; "": they may tell one
@@ -41,8 +38,6 @@ class LadderEnd(ByValue):
     last: Ranking
     estimated: Fit
     floor: NoiseFloor
-    sensor_floor: NoiseFloor
-    moment: Moment | None = None
     learnable: Learnable | None = None
     near_reversals: NearReversals | None = None
     repeats: Repeatability | None = None
@@ -70,13 +65,4 @@ class LadderEnd(ByValue):
     @property
     def more_is_missing(self) -> bool:
         """Whether the final model leaves more than noise."""
-        return not is_adequate(self.after, self.floor) and self.moment is None
-
-    @property
-    def may_be_noise(self) -> bool:
-        """Whether the whole residual may be noise: sensors alone leave as much of the final model.
-
-        The noise floor in use was limited below that value, so that no effect hides in it.
-        """
-        drawn = replace(self.floor, value=self.floor.drawn)
-        return self.more_is_missing and self.floor.held and is_adequate(self.after, drawn)
+        return not is_adequate(self.after, self.floor)

@@ -12,7 +12,7 @@ from ..effects import depends_on_time, find_effect
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
-from .adequacy import Floors, allowed_floor, is_noise, limit_noise_floor
+from .adequacy import is_noise, limit_noise_floor
 from .candidates import Candidate
 from .clock import with_late_hand, with_late_starts, with_paying_shift
 from .criteria import CRITERIA, Criteria
@@ -24,7 +24,7 @@ from .rank import rank_candidates
 from .ranking import Ranked, Ranking
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan, cut_to_windows
-from .stated_fit import estimate_stated
+from .stated_fit import estimate_values
 from .statements import SetAside
 
 
@@ -85,34 +85,23 @@ class LadderSearch:
 class LadderState:
     """The rungs of a ladder, and the results of `look` for the last of them.
 
-    A move changes the rungs; the noise floors and rankings stay the same until the next `look`.
+    A move changes the rungs; noise floor and rankings stay the same until the next `look`.
 
     rungs: the user's model first, then one rung per effect
-    floors: noise floors of the last rung;  first: limited noise floor of the user's model
+    floor: noise floor of the last rung, at most the error that the records themselves leave
     ranking: all candidates beside the last rung;  tone: the best external tone in its residual
     supported: candidates that the records support, in the order of the ranking
-    exchanges: number of exchanges made;  replaced: whether a pair once replaced all rungs
-    straightened: whether a straight line once replaced effects of the position
-    together: whether many effects at once replaced all rungs
-    came_back: effects (name, place) that were replaced once, or were added again beside their
-        replacement: none of them is replaced again, so that two effects cannot take turns
     set_aside: accepted effects that the final errors do not support: none is added again
     barred: supported effects that explain nothing: other values of the model do as much, or the
         effect only weakens errors of the readings. None is added again
-    visited: effects of all earlier models: a ladder that returned to such a set would not end
+    visited: effects of all earlier models: no move leads to such a set again
     """
 
     rungs: tuple[Rung, ...]
-    floors: Floors
-    first: NoiseFloor
+    floor: NoiseFloor
     ranking: Ranking
     tone: Tone
     supported: tuple[Ranked, ...]
-    exchanges: int = 0
-    replaced: bool = False
-    straightened: bool = False
-    together: bool = False
-    came_back: frozenset[tuple[str, str]] = frozenset()
     set_aside: tuple[SetAside, ...] = ()
     barred: tuple[SetAside, ...] = ()
     visited: frozenset[frozenset[tuple[str, str]]] = frozenset()
@@ -133,23 +122,16 @@ class LadderState:
         removed = (*self.set_aside, *self.barred)
         return frozenset(one.candidate.key for one in removed if one.of_readings)
 
-    def with_floor_limited(self, criteria: Criteria) -> LadderState:
+    def with_floor_limited(self) -> LadderState:
         """The state with the noise floor that its candidates allow, without `weakening`."""
-        first = None if self.step == 1 else self.first
-        floors, first = _limit_floors(
-            self.floors.drawn, self.rungs, self.ranking, self.weakening, first, criteria
-        )
-        return replace(self, floors=floors, first=first)
+        drawn = replace(self.floor, value=self.floor.drawn)
+        limited = limit_noise_floor(drawn, self.fit, self.ranking, self.weakening)
+        return replace(self, floor=limited)
 
     @property
     def fit(self) -> Fit:
         """The last rung's fit."""
         return self.rungs[-1].fit
-
-    @property
-    def floor(self) -> NoiseFloor:
-        """The noise floor used in decisions."""
-        return self.floors.allowed
 
     @property
     def step(self) -> int:
@@ -201,7 +183,7 @@ def restrict_candidates(among: Collection[str], model: Model) -> Model:
 def begin(search: LadderSearch) -> LadderState:
     """The ladder that holds the user's model alone, re-estimated."""
     search.progress("re-estimating the model")
-    fit = estimate_stated(search.stated, search.prepared)
+    fit = estimate_values(search.stated, search.prepared)
     return look(search, (Rung(None, with_late_starts(fit, search.stated, search.prepared)),))
 
 
@@ -223,41 +205,24 @@ def look(
     widely = more and search.plan.draws > 0
     ranking = search.rank(here, step=len(rungs), worth=worth, widely=widely, misled=more)
     weakening = () if before is None else before.weakening
-    first = None if before is None else before.first
-    floors, first = _limit_floors(drawn, rungs, ranking, weakening, first, criteria)
+    floor = limit_noise_floor(drawn, here, ranking, weakening)
     tone = best_tone(here, prepared)
     gone = set() if before is None else before.gone
     supported = tuple(
         r
         for r in ranking.ranked
         if r.candidate.key not in gone
-        and is_supported(here, r, floors.allowed, criteria=criteria)
+        and is_supported(here, r, floor, criteria=criteria)
         and (tone.is_beaten_by(r.fit) or depends_on_time(r.candidate.effect))
     )
-    late = with_late_hand(here, supported, floors.allowed, prepared, criteria=criteria)
+    late = with_late_hand(here, supported, floor, prepared, criteria=criteria)
     if late is not None and tone.is_beaten_by(late):
         # a late log is no effect: all effects are ranked again with it
         return look(search, (*rungs[:-1], replace(rungs[-1], fit=late)), before)
     if before is None:
-        return LadderState(rungs, floors, first, ranking, tone, supported)
+        there = frozenset({frozenset(here.model.effects)})
+        return LadderState(rungs, floor, ranking, tone, supported, visited=there)
     state = replace(
-        before, rungs=rungs, floors=floors, ranking=ranking, tone=tone, supported=supported
+        before, rungs=rungs, floor=floor, ranking=ranking, tone=tone, supported=supported
     )
     return replace(state, visited=before.visited | {state.effects})
-
-
-def _limit_floors(
-    drawn: NoiseFloor,
-    rungs: tuple[Rung, ...],
-    ranking: Ranking,
-    weakening: Collection[tuple[str, str]],
-    first: NoiseFloor | None,
-    criteria: Criteria,
-) -> tuple[Floors, NoiseFloor]:
-    """The floors of the last rung, and the limited floor of the user's model.
-
-    weakening: as in `LadderState`;  first: None: the last rung is the user's model
-    """
-    bounded = limit_noise_floor(drawn, rungs[-1].fit, ranking, weakening)
-    first = bounded if first is None else first
-    return Floors(drawn, allowed_floor(bounded, first, rungs[0].fit, criteria=criteria)), first

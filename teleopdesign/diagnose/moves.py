@@ -1,47 +1,56 @@
-"""Moves of a ladder by one effect: add an effect, or remove one that others made superfluous.
+"""Moves of a search over sets of effects: add one or two, remove one, or swap one for another.
 
 A move takes a search and a state and returns the next state, or None where no such move is
-supported. Decisions use the noise floor of the state.
+supported. All moves are judged by the same gain on the check records (`decision.is_better`), with
+the noise floor of the state. A move never leads to a set of effects where the search was before, so
+that the search ends.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
-from .adequacy import is_adequate, is_noise
-from .decision import is_better
-from .fit import Fit
+from .adequacy import is_adequate
+from .candidates import Candidate, list_look_alikes
+from .decision import is_better, is_supported
+from .evidence import check_squares, whole_score
+from .fit import Fit, fit_squares
 from .ladder_state import LadderSearch, LadderState
-from .noise_floor import noise_floor
-from .order import alternatives_of, select_other_helpers, select_simplest
-from .ranking import Ranked
+from .order import (
+    alternatives_of,
+    look_alikes_of,
+    select_equals,
+    select_other_helpers,
+    select_simplest,
+    simplicity,
+)
+from .plausibility import undetermined_of
+from .ranking import Ranked, Ranking
 from .rung import Rung, make_replaced
-from .rungs import estimate_without, reorder_and_refit
+from .rungs import estimate_without, order_by_falling_error, reorder_and_refit
+from .verdict import explained_share
 
 
 def add(search: LadderSearch, state: LadderState) -> LadderState | None:
     """The ladder with one more effect: the simplest that explains the records as well as the best.
 
-    The effect may replace an effect of the user's model, or one that was added before.
+    The effect may replace an effect of the user's model, or one that was added before. Effects that
+    it makes superfluous are removed.
     """
-    criteria = search.criteria
-    supported = [r for r in state.supported if not _takes_back(r, state)]
+    supported = list(state.supported)
     while supported:
-        best = select_simplest(supported, criteria=criteria)
+        best = select_simplest(supported, criteria=search.criteria)
         moved = _add_candidate(search, state, best)
-        if moved is not None:
-            return moved
+        if moved is not None and moved.effects not in state.visited:
+            fewer = remove(search, moved)
+            return moved if fewer is None or fewer.effects in state.visited else fewer
         supported.remove(best)
     return None
 
 
-def _takes_back(ranked: Ranked, state: LadderState) -> bool:
-    """Whether a candidate would replace an effect of `LadderState.came_back`."""
-    return ranked.instead_of is not None and ranked.instead_of.key in state.came_back
-
-
 def _add_candidate(search: LadderSearch, state: LadderState, best: Ranked) -> LadderState | None:
-    criteria, prepared = search.criteria, search.prepared
+    criteria = search.criteria
     alternatives = alternatives_of(best, state.ranking, state.fit, state.floor, criteria=criteria)
     noise = is_adequate(state.fit, state.floor, criteria=criteria)
     rung = Rung(
@@ -52,48 +61,204 @@ def _add_candidate(search: LadderSearch, state: LadderState, best: Ranked) -> La
         replaced=make_replaced(best, state.fit.model),
         could_be=select_other_helpers(best, state.ranking) if noise else None,
     )
-    for earlier in state.rungs[1:]:
+    rungs = [*state.rungs, rung]
+    for i, earlier in enumerate(state.rungs[1:], 1):
         assert earlier.added is not None
         # both effects are in the model now: nothing is replaced
         if earlier.instead_of == best.candidate:
-            rungs = [replace(r, replaced=None) if r is earlier else r for r in state.rungs]
-            order = reorder_and_refit(rungs, best.fit, prepared)
-            if order is None:
-                return None
-            back = state.came_back | {best.candidate.key}
-            return replace(state.with_rungs(order), came_back=back)
+            rungs = [*state.rungs]
+            rungs[i] = replace(earlier, replaced=None)
+            break
         if best.instead_of == earlier.added:  # the earlier effect only imitated the new one
-            kept = [r for r in state.rungs if r is not earlier]
-            rung = replace(rung, replaced=earlier.replaced)
-            order = reorder_and_refit([*kept, rung], best.fit, prepared)
-            if order is None:
-                return None
-            return replace(state.with_rungs(order), came_back=state.came_back | {earlier.added.key})
-    return state.with_rungs((*state.rungs, rung))
+            rungs = [*state.rungs, replace(rung, replaced=earlier.replaced)]
+            del rungs[i]
+            break
+    else:
+        return state.with_rungs(rungs)
+    return _in_order(search, state, rungs, best.fit)
+
+
+def add_two(search: LadderSearch, state: LadderState) -> LadderState | None:
+    """The ladder with two effects that the records support only together; only as the first move.
+
+    Each of two effects may mask the other, so that neither is supported alone. The best candidates
+    are followed (`SearchPlan.beam`), and all candidates at their body are ranked again beside each.
+    """
+    if state.step > 1 or is_adequate(state.fit, state.floor, criteria=search.criteria):
+        return None
+    first = [
+        r
+        for r in state.ranking.ranked
+        if r.counts
+        and r.candidate.key not in state.gone
+        and fit_squares(r.fit) < fit_squares(state.fit)
+        # all effects were ranked beside this effect before
+        and frozenset(r.fit.model.effects) not in state.visited
+    ]
+    pairs = [_best_beside(search, state, one) for one in first[: search.plan.beam]]
+    orders = [pair for pair in pairs if pair is not None]
+    best = min(orders, key=lambda rungs: check_squares(rungs[-1].fit), default=None)
+    return None if best is None else state.with_rungs(best)
+
+
+def _best_beside(
+    search: LadderSearch, state: LadderState, first: Ranked
+) -> tuple[Rung, ...] | None:
+    """The ladder with a candidate and the best one beside it; None where both are not needed."""
+    here, floor, criteria = state.fit, state.floor, search.criteria
+    # bodies do not act on each other along measured motions: effects of two never mask another
+    body = here.model.holder(first.candidate.at)
+    beside = search.rank(first.fit, step=state.step, body=body)
+    second = next(
+        (
+            r
+            for r in beside.ranked
+            if r.candidate.key not in state.gone
+            and r.instead_of != first.candidate
+            and is_supported(first.fit, r, floor, criteria=criteria)
+        ),
+        None,
+    )
+    if second is None:
+        return None
+    rungs = (
+        Rung(
+            first.candidate,
+            first.fit,
+            state.ranking,
+            look_alikes_of(first, state.ranking, criteria=criteria),
+            replaced=make_replaced(first, here.model),
+        ),
+        Rung(
+            second.candidate,
+            second.fit,
+            beside,
+            alternatives_of(second, beside, first.fit, floor, criteria=criteria),
+            replaced=make_replaced(second, first.fit.model),
+        ),
+    )
+    if not _needs_both(search, state, rungs):
+        return None
+    return order_by_falling_error((*state.rungs, *rungs), search.prepared)
+
+
+def _needs_both(search: LadderSearch, state: LadderState, pair: tuple[Rung, Rung]) -> bool:
+    """Whether two effects together explain most of the missing force and both are needed."""
+    here, both, floor, criteria = state.fit, pair[-1].fit, state.floor, search.criteria
+    if (
+        not is_better(here, both, floor, criteria=criteria)
+        or explained_share(here, both, floor) < criteria.mostly
+        or not state.tone.is_beaten_by(both)
+    ):
+        return False
+    without = estimate_without(both.model, pair[0], search.prepared)
+    # None: the second effect needs the first
+    return without is None or is_better(without, both, floor, criteria=criteria)
 
 
 def remove(search: LadderSearch, state: LadderState) -> LadderState | None:
     """Remove one effect that later effects made superfluous, and fit the others again."""
-    last = state.fit
     for rung in state.rungs[1:-1]:
-        without = estimate_without(last.model, rung, search.prepared)
-        if without is None or not _is_enough(search, without, state):
+        without = estimate_without(state.fit.model, rung, search.prepared)
+        if without is None or is_better(without, state.fit, state.floor, criteria=search.criteria):
             continue
-        fewer = [r for r in state.rungs if r is not rung]
-        order = reorder_and_refit(fewer, without, search.prepared)
-        return state.with_rungs(order) if order is not None else None
+        return _in_order(search, state, [r for r in state.rungs if r is not rung], without)
     return None
 
 
-def _is_enough(search: LadderSearch, without: Fit, state: LadderState) -> bool:
-    """Whether a fit with one effect less is as good as the last, or leaves only sensor noise.
+def swap(search: LadderSearch, state: LadderState) -> LadderState | None:
+    """The ladder with another effect in the place of one that the records do not tell from it.
 
-    A clock that jitters seems to demand a force that never acted. An effect that weakens this error
-    is no physical effect if the model without it leaves no more than the jitter causes.
+    Effects that explained the records equally well when one of them was added are compared again
+    beside later effects: those that are no longer equal are dropped, and the best of the others
+    takes the place of the accepted one, unless this is still as good.
+    Over a part of a turn, a spring and the gravity of a link are nearly the same torque. Where only
+    noise is left, the simpler of the two takes the place; where more is left, an unknown effect
+    acts too, and may be as large as the difference of the two: then the commoner one does.
     """
-    if not is_better(without, state.fit, state.floor, criteria=search.criteria):
+    for rung in state.rungs[1:]:
+        assert rung.added is not None
+        equals = rung.alternatives if _is_followed(rung, state) else ()
+        preferred = _list_preferred(search, state, rung.added)
+        if rung.replaced is not None or not (equals or preferred):
+            continue
+        without = estimate_without(state.fit.model, rung, search.prepared)
+        if without is None:
+            continue
+        among = (rung.added, *equals, *preferred)
+        ranking = search.rank(without, step=state.step, among=among)
+        supported = [
+            r
+            for r in ranking.ranked
+            if r.instead_of is None
+            and is_supported(without, r, state.floor, criteria=search.criteria)
+        ]
+        new = _in_place(search, state, rung, preferred, replace(ranking, ranked=tuple(supported)))
+        if new is None:
+            continue
+        rungs = [new if r is rung else r for r in state.rungs]
+        moved = _in_order(search, state, rungs, new.fit)
+        if moved is not None and (new.added == rung.added or moved.effects not in state.visited):
+            return remove(search, moved) or moved
+    return None
+
+
+def _in_place(
+    search: LadderSearch,
+    state: LadderState,
+    rung: Rung,
+    preferred: Sequence[Candidate],
+    supported: Ranking,
+) -> Rung | None:
+    """The rung with another effect, or with fewer alternatives; None: it stays as it is.
+
+    preferred: candidates that take the place where the records do not tell them from the effect
+    supported: the effect, its alternatives and these, as far as the records support them
+    """
+    criteria = search.criteria
+    for r in supported.ranked:
+        if r.candidate in preferred and whole_score(r.fit, state.fit) < criteria.close:
+            return Rung(r.candidate, r.fit, supported)
+    equal = [r for r in supported.ranked if r.candidate not in preferred]
+    equal = select_equals(equal, criteria=criteria)
+    if not 0 < len(equal) < 1 + len(rung.alternatives):
+        return None
+    kept = next((r for r in equal if r.candidate == rung.added), equal[0])
+    others = tuple(r.candidate for r in equal if r is not kept)
+    return replace(rung, added=kept.candidate, fit=kept.fit, alternatives=others)
+
+
+def _list_preferred(
+    search: LadderSearch, state: LadderState, added: Candidate
+) -> tuple[Candidate, ...]:
+    """Look-alikes that are preferred to an effect: simpler ones, or commoner ones.
+
+    None where the file of the effect says that the motion tells it from them.
+    """
+    alike = [c for c in list_look_alikes(added, state.fit.model) if c.key not in state.gone]
+    if is_adequate(state.fit, state.floor, criteria=search.criteria):
+        alike = [c for c in alike if c.effect.commoner == added.effect.name]
+        alike = [c for c in alike if simplicity(c) < simplicity(added)]
+    else:
+        alike = [c for c in alike if added.effect.commoner == c.effect.name]
+    if alike and undetermined_of(added.effect, added.at, state.fit.model, search.prepared) is None:
+        return ()
+    return tuple(alike)
+
+
+def _is_followed(rung: Rung, state: LadderState) -> bool:
+    """Whether a rung was ranked without some of the other effects, which may change its place.
+
+    The last rung only was so where an earlier one changed after it was added.
+    """
+    if rung is not state.rungs[-1]:
         return True
-    if not state.floor.jitters:
-        return False
-    floor = noise_floor(without.model, search.prepared, search.generator())
-    return is_noise(without.check_error, floor, criteria=search.criteria)
+    return rung.ranking is not None and rung.ranking.base is not state.rungs[-2].fit
+
+
+def _in_order(
+    search: LadderSearch, state: LadderState, rungs: Sequence[Rung], last: Fit
+) -> LadderState | None:
+    """The state with these rungs, ordered by falling error; None where there is no such order."""
+    order = reorder_and_refit(rungs, last, search.prepared)
+    return None if order is None else state.with_rungs(order)

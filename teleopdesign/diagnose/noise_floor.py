@@ -40,8 +40,6 @@ class NoiseFloor(ByValue):
 
     value: the part that counts as noise;  drawn: the error that simulated readings left
     source: origin of step and noise of the sensors, in words
-    held: whether `value` was limited, so that the residual of this model cannot hide in sensor
-        errors
     at_command: floor of the error at the command (`refer_to_command`) over that of the force: 1
         where no effect lies between command and body; never less
     jitters: whether the readings show that their moments jitter
@@ -50,7 +48,6 @@ class NoiseFloor(ByValue):
     value: Annotated[Size, At("noise_floor")]
     source: Annotated[str, At("noise_floor_source")]
     drawn: Annotated[Size, At("floor.drawn")]
-    held: Annotated[bool, At("floor.held")] = False
     at_command: Annotated[Size, At("floor.at_command")] = 1.0
     jitters: Annotated[bool, At("floor.jitters")] = False
 
@@ -63,12 +60,6 @@ class NoiseFloor(ByValue):
     def counted(self) -> float:
         """Share of the drawn floor that counts as noise."""
         return self.value / self.drawn if self.drawn else 1.0
-
-    def at_most(self, value: float) -> NoiseFloor:
-        """The floor, limited to a value."""
-        if self.value <= value:
-            return self
-        return replace(self, value=value, held=True)
 
 
 def say_floors(left: float, form: str = ".1f") -> str:

@@ -12,10 +12,6 @@ from .rung import Rung
 from .search_plan import PLAN
 from .statements import Nearest, NotAccepted, OpenQuestion, OpenRival, Why, finite
 
-#: a candidate is reported if its error is lower by more than this part of the last model's error: a
-#: difference that a reader can see
-LESS = 0.02
-
 
 def open_questions(end: LadderEnd) -> tuple[OpenQuestion, ...]:
     """Open questions for the next experiment, from the fits of the search alone.
@@ -39,7 +35,7 @@ def _rivals(ranked: list[Ranked]) -> tuple[OpenRival, ...]:
 
 def _is_short(end: LadderEnd) -> bool:
     """Whether more than noise is surely left."""
-    return end.more_is_missing and not end.may_be_noise
+    return end.more_is_missing
 
 
 def _question_of_rung(end: LadderEnd, rung: Rung) -> OpenQuestion:
@@ -97,7 +93,7 @@ def not_accepted(end: LadderEnd) -> tuple[NotAccepted, ...]:
 def _list_refused(end: LadderEnd) -> Iterator[NotAccepted]:
     for r in end.last.ranked:
         why = helps_but_is_barred(end.last.base, r, end.floor)
-        if why and r.fit.check_error < (1.0 - LESS) * end.after.check_error:
+        if why and r.fit.check_error < (1.0 - CRITERIA.near) * end.after.check_error:
             yield _state(r, "refused", why)
 
 

@@ -95,27 +95,6 @@ def select_other_helpers(best: Ranked, ranking: Ranking) -> tuple[Candidate, ...
     return tuple(r.candidate for r in others if whole - check_squares(r.fit) >= least)
 
 
-def is_simpler(
-    ranked: Ranked, dropped: Candidate, present: Fit, *, criteria: Criteria = CRITERIA
-) -> bool:
-    """Whether a candidate of the same role is simpler than an effect and leaves no more.
-
-    The role must be the same: a transmission may leave as little as friction only because it
-        transmits less of the sensor errors. A rarer look-alike of the effect does not replace it.
-
-    dropped: the effect that the candidate replaces;  present: the fit with that effect
-    """
-    if ranked.candidate.effect.commoner == dropped.effect.name:
-        return False
-    no_more = ranked.fit.check_error < (1.0 + criteria.near) * present.check_error
-    return (
-        ranked.candidate.effect.role == dropped.effect.role
-        and simplicity(ranked.candidate) < simplicity(dropped)
-        and no_more
-        and whole_score(ranked.fit, present) < criteria.close
-    )
-
-
 def simplicity(candidate: Candidate) -> tuple[int, int, int]:
     """Numbers of necessary parameters, of effects that must be present, and of optional parameters.
 

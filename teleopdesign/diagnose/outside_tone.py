@@ -76,7 +76,7 @@ def best_tone(fitted: Fit, prepared: Prepared) -> Tone:
                 for s, r in zip(check, after, strict=True)
             ]
             tones = [least, Tone(np.concatenate(left))]
-            if tones[-1].squares < (1 - CRITERIA.tone_heard) * whole:
+            if tones[-1].squares < (1 - CRITERIA.relevant) * whole:
                 tones.append(Tone(_fit_beside_tone(fitted, prepared, body, frequency)))
             least = min(tones, key=lambda tone: tone.squares)
     return least

@@ -22,7 +22,7 @@ from .fit import Fit, command_error_of, estimate, free_parameters
 from .link_knowledge import common_links, joint_knowledge, with_others
 from .parts import PreparedParts, mean_inertias, remove_links, with_inertias
 from .solve import solve
-from .stated_fit import estimate_stated
+from .stated_fit import estimate_values
 
 #: rounds over all joints of a fit: a third round changes the error by less than 1e-3
 ROUNDS = 2
@@ -124,7 +124,7 @@ def estimate_parts(
         for j, model in models.items():
             start = bool(model.absent) and k == 0
             fits[j] = (
-                estimate_stated(model, records[j])
+                estimate_values(model, records[j])
                 if start
                 else estimate(model, records[j], effort=effort)
             )

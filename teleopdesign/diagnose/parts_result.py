@@ -117,7 +117,7 @@ def _floor(joints: Mapping[str, Diagnosis]) -> NoiseFloor:
         for name in ("value", "drawn")
     )
     source = next(iter(joints.values())).floor.source
-    return NoiseFloor(value, source, drawn, any(d.floor.held for d in joints.values()))
+    return NoiseFloor(value, source, drawn)
 
 
 def _learnable(joints: Mapping[str, Diagnosis]) -> Learnable | None:

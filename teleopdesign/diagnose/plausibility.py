@@ -1,14 +1,13 @@
 """Plausible parameters: whether a fitted effect deserves its name, by the rules in its file.
 
-Two rules hold for every force, also for a user's effects: along the motion it cannot vary by more
-than the acting forces, unless another effect cancels it, and a force of the position cannot be told
+One rule holds for every force, also for a user's effects: a force of the position cannot be told
 where a controller computes the command from the position.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -20,14 +19,11 @@ from ..check.computed_command import describe_computed
 from ..effects import CONTACT_ROLES, SIGNALS, Effect, RecordFacts
 from ..measurement.experiment import Experiment
 from ..measurement.motion import Motion
-from ..measurement.prepare import Prepared, Stretch, measured_force
+from ..measurement.prepare import Prepared, Stretch
 from ..measurement.repeated_rows import runs_of
 from ..measurement.reversals import count_reversals
 from ..model import Model
-from ..realise.along_motion import measured_along
-from ..realise.traced import Along
-from .criteria import CRITERIA
-from .residual import residuals
+from ..realise.along_motion import friction_level_along
 
 
 def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str], str]:
@@ -44,16 +40,12 @@ def implausible_effects(model: Model, prepared: Prepared) -> dict[tuple[str, str
         ]
         if not effects:
             continue
-        stretches = [s for s in prepared.stretches if s.motion.body == place]
         numbers = {n: v.value for n, v in body.parameters.items()}
         facts = record_facts(model, place, prepared, numbers)
-        alongs = [(measured_along(body, s.motion), s) for s in stretches]
         for effect in effects:
             reason = _ask_effect(effect, "plausible", facts)
             if reason is None:
                 reason = _explain_computed(effect, prepared.experiment, place)
-            if reason is None and effect.role == "force":
-                reason = _explain_cancelled(effect, alongs, facts, model)
             if reason is not None:
                 meanings[effect.name, place] = reason
     return meanings
@@ -80,39 +72,6 @@ def _explain_computed(effect: Effect, experiment: Experiment, body: str) -> str 
     if not is_of_place(effect) or not (computed := describe_computed(experiment, body)):
         return None
     return f"the command is {computed}; a controller computes it, and the effect repeats this law"
-
-
-def _explain_cancelled(
-    effect: Effect, alongs: Sequence[tuple[Along, Stretch]], facts: RecordFacts, model: Model
-) -> str | None:
-    """A sentence where a force varies by more than all acting forces, and others cancel it.
-
-    Half of its range is compared with the largest acting force, and with half of the range of all
-    forces of the model together: a force that is too large beyond the motion of the fit records
-    stays in the residual, and nothing cancels it.
-    """
-    law = effect.expression()
-    if effect.states or law.has(SIGNALS["acting_force"]):
-        return None
-    half = _half_range([along.evaluate(law).value[s.keep] for along, s in alongs])
-    if not half > facts.acting:
-        return None
-    stretches = [s for _, s in alongs]
-    left = residuals(model, stretches)
-    together = _half_range(
-        [measured_force(s) - r for s, (r, _) in zip(stretches, left, strict=True)]
-    )
-    if together - facts.acting > CRITERIA.stays * (half - facts.acting):
-        return None
-    return (
-        f"this force varies by +-{facts.text(half, 'force')} along the motion, where no more than "
-        f"{facts.text(facts.acting, 'force')} act: another effect cancels it, and only the sum of "
-        "the two is known"
-    )
-
-
-def _half_range(forces: Sequence[np.ndarray]) -> float:
-    return 0.5 * float(max(f.max() for f in forces) - min(f.min() for f in forces))
 
 
 def _force_of_motion(inertia: float, stretches: Sequence[Stretch]) -> float:
@@ -168,6 +127,7 @@ def record_facts(
         acting=float(max(measured)) + _force_of_motion(numbers["inertia"], stretches),
         speed=speed,
         film=_film(body, speed, numbers),
+        levels=partial(_sliding_levels, body, motions),
         body=numbers,
         duration=max(float(np.ptp(m.time)) for m in motions),
         stuck=max(_longest_hold(m, numbers.get("coulomb.level", 0.0)) for m in motions),
@@ -175,6 +135,11 @@ def record_facts(
         places=np.concatenate([m.position[m.direction != 0] for m in motions]),
         speeds=np.concatenate([m.velocity[m.direction != 0] for m in motions]),
     )
+
+
+def _sliding_levels(body: Body, motions: Sequence[Motion]) -> np.ndarray:
+    """Friction levels (n,) where a body slides, whatever effects make them."""
+    return np.concatenate([friction_level_along(body, m)[m.direction != 0] for m in motions])
 
 
 def _longest_hold(motion: Motion, level: float) -> float:

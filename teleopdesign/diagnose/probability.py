@@ -100,7 +100,7 @@ def _evidence_alone(end: LadderEnd) -> list[CandidateEvidence]:
         (r, r.ranking) for r in end.rungs if r.ranking is not None
     ]
     steps.append((None, end.last))
-    last, floor = end.after, end.sensor_floor
+    last, floor = end.after, end.floor
     evidence = []
     for rung, ranking in steps:
         share = shares(ranking, rung)

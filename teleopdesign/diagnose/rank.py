@@ -19,7 +19,6 @@ from .criteria import CRITERIA, Criteria
 from .decision import find_superfluous_effect, lowers_check_squares, refusal
 from .draws import search_among_draws
 from .evidence import check_score, check_squares, whole_score
-from .few_values import explain_few_values
 from .fit import Fit, estimate, fit_squares, rough_fit
 from .identifiability import is_identifiable
 from .order import rank_key
@@ -228,7 +227,7 @@ def _implausible(base: Fit, candidate: Candidate, fit: Fit, prepared: Prepared) 
     new = _select_new(stands_for, base, prepared)
     for (name, _), reason in new.items():
         return f"with it, {name} is implausible: {reason}"
-    return explain_few_values(base, fit, prepared)
+    return ""
 
 
 def _select_new(

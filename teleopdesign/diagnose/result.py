@@ -58,7 +58,6 @@ def diagnosis_of(end: LadderEnd) -> Diagnosis:
         learnable=end.learnable,
         near_reversals=end.near_reversals,
         repeats=end.repeats,
-        moment=end.moment,
         on_all_records=end.on_all_records,
         at_bound=end.after.at_bound,
         evidence=tuple(_evidence(one) for one in evidence if one.share > 0),

@@ -98,13 +98,13 @@ def estimate_from_starts(
     absent = [model.body(at).effect(name) for name, at in model.absent]
     rugged = any(is_rugged(e) for e in absent)
     wide = rugged or any(len(e.parameters) >= PLAN.many_parameters for e in absent)
-    kept = PLAN.wide_stepped if wide else PLAN.curved_stepped
+    kept = PLAN.wide if wide else PLAN.curved_stepped
     if base is not None:
         curved = strength_of_new(model) is None
-        kept = kept if curved else PLAN.stepped
+        kept = kept if curved else 1
         if curved and stated is not None and has_moved(base.coarse, stated):
             models += [reset_to_stated(m, stated) for m in models]
-        most = PLAN.wide_predicted if wide else PLAN.curved_predicted
+        most = PLAN.wide if wide else PLAN.curved_predicted
         others = with_what_they_need(model, models, prepared) if curved else []
         models = _select_promising(model, models, coarse, base, most=most, worth=worth)
         if others:

@@ -19,34 +19,17 @@ class SearchPlan:
     long: int = 200_000
     #: samples of the windows together
     windows: int = 60_000
-    #: candidates that are added on trial where none is supported alone, for each may mask another:
-    #: one ranking each
-    trials: int = 3
-    #: most exchanges of an accepted effect for another: few, so that two effects cannot take turns
-    exchanges: int = 2
-    #: joints up to which as many are tried as first of a pair at each joint of an arm; beyond,
-    #: `pairs_beyond`: a real arm always leaves more than noise, so at each joint they are sought,
-    #: and with three trials six joints took over twice the time
-    whole_at: int = 3
-    pairs_beyond: int = 1
-    #: whether a pair that takes the place of all added effects may leave more than noise, and hold
-    #: an effect that explains nothing alone. Not at a joint of an arm: there the errors of others
-    #: are in what is left, and on a real arm it took 183 in place of 154 s and changed no answer
-    partial_pairs: bool = True
+    #: candidates that are followed where none is supported alone, for each may mask another: one
+    #: ranking each. At each joint of an arm with more joints than that one is followed: a real arm
+    #: always leaves more than noise, and with three, six joints took over twice the time
+    beam: int = 3
     #: whether the errors of the readings are taken out of the last fit. Not at a joint of an arm:
     #: its readings are drawn with those of all joints
     corrected: bool = True
     #: whether an effect is barred that stands in for other values of the model, for the noise of
     #: readings or for a few moments. Not at a joint of an arm: its effects are tested on all joints
     stand_ins: bool = True
-    #: most effects that are added at once where no other move leads on; 0: none, as at a joint of
-    #: an arm. Eight: friction of the speed, of the direction, and forces of the place, one of each
-    together: int = 8
-    #: relative difference of squares below which two effects do the same: what a search resolves
-    same: float = 1e-6
-    #: parameters of an effect from which it is searched from more starts, and two simpler ones are
-    #: held against it though it leaves only noise. Five: `maxwell_slip`, which turns as a spring
-    #: and a bristle do together
+    #: parameters of an effect from which it is searched from more starts. Five: `maxwell_slip`
     many_parameters: int = 5
     #: part of the squares of an arm's joint that its first effect takes away where the links were
     #: led astray by its absence: what is left is partly theirs. Lower: more joints are ranked twice
@@ -54,10 +37,9 @@ class SearchPlan:
     #: effects that may be set aside with the search going on without them. One: each asks for all
     #: candidates to be ranked again, and what comes in its place is often as little there
     searched_on: int = 1
-    #: starts kept after the prediction by one linear step, of an effect linear in its strength
+    #: starts kept after the prediction by one linear step, of an effect linear in its strength; of
+    #: these one is kept after the first real steps
     predicted: int = 2
-    #: of these, starts kept after the first real steps
-    stepped: int = 1
     #: part of the force below which the strength of an effect that a new one needs counts as taken
     #: away. Of 30 simulated springs that slip late in a stroke, a bristle left 86 to 88 % of four
     #: from the usual starts, and leaves 9 to 15 % with the further ones; no error grew by 0.2 %
@@ -73,8 +55,7 @@ class SearchPlan:
     #: of step, and squares are rugged. All are followed: the first steps from a good start may all
     #: fail (one search of a gap ended at 43 % with three, at 4 % with six; one of slipping springs
     #: at 6.5 % with two, at 2.5 % with four)
-    wide_predicted: int = 6
-    wide_stepped: int = 6
+    wide: int = 6
     #: parts of the time by which a log may be late at which the user's model begins, too: 12 and
     #: 35 ms of 50. From none alone, a log late by 8 rows of 2 ms ended at one row
     late_starts: tuple[float, ...] = (0.25, 0.7)
@@ -107,9 +88,6 @@ class SearchPlan:
     #: part of the squares by which two fits must differ to count as two places: ten times what a
     #: rough fit leaves open
     elsewhere: float = 1e-3
-    #: part of a new effect's gain that the model without it regains from the other values, from
-    #: which on it is searched anew: below this the effect explains four fifths of its gain itself
-    regained: float = 0.2
     #: squares on the fit records above the least that a rough fit leaves, as a part of these, up to
     #: which another candidate is fitted finely at once
     leading: float = 0.05
@@ -152,16 +130,13 @@ class SearchPlan:
         An arm's records are searched whole, so the plan has the default sizes of windows.
         """
         plan = replace(self, long=SearchPlan.long, windows=SearchPlan.windows)
-        most = self.trials if count <= self.whole_at else self.pairs_beyond
         return replace(
             plan,
-            trials=min(self.trials, most),
-            partial_pairs=False,
+            beam=self.beam if count <= self.beam else min(self.beam, 1),
             corrected=False,
             stand_ins=False,
             tip_starts=0,
             draws=0,
-            together=0,
         )
 
     def omissions(self) -> tuple[str, ...]:
@@ -169,13 +144,11 @@ class SearchPlan:
         words = []
         if self.most_effects < PLAN.most_effects:
             words.append(f"no more than {self.most_effects} effects were added")
-        if self.trials == 0:
+        if self.beam == 0:
             words.append("pairs of effects that mask each other were not searched")
-        elif self.trials < PLAN.trials:
-            best = "the best candidate" if self.trials == 1 else f"the best {self.trials}"
+        elif self.beam < PLAN.beam:
+            best = "the best candidate" if self.beam == 1 else f"the best {self.beam}"
             words.append(f"pairs of effects that mask each other were searched with {best} only")
-        if self.exchanges < PLAN.exchanges:
-            words.append("accepted effects were not compared with their rivals again")
         if self.long < PLAN.long:
             words.append(
                 f"records of more than {self.long} samples were searched on {self.windows} samples "
@@ -192,11 +165,9 @@ QUICK = SearchPlan(
     most_effects=2,
     long=8_000,
     windows=8_000,
-    trials=0,
-    exchanges=0,
+    beam=0,
     tip_starts=0,
     draws=0,
-    together=0,
 )
 
 

@@ -25,9 +25,12 @@ from .criteria import CRITERIA, Criteria
 from .decision import is_better
 from .fit import Fit, estimate
 from .noise_floor import NoiseFloor, say_floors
-from .one_moment import MOMENTS
 from .rung import Rung
 from .statements import SetAside
+
+#: blocks of the check records in fewer of which an effect may follow errors of the readings. Lower:
+#: a lag is named on a motor that sticks and slips; higher: a weak spring is not
+MOMENTS = 10
 
 
 def estimable_on_all(prepared: Prepared) -> Prepared | None:

@@ -6,12 +6,19 @@ from ..base.errors import ModelError
 from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
+from .clock import with_late_starts, with_paying_shift
 from .fit import Fit, estimate, fit_squares
 from .rung import Replaced, restore_replaced
 from .search import estimate_from_starts
 
 
 def estimate_stated(model: Model, prepared: Prepared) -> Fit:
+    """The best fit of a stated model with the shifts of its logs, as every ladder begins."""
+    fit = with_late_starts(estimate_values(model, prepared), model, prepared)
+    return with_paying_shift(fit, prepared)
+
+
+def estimate_values(model: Model, prepared: Prepared) -> Fit:
     """The best fit of a stated model: all effects without values at once, or one at a time.
 
     An effect of several parameters may be misled while other effects are far from their values:

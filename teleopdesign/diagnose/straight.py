@@ -33,11 +33,8 @@ def straighten(search: LadderSearch, state: LadderState) -> LadderState | None:
     """The ladder with a straight line for curved forces of position; None: the curved ones stay.
 
     The line replaces effects with more parameters unless these are surely better, and effects with
-    as many or fewer parameters if the line is surely better. This happens once in a ladder, so that
-    both cannot take turns.
+    as many or fewer parameters if the line is surely better.
     """
-    if state.straightened:
-        return None
     for bent in _bent_rungs(state):
         moved = _with_line(search, state, bent)
         if moved is not None:
@@ -90,7 +87,8 @@ def _with_line(
         order = without_rise((*rungs[:-1], replace(rungs[-1], fit=fit)))
     if order is None or order[-1].fit is not fit:
         return None
-    return replace(state.with_rungs(order), straightened=True)
+    moved = state.with_rungs(order)
+    return None if moved.effects in state.visited else moved
 
 
 def _exchange_for_line(

@@ -14,7 +14,6 @@ from .adequacy import Errors, is_adequate
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
 from .noise_floor import NoiseFloor
-from .one_moment import Moment
 
 #: how a diagnosis ends
 VerdictName = Literal["effects_missing", "model_adequate", "undecided"]
@@ -56,16 +55,12 @@ def removed_share(errors: Sequence[float], floor: float) -> float:
 def verdict(
     rungs: Sequence[Step],
     floor: NoiseFloor,
-    moment: Moment | None = None,
     *,
     criteria: Criteria = CRITERIA,
 ) -> VerdictName:
-    """The verdict by the rungs alone, whatever the probabilities of their effects.
-
-    moment: from `moment_above_noise`; a residual at one moment only is no missing physics
-    """
+    """The verdict by the rungs alone, whatever the probabilities of their effects."""
     added = [r for r in rungs if r.added is not None]
     if not added:
-        adequate = is_adequate(rungs[-1].errors, floor, criteria=criteria) or moment is not None
+        adequate = is_adequate(rungs[-1].errors, floor, criteria=criteria)
         return "model_adequate" if adequate else "undecided"
     return "undecided" if all(r.alternatives for r in added) else "effects_missing"

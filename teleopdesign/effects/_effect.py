@@ -95,7 +95,6 @@ class Effect:
     needs: effects that the model must have with this one; for a role that only one effect of a body
         can have, any effect of this role is enough
     counts_as: needed effects that it can replace, for effects whose laws hold no parameter of these
-    takes_over: effects of the body that may be zero beside it, because it can have all their force
     always: properties for any values of its parameters, such as "even in velocity"
     commoner: name of the effect that gives nearly the same force where `undetermined` says so, and
         acts on far more machines; "" for none
@@ -120,7 +119,6 @@ class Effect:
     linear: bool = False
     needs: frozenset[str] = frozenset()
     counts_as: frozenset[str] = frozenset()
-    takes_over: frozenset[str] = frozenset()
     elsewhere: Mapping[str, str] = field(default_factory=dict)
     always: frozenset[str] = frozenset()
     commoner: str = ""

@@ -43,7 +43,7 @@ def softest_first(p: Mapping[str, float], body: Mapping[str, float]) -> dict[str
 def elements_slip(p: Any, facts: RecordFacts) -> str | None:
     """A sentence where the softest element does not slip both ways, or as `slip_is_observable`."""
     slips = {i: getattr(p, f"level_{i}") for i in MORE}
-    slips[1] = (level := facts.body["coulomb.level"]) - sum(slips.values())
+    slips[1] = (level := facts.friction) - sum(slips.values())
     ways = {i: slips[i] / getattr(p, f"stiffness_{i}") for i in slips if slips[i] > 0.0}
     reached = {i: slips[i] * min(1.0, facts.sweep / ways[i]) for i in ways}
     softest = max(

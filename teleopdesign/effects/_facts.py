@@ -65,6 +65,8 @@ class RecordFacts:
         the forces on a body that swings or coasts
     speed: largest speed;  film: friction (N or N m) at that speed by dissipating effects of the
         body that depend on the velocity alone, such as `viscous`
+    levels: computes the friction levels (n,) in N or N m where the body slides, by all effects
+        that make one; none: that of `coulomb` alone
     body: its other numbers by their names, such as "inertia" and "coulomb.level"
     duration: of the longest record (s)
     stuck: longest time (s) in which more than the Coulomb level acts and the body does not surely
@@ -81,6 +83,7 @@ class RecordFacts:
     speed: float
     film: float
     body: Mapping[str, float]
+    levels: Callable[[], Array] = lambda: np.zeros(0)
     duration: float = float("inf")
     acting: float = float("inf")
     stuck: float = float("inf")
@@ -88,6 +91,12 @@ class RecordFacts:
     reversals: float = float("inf")
     places: Array = field(default_factory=lambda: np.zeros(0))
     speeds: Array = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def friction(self) -> float:
+        """The usual friction level (N or N m) where the body slides, whatever effects make it."""
+        levels = self.levels()
+        return float(np.median(levels)) if len(levels) else self.body["coulomb.level"]
 
     @property
     def slowest(self) -> float:

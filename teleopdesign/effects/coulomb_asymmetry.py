@@ -14,7 +14,7 @@ def law(now, p):
 
 
 def plausible(p, facts):
-    level = facts.body["coulomb.level"]
+    level = facts.friction
     if abs(p.half_difference) <= level:
         return None
     return (

@@ -52,7 +52,6 @@ EFFECT = Effect(
     },
     absent={"coefficient": 0.0},
     needs=frozenset({"coulomb"}),
-    takes_over=frozenset({"coulomb"}),
     always=frozenset({"non-negative"}),
     source="Amontons' law on the transmitted force; with direction and speed: Duclusaud, Passault, "
     "Padois, Daney, Extended Friction Models for the Physics Simulation of Servo Actuators (2024)",

@@ -22,7 +22,7 @@ def bristle(now, p):
 
 
 def plausible(p, facts):
-    level = facts.body["coulomb.level"]
+    level = facts.friction
     bristle = f"a bristle of {facts.text(p.stiffness, 'stiffness')} at {facts.text(level, 'force')}"
     return slip_is_observable(bristle, [level / p.stiffness], facts) if p.stiffness > 0 else None
 

@@ -47,7 +47,6 @@ EFFECT = Effect(
     absent={"drag": 0.0},
     counts_as=frozenset({"viscous"}),
     after=frozenset({"coulomb"}),
-    takes_over=frozenset({"coulomb", "viscous"}),
     plausible=plausible,
     source="power law of a lubricant in gears and bearings; Waiboer, Aarts, Jonker, Multibody "
     "Dynamics (ECCOMAS, Madrid 2005)",

@@ -37,7 +37,6 @@ EFFECT = Effect(
     },
     absent={"level": 0.0},
     after=frozenset({"coulomb"}),
-    takes_over=frozenset({"coulomb"}),
     plausible=plausible,
     source="Bernstein, Lawrence, Pao, World Haptics 2005, eq (6)",
 )

@@ -21,11 +21,6 @@ class LoggerClock:
     latest: float = 0.05
     #: s, standard deviation of the shift of a measured force where it is more: sensors filter
     sensor_spread: float = 0.005
-    #: rows by which the lateness may differ from half a row where a log samples a controller that
-    #: is faster: one of k times its rate is late by (1 - 1/k)/2 rows, a third for k = 3. Lower:
-    #: what such a log cannot tell is called missing; higher: a log as fast as its controller
-    #: passes for one
-    amid: float = 0.2
     #: part of its bound from which a shift counts as at the bound: far nearer than a standard error
     near: float = 0.999
     #: rows and standard errors from which a command that acts late is said to be like a delay

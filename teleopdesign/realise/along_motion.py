@@ -130,6 +130,16 @@ def with_loads(body: Body, motion: Motion, along: Along, acting: Traced) -> Alon
     return along.with_signals({SIGNALS["carried_force"]: carried})
 
 
+def friction_level_along(body: Body, motion: Motion) -> Array:
+    """Friction level (n,) of a body along a motion, as far as it is the same in both directions."""
+    known = measured_along(body, motion)
+    known = with_loads(body, motion, known, residual_along(body, motion).acting)
+    level, known = level_along(body, known)
+    neither = known.constant(np.zeros(len(motion.time)))
+    at_rest = known.with_signals({SIGNALS["direction"]: neither}).evaluate(level)
+    return np.broadcast_to(at_rest.value, len(motion.time))
+
+
 def _force_of_links(motion: Motion, force: Array, along: Along) -> Traced:
     """The force (n,) of an arm's links, with its tangents by their base parameters."""
     places = [(j, c.index) for j, c in enumerate(along.columns) if isinstance(c, LinkParameter)]

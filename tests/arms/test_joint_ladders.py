@@ -11,7 +11,6 @@ from arms.arm_simulator import random_arm, write_experiment
 import teleopdesign as td
 from teleopdesign.diagnose import held_against_others as refusal
 from teleopdesign.diagnose import parts_ladder as ladder
-from teleopdesign.diagnose.adequacy import Floors
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.held_against_others import NO_HELP, NO_MORE_THAN_NOISE
@@ -19,7 +18,6 @@ from teleopdesign.diagnose.ladder_state import LadderState
 from teleopdesign.diagnose.part_search import PartSearch
 from teleopdesign.diagnose.parts_fit import PartsRung
 from teleopdesign.diagnose.rung import Rung
-from teleopdesign.diagnose.search_plan import PLAN
 from teleopdesign.effects import EFFECTS
 
 
@@ -104,7 +102,7 @@ def climbed(monkeypatch, ladders, refused, why="no"):
         refusal, "refusal", lambda joint, before, after: why if after.name in refused else ""
     )
     first = PartsRung(None, arm_fit_of("user's"))
-    nothing = dict(floors=Floors(None, None), first=None, ranking=None, tone=None, supported=())
+    nothing = dict(floor=None, ranking=None, tone=None, supported=())
     state = LadderState(rungs=(Rung(None, fit_of("user's")),), **nothing)
     joint = PartSearch("joint1", SimpleNamespace(criteria=CRITERIA), state)
     prepared = SimpleNamespace(joints={"joint1": None})
@@ -145,14 +143,6 @@ def test_what_only_weakens_noise_does_not_limit_the_noise_floor(monkeypatch):
     assert joint.state.weakening == {("transmission_compliance", "joint1")}
     *_, joint = climbed(monkeypatch, ladders, tip, NO_HELP)
     assert not joint.state.weakening
-
-
-def test_joints_of_larger_arms_seek_pairs_and_exchanges_too():
-    for count in (2, 3, 6, 7):
-        plan = PLAN.for_joints(count)
-        assert plan.exchanges == PLAN.exchanges and plan.trials > 0
-    assert PLAN.for_joints(3).omissions() == ()
-    assert len(PLAN.for_joints(6).omissions()) == 1
 
 
 @pytest.mark.slow

@@ -7,7 +7,6 @@ from types import SimpleNamespace
 from diagnose.stand_ins import fit, floor
 
 from teleopdesign.base.errors import ModelError
-from teleopdesign.diagnose.adequacy import Floors
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.ladder_state import LadderState
@@ -99,4 +98,4 @@ class Table:
     def state(self, rungs, **more):
         """A ladder of these rungs, beside a low floor."""
         low, nothing = floor(0.01), Ranking(rungs[-1].fit, ())
-        return LadderState(tuple(rungs), Floors(low, low), low, nothing, Tone(), (), **more)
+        return LadderState(tuple(rungs), low, nothing, Tone(), (), **more)

@@ -70,7 +70,7 @@ def test_a_gap_is_sought_from_every_width_however_little_it_promises(case):
         for w in widths
         for m in inertias
     ]
-    starts = _vary_starts(new, ordered)[: PLAN.wide_predicted]
+    starts = _vary_starts(new, ordered)[: PLAN.wide]
     values = [
         [start.parameters[f"device.backlash.{n}"].value for n in ("gap", "tip_inertia")]
         for start in starts

@@ -17,7 +17,7 @@ from teleopdesign.diagnose.conclusion import (
     with_last_corrected,
 )
 from teleopdesign.diagnose.fit import CommandError, Fit
-from teleopdesign.diagnose.ranking import REFUSALS, Ranking
+from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.rung import Rung
 from teleopdesign.diagnose.statements import SetAside
 from teleopdesign.diagnose.verdict import verdict
@@ -56,7 +56,7 @@ def concluded(monkeypatch):
     What would be learned, read or drawn again of records is left out: there are none.
     """
 
-    def run(rungs, *, on_whole=None, last_floor=None, moment=None, barred=()):
+    def run(rungs, *, on_whole=None, barred=()):
         table = Table(error)
         stubs = {
             "learnable": lambda *_, **__: None,
@@ -65,10 +65,6 @@ def concluded(monkeypatch):
             "_beliefs": lambda *_: {},
             "check_error_on_all": lambda *_: None,
             "error_near_reversals": lambda model, _: model,  # to show of which model it is
-            "moment_above_noise": lambda fit, *_, **__: moment if fit is rungs[-1].fit else None,
-            "floor_between_rows": lambda fit, floor, *_, **__: (
-                last_floor if last_floor and fit is rungs[-1].fit else floor
-            ),
         }
         for name, value in stubs.items():
             monkeypatch.setattr(module, name, value)
@@ -113,20 +109,6 @@ def test_a_rung_that_leaves_more_of_the_whole_records_is_left_out(concluded):
     assert diagnosis.after.model is diagnosis.near_reversals is rungs[2].fit.model
 
 
-@pytest.mark.parametrize("why", ["blind", "weak"])
-def test_a_rung_that_hides_the_whole_records_is_set_aside_with_all_that_followed(concluded, why):
-    rungs = ladder(Table(error), "spring", "bias", "quadratic_drag")
-    hides = {"blind": {"blind": 0.5}, "weak": {"weak": True}}[why]
-
-    def on_whole(fit):
-        return worse(fit, 1.0, **(hides if "bias" in fit.model.names else {}))
-
-    diagnosis, _ = concluded(rungs, on_whole=on_whole)
-    assert added(diagnosis) == [SPRING]
-    (aside,) = diagnosis.set_aside
-    assert aside == SetAside(BIAS, rungs[2].fit.check_error, REFUSALS[why])
-
-
 def test_the_answer_sets_no_effect_of_its_ladder_aside(concluded):
     """Alone it only weakened errors of the readings, beside another one it explained the force."""
     aside = tuple(SetAside(one, 0.5, "alone it explains nothing") for one in (SPRING, DRAG))
@@ -139,18 +121,6 @@ def test_records_that_were_searched_as_a_whole_are_not_evaluated_again(concluded
     rungs = ladder(Table(error), "spring", "bias")
     diagnosis, _ = concluded(rungs)
     assert [r.fit for r in diagnosis.rungs] == [r.fit for r in rungs]
-
-
-def test_where_a_commands_scatter_is_noise_there_is_no_moment_and_effects_go_by_the_sensors(
-    concluded,
-):
-    rungs, moment = ladder(Table(error), "spring", "bias", "quadratic_drag"), object()
-    plain, state = concluded(rungs, moment=moment)
-    assert plain.moment is moment and plain.sensor_floor is plain.floor is state.floor
-    louder = floor(0.02)
-    diagnosis, state = concluded(rungs, moment=moment, last_floor=louder)
-    assert diagnosis.moment is None and diagnosis.floor is louder
-    assert diagnosis.sensor_floor is state.floor
 
 
 def test_effects_none_of_which_is_probable_are_not_missing_surely(concluded):
@@ -233,26 +203,6 @@ def test_what_the_last_model_has_no_more_is_not_doubted(doubts):
     gone = replace(rungs[-1], fit=Table(error).fit("bias"))
     doubts({SPRING: "a bristle"})
     assert doubtful([*rungs[:2], gone]) is None
-
-
-def test_what_hides_the_command_is_set_aside_where_nothing_is_doubtful(doubts, monkeypatch):
-    table = Table(error)
-    rungs = ladder(table, "spring", "bias")
-    monkeypatch.setattr(rungs_module, "estimate", table.estimate)
-    search = table.search()
-    search.progress = lambda line: None
-    state = table.state(rungs)
-    doubts()
-    assert remove_doubtful_rung(search, state, rungs) is None
-    blind = [*rungs[:2], replace(rungs[2], fit=worse(rungs[2].fit, 1.0, blind=0.5))]
-    moved = remove_doubtful_rung(search, state, blind)
-    assert [r.added for r in moved.rungs[1:]] == [SPRING]
-    assert moved.set_aside == (SetAside(BIAS, rungs[2].fit.check_error, REFUSALS["blind"]),)
-    doubts({}, {SPRING: "not told from absence"})
-    moved = remove_doubtful_rung(search, state, blind)
-    assert [r.added for r in moved.rungs[1:]] == [BIAS]
-    again = replace(state, set_aside=moved.set_aside)
-    assert remove_doubtful_rung(search, again, rungs) is None
 
 
 def test_what_needs_a_doubtful_effect_goes_first_and_then_the_doubtful_one(doubts, monkeypatch):

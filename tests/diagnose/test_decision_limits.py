@@ -11,7 +11,6 @@ import pytest
 from diagnose.stand_ins import fit, floor, ranked, rung
 
 from teleopdesign.diagnose.adequacy import (
-    allowed_floor,
     floors_left,
     is_a_tone,
     is_adequate,
@@ -27,14 +26,12 @@ from teleopdesign.diagnose.decision import (
     worth_pursuing,
 )
 from teleopdesign.diagnose.order import (
-    is_simpler,
     rank_key,
     select_equals,
     select_other_helpers,
     select_simplest,
     simplicity,
 )
-from teleopdesign.diagnose.together import _leave_the_same
 from teleopdesign.diagnose.verdict import explained_share, verdict
 from teleopdesign.effects import EFFECTS
 
@@ -91,15 +88,6 @@ def test_no_step_explains_more_of_the_force_than_the_last_fit_does():
     assert explained_share(fit(5.0), fit(0.1), floor()) > 0.98
 
 
-def test_a_floor_may_rise_to_nearly_twice_the_first_or_to_a_tenth_of_what_is_stated():
-    assert allowed_floor(floor(0.17), floor(0.1), fit(0.5)).value == 0.17
-    held = allowed_floor(floor(0.3), floor(0.1), fit(0.5))
-    assert held.value == pytest.approx(0.18) and held.held
-    assert allowed_floor(floor(0.3), floor(0.1), fit(2.5)).value == pytest.approx(0.25)
-    assert floor(0.3).at_most(0.3) == floor(0.3), "at its limit nothing is held"
-    assert floor(0.3).at_most(0.3 * LESS).held
-
-
 def test_a_floor_is_no_more_than_the_records_leave():
     left = SimpleNamespace(ranked=(ranked(0.3), ranked(0.2), ranked(0.1, refused="blind")))
     assert limit_noise_floor(floor(0.5), fit(0.4), left).value == 0.2
@@ -136,30 +124,16 @@ def test_a_gain_counts_from_three_hundredths_of_the_squares_and_half_a_floor():
     assert not is_better(fit(0.5), fit(0.3, blind=0.3), low)
 
 
-@pytest.mark.parametrize(
-    ("score", "known", "counts", "counts_if_adequate"),
-    [
-        # four standard deviations, but where an adequate model takes the place of one that is not
-        (3.99, 30, False, True),
-        (4.01, 30, True, True),
-        # one of 33 000 by chance, over 300 and 400 effects: one catalogue in a hundred
-        (4.01, 300, True, True),
-        (4.01, 400, False, False),
-        (4.5, 400, True, True),
-    ],
-)
-def test_a_gain_counts_by_its_chance_alone_and_over_the_whole_catalogue(
-    score, known, counts, counts_if_adequate
-):
+@pytest.mark.parametrize(("score", "counts"), [(3.99, False), (4.01, True)])
+def test_a_gain_counts_from_four_standard_deviations_of_its_chance(score, counts):
     # one row in each of nine blocks goes from 1 + c to 1: its score is 3 (1 + c / 2)
     one_each = np.zeros(400)
     one_each[:360:40] = 1.0
     before = (1.0 + 2.0 * (score / 3.0 - 1.0)) * one_each
-    base = fit(float(np.linalg.norm(before)), residual=before, known=range(known))
+    base = fit(float(np.linalg.norm(before)), residual=before)
     other = fit(3.0, residual=one_each)
     base.check_blocks = other.check_blocks = np.repeat(np.arange(10), 40)
     assert is_better(base, other, floor(1e-3)) == counts
-    assert is_better(base, other, floor(3.0 / 1.8 * MORE)) == counts_if_adequate
 
 
 def test_one_check_bars_a_candidate_however_much_it_explains():
@@ -172,10 +146,6 @@ def test_one_check_bars_a_candidate_however_much_it_explains():
         objection(base, ranked(0.3, implausible="stands for a spring"), floor())
         == "stands for a spring"
     )
-    jitter = floor(0.3, jitters=True)
-    assert objection(base, ranked(0.24), jitter) == ""
-    assert "jitter" in objection(base, ranked(0.24 * LESS), jitter)
-    assert objection(base, ranked(0.1), floor(0.3)) == ""
 
 
 def test_what_bars_an_effect_is_reported_only_where_the_effect_helps():
@@ -216,17 +186,6 @@ def test_the_simplest_of_those_that_explain_as_well_is_taken():
     assert select_simplest([best, other]) is best, "what the user's model has is believed"
 
 
-def test_what_takes_an_effects_place_for_being_simpler_leaves_no_more():
-    present, maxwell = fit(0.3), ranked(0.3, "maxwell_slip").candidate
-    assert is_simpler(ranked(0.3 * 1.0001, "presliding"), maxwell, present)
-    assert is_simpler(ranked(0.1, "presliding"), maxwell, present), "nor where it leaves less"
-    assert not is_simpler(ranked(0.31, "presliding"), maxwell, present), "it leaves 3 % more"
-    assert not is_simpler(ranked(0.1, "viscous"), maxwell, present), "it is of another role"
-    presliding = ranked(0.3, "presliding").candidate
-    assert not is_simpler(ranked(0.1, "maxwell_slip"), presliding, present)
-    assert not is_simpler(ranked(0.1, "presliding"), presliding, present)
-
-
 def test_what_takes_away_half_of_what_the_best_does_is_named_beside_it():
     base, best = fit(1.0), ranked(0.5)  # takes away 0.75 of the squares
     half = ranked((1 - 0.376) ** 0.5, "viscous")
@@ -240,7 +199,6 @@ def test_the_verdict_names_effects_unless_all_of_them_look_alike():
     one = Candidate(EFFECTS["stribeck"], "device")
     assert verdict([rung(0.18)], floor()) == "model_adequate"
     assert verdict([rung(0.19)], floor()) == "undecided"
-    assert verdict([rung(0.19)], floor(), SimpleNamespace()) == "model_adequate"
     assert verdict([rung(0.5), rung(0.2, one)], floor()) == "effects_missing"
     assert verdict([rung(0.5), rung(0.2, one, (one,))], floor()) == "undecided", "all look alike"
     two = [rung(0.5), rung(0.3, one, (one,)), rung(0.2, one)]
@@ -252,11 +210,3 @@ def test_of_no_error_at_all_nothing_is_less():
     assert not is_better(fit(0.0), fit(0.0), floor(0.0))
     assert not is_better(fit(0.0), fit(0.1), floor(0.0))
     assert is_better(fit(0.1), fit(0.0), floor(0.0))
-
-
-def test_two_candidates_that_leave_nothing_leave_the_same():
-    assert _leave_the_same(fit(0.0), fit(0.0))
-    assert _leave_the_same(fit(0.3), fit(0.3))
-    assert not _leave_the_same(fit(0.0), fit(0.3))
-    assert not _leave_the_same(fit(0.3), fit(0.0))
-    assert not _leave_the_same(fit(0.3), fit(0.4))

@@ -66,20 +66,6 @@ def candidate_at(base, effect, *at_bound, error=0.3):
     return one
 
 
-def test_what_drives_an_effect_of_the_model_to_its_bound_is_barred_if_that_is_surely_there():
-    low = floor(0.01)
-    for error, barred in [(0.66, True), (0.67, False)]:  # three standard errors of 2
-        base = model("coulomb", "viscous", damping=(2.0, error))
-        sentence = objection(of(base), candidate_at(base, "spring", DAMPING), low)
-        assert (
-            sentence == f"drives to a bound what the model needs without this effect: {DAMPING}"
-        ) == barred
-        assert bool(sentence) == barred
-    both = model("coulomb", "viscous", "bias")
-    drives = candidate_at(both, "spring", "device.bias.force", DAMPING)
-    assert "device.bias.force, device.viscous.damping" in objection(of(both), drives, low)
-
-
 def test_an_effect_with_a_parameter_at_a_bound_is_another_effect_unless_noise_is_left():
     base, at = model("coulomb"), "device.presliding.stiffness"
     bound = candidate_at(base, "presliding", at)

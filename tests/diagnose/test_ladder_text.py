@@ -32,7 +32,7 @@ def test_a_floor_next_to_zero_is_no_measure(left):
 def test_where_effects_are_refused_no_effect_that_may_be_named_explains_the_rest(refused, words):
     """The sentence stood below a list of refused effects that would explain all of it."""
     diagnosis = SimpleNamespace(
-        verdict="undecided", left=8.0, more_is_missing=True, may_be_noise=False, moment=None,
+        verdict="undecided", left=8.0, more_is_missing=True,
         unlikely=False, rungs=[SimpleNamespace(added=None)], groups=(), silence="", nearest=None,
         not_accepted=refused,
     )  # fmt: skip

@@ -7,6 +7,7 @@ from diagnose.made_records import write_made
 import teleopdesign as td
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.plausibility import implausible_effects, record_facts
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
 
@@ -102,3 +103,23 @@ def test_a_motor_driven_by_a_voltage_has_load_dependent_friction_at_its_output(t
     assert p[f"device.{EFFECT.name}.output_share"].value == 1.0
     mu = p[f"device.{EFFECT.name}.coefficient"]
     assert mu.value == pytest.approx(MU, abs=max(4 * mu.stderr, 0.02))
+
+
+def test_a_bristle_is_judged_by_the_friction_that_acts_whatever_effects_make_it(geared):
+    """At a Coulomb level of nothing, friction of the load bends the bristle by many steps."""
+    prepared = prepare(geared)
+    alone = {"device.coulomb.level": 1e-7, "device.load_dependent_friction.coefficient": 0.25}
+    loaded = Model.from_experiment(geared).with_values(alone)
+    facts = record_facts(loaded, "device", prepared)
+    usual = 0.25 * np.median(
+        np.abs(np.concatenate([r.signals["device.actuator_force"] for r in geared.records]))
+    )
+    assert facts.friction == pytest.approx(usual, rel=0.3)
+    bristle = loaded.with_effect(
+        EFFECTS["presliding"], values={"stiffness": 100.0 * facts.friction}
+    )
+    assert implausible_effects(bristle, prepared) == {}
+    stiff = bristle.with_values({"device.presliding.stiffness": 1e6 * facts.friction})
+    assert "sgn friction" in implausible_effects(stiff, prepared)["presliding", "device"]
+    without = bristle.with_values({"device.load_dependent_friction.coefficient": 0.0})
+    assert "sgn friction" in implausible_effects(without, prepared)["presliding", "device"]

@@ -1,23 +1,20 @@
 """Each move of the ladder alone: what it leads to, and when it is none."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import pytest
-from diagnose.made_records import jittered
 from diagnose.shared_fits import each_ranking_once, fit_beside
 from diagnose.simulated_cases import write_simulated
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose import climb as climbing
+from teleopdesign.diagnose import moves as moving
 from teleopdesign.diagnose.adequacy import is_adequate
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.conclusion import remove_doubtful_rung
 from teleopdesign.diagnose.criteria import CRITERIA
-from teleopdesign.diagnose.exchange import compare_alternatives, exchange
 from teleopdesign.diagnose.ladder_state import LadderSearch, begin, look, search_for
-from teleopdesign.diagnose.moves import add, remove
-from teleopdesign.diagnose.pairs import add_pair, replace_by_pair
+from teleopdesign.diagnose.moves import add, add_two, remove, swap
 from teleopdesign.diagnose.rank import make_ranked
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.rung import Rung
@@ -126,7 +123,7 @@ def test_what_is_added_to_a_model_that_leaves_noise_says_what_else_it_could_be(l
     search, state = ladder
     assert add(search, state).rungs[-1].could_be is None
     noise = replace(state.floor, value=state.fit.check_error)
-    quiet = replace(state, floors=replace(state.floors, allowed=noise))
+    quiet = replace(state, floor=noise)
     assert is_adequate(quiet.fit, quiet.floor)
     rung = add(search, quiet).rungs[-1]
     gain = state.fit.check_error**2 - rung.fit.check_error**2
@@ -147,80 +144,26 @@ def test_what_others_made_superfluous_is_removed(ladder):
     assert remove(search, moved) is None
 
 
-def test_a_stand_in_is_exchanged_for_what_it_stood_for(ladder):
-    search, state = ladder
-    stand_in = with_effects(search, state, "bias", "hardening_spring", "quadratic_drag")
-    ranking = search.rank(stand_in.rungs[1].fit, step=2)
-    second = replace(stand_in.rungs[2], ranking=ranking)
-    stand_in = stand_in.with_rungs((*stand_in.rungs[:2], second, stand_in.rungs[3]))
-    moved = exchange(search, stand_in)
-    # the drag that was there beside the stand-in explains nothing any more
-    assert set(added(moved)) == {"spring", "bias"} and moved.exchanges == 1
-    assert moved.fit.check_error < stand_in.fit.check_error
-    spent = replace(stand_in, exchanges=search.plan.exchanges)
-    assert exchange(search, spent) is None
-
-
 def test_alternatives_are_distinguished_by_what_followed_them(ladder):
     search, state = ladder
     drag, bias = (Candidate(EFFECTS[n], "device") for n in ("quadratic_drag", "bias"))
     model = with_effects(search, state, "quadratic_drag", "spring")
     undecided = replace(model.rungs[1], alternatives=(bias,))
-    moved = compare_alternatives(
-        search, model.with_rungs((model.rungs[0], undecided, model.rungs[2]))
-    )
+    moved = swap(search, model.with_rungs((model.rungs[0], undecided, model.rungs[2])))
     assert set(added(moved)) == {"bias", "spring"}
     assert not any(rung.alternatives for rung in moved.rungs)
     assert moved.fit.check_error < model.fit.check_error
-    assert compare_alternatives(search, moved) is None
+    assert swap(search, moved) is None
     # the right one stays, and loses its alternative
     right = with_effects(search, state, "bias", "spring")
     undecided = replace(right.rungs[1], alternatives=(drag,))
     right = right.with_rungs((right.rungs[0], undecided, right.rungs[2]))
-    moved = compare_alternatives(search, right)
+    moved = swap(search, right)
     assert added(moved) == ["bias", "spring"] and not moved.rungs[1].alternatives
     # the last was ranked beside all others: nothing followed it
     last = right.with_rungs((*model.rungs[:1], undecided))
-    assert compare_alternatives(search, last) is None
-    assert compare_alternatives(search, state) is None and exchange(search, state) is None
-
-
-def test_a_pair_is_added_to_the_model_alone(ladder):
-    search, state = ladder
-    moved = add_pair(search, state)
-    assert set(added(moved)) == {"spring", "bias"}
-    errors = [rung.fit.check_error for rung in moved.rungs]
-    assert errors == sorted(errors, reverse=True)
-    assert is_adequate(moved.fit, moved.floor)
-    assert add_pair(search, moved) is None
-
-
-def test_a_pair_takes_the_place_of_rungs_that_leave_more_once(ladder):
-    search, state = ladder
-    stand_in = with_stand_in(search, state)
-    moved = replace_by_pair(search, stand_in)
-    assert set(added(moved)) == {"spring", "bias"} and moved.replaced
-    assert replace_by_pair(search, replace(stand_in, replaced=True)) is None
-    assert replace_by_pair(search, state) is None  # the model alone: there is nothing to replace
-    # beside each of these all was ranked before
-    beside = {
-        frozenset({*state.effects, (n, "device")}) for n in ("spring", "bias", "quadratic_drag")
-    }
-    before = replace(stand_in, visited=frozenset(beside | {stand_in.effects}))
-    assert replace_by_pair(search, before) is None
-
-
-def test_the_second_of_a_pair_is_sought_at_the_body_of_the_first(ladder, monkeypatch):
-    search, state = ladder
-    questions = []
-
-    def rank(self, base, *, body=None, **_):
-        questions.append(body)
-        return Ranking(base, ())
-
-    monkeypatch.setattr(LadderSearch, "rank", rank)
-    assert add_pair(search, state) is None
-    assert questions and set(questions) == {"device"}
+    assert swap(search, last) is None
+    assert swap(search, state) is None
 
 
 def test_candidates_start_from_the_users_values_only_where_something_is_missing(
@@ -233,34 +176,11 @@ def test_candidates_start_from_the_users_values_only_where_something_is_missing(
         questions.append(misled)
         return state.ranking
 
-    moved = add_pair(search, state)
+    moved = with_effects(search, state, "spring", "bias")
     monkeypatch.setattr(LadderSearch, "rank", rank)
     look(search, state.rungs)
     look(search, moved.rungs, moved)
     assert questions == [True, False]
-
-
-def test_where_no_effect_is_supported_alone_the_ladder_goes_on_by_a_pair(ladder, monkeypatch):
-    search, state = ladder
-    moved = climbing.make_next_move(search, replace(state, supported=()))
-    assert set(added(moved)) == {"spring", "bias"}
-    assert moved.rungs == add_pair(search, state).rungs
-    for before in ("straighten", "compare_alternatives", "compare_look_alikes", "exchange"):
-        monkeypatch.setattr(climbing, before, lambda *_: None)
-    stand_in = replace(with_stand_in(search, state), supported=())
-    moved = climbing.make_next_move(search, stand_in)
-    assert set(added(moved)) == {"spring", "bias"} and not moved.together
-
-
-def test_a_pair_that_leaves_more_than_noise_explains_most_of_what_the_rungs_leave(ladder):
-    search, state = ladder
-    stand_in = with_stand_in(search, state)
-    never_noise = replace(search, criteria=replace(CRITERIA, adequate=0.0))
-    assert set(added(replace_by_pair(never_noise, stand_in))) == {"spring", "bias"}
-    on_an_arm = replace(never_noise, plan=search.plan.for_joints(1))
-    assert replace_by_pair(on_an_arm, stand_in) is None, "there it must leave noise only"
-    never_most = replace(search, criteria=replace(CRITERIA, adequate=0.0, mostly=1.1))
-    assert replace_by_pair(never_most, stand_in) is None
 
 
 def with_open_bias(rungs):
@@ -298,53 +218,38 @@ def test_where_the_only_effect_is_set_aside_the_model_alone_stands(ladder):
     assert [one.candidate.key[0] for one in moved.set_aside] == ["bias"]
 
 
-def test_what_only_weakens_the_jitter_of_a_clock_goes_when_the_missing_effect_is_there(tmp_path):
-    experiment = jittered(
-        load_experiment(write_simulated(tmp_path / "case", "quadratic_drag")), 0.3
-    )
-    known = {name: EFFECTS[name] for name in (*KNOWN, "transmission_compliance")}
-    search = search_for(experiment, Model.from_experiment(experiment, known))
-    state = begin(search)
-    assert state.floor.jitters
-    state = with_effects(search, state, "transmission_compliance", "quadratic_drag")
-    assert added(remove(search, state)) == ["quadratic_drag"]
-
-
-def test_two_effects_that_make_each_other_superfluous_do_not_take_turns(monkeypatch):
-    """A third is added, and one of the others goes: only to a set that was not there yet."""
-
-    def state_of(effects, visited):
-        return SimpleNamespace(effects=frozenset(effects), visited=visited, step=len(effects) + 1)
-
-    def add_missing(_, state):
-        missing = min({"a", "b", "c"} - state.effects, default=None)
-        return missing and state_of(state.effects | {missing}, state.visited)
-
-    def remove_older(_, state):
-        newest = {frozenset("abc"): {"a": "b", "b": "a"}}.get(state.effects, {})
-        gone = newest.get(min(state.effects - before))
-        return gone and state_of(state.effects - {gone}, state.visited)
-
-    monkeypatch.setattr(climbing, "add", add_missing)
-    monkeypatch.setattr(climbing, "remove", remove_older)
-    search = SimpleNamespace(plan=SimpleNamespace(most_effects=5))
-    sets, visited = [frozenset("bc")], frozenset({frozenset("bc")})
-    while len(sets[-1]) < 3:
-        before = sets[-1]
-        sets.append(climbing.make_next_move(search, state_of(before, visited)).effects)
-        visited |= {sets[-1]}
-        assert len(sets) < 5
-    assert sets == [frozenset("bc"), frozenset("ac"), frozenset("abc")]
-
-
-def test_a_pair_takes_the_place_of_many_parameters_though_only_noise_is_left(ladder):
+def test_two_effects_that_make_each_other_superfluous_do_not_take_turns(ladder, monkeypatch):
+    """One is added, and makes the other superfluous: only where that set was not there yet."""
     search, state = ladder
-    stand_in = with_effects(search, with_stand_in(search, state), "quadratic_drag")
-    noise = 1.001 * stand_in.fit.check_error / state.floor.value
-    loud = replace(search, criteria=replace(CRITERIA, adequate=noise))
-    assert is_adequate(stand_in.fit, state.floor, criteria=loud.criteria)
-    assert replace_by_pair(loud, stand_in) is None
-    few = replace(loud, plan=replace(search.plan, many_parameters=2))
-    moved = replace_by_pair(few, stand_in)
-    assert set(added(moved)) == {"spring", "bias"} and moved.replaced
-    assert len(moved.fit.free) <= len(stand_in.fit.free)
+    one = with_effects(search, state, "spring")
+    both = with_effects(search, one, "bias")
+    monkeypatch.setattr(moving, "_add_candidate", lambda *_: both)
+    monkeypatch.setattr(moving, "remove", lambda *_: one)
+    supported = replace(state, supported=state.supported[:1], visited=frozenset())
+    assert add(search, supported) is one
+    again = replace(supported, visited=frozenset({one.effects}))
+    assert add(search, again) is both
+    assert add(search, replace(again, visited=frozenset({one.effects, both.effects}))) is None
+
+
+def test_a_pair_is_added_to_the_model_alone(ladder):
+    search, state = ladder
+    moved = add_two(search, state)
+    assert set(added(moved)) == {"spring", "bias"}
+    errors = [rung.fit.check_error for rung in moved.rungs]
+    assert errors == sorted(errors, reverse=True)
+    assert is_adequate(moved.fit, moved.floor)
+    assert add_two(search, moved) is None
+
+
+def test_the_second_of_a_pair_is_sought_at_the_body_of_the_first(ladder, monkeypatch):
+    search, state = ladder
+    questions = []
+
+    def rank(self, base, *, body=None, **_):
+        questions.append(body)
+        return Ranking(base, ())
+
+    monkeypatch.setattr(LadderSearch, "rank", rank)
+    assert add_two(search, state) is None
+    assert questions and set(questions) == {"device"}

@@ -2,15 +2,17 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
-from diagnose.stand_ins import floor
-from diagnose.stub_models import Table, candidate
+from diagnose.stand_ins import SHAPE, floor
+from diagnose.stub_models import Names, Table, candidate
 
-from teleopdesign.diagnose import moves as module
 from teleopdesign.diagnose import rungs as rungs_module
-from teleopdesign.diagnose.moves import add, remove
+from teleopdesign.diagnose.moves import add, add_two, remove
+from teleopdesign.diagnose.outside_tone import Tone
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.rung import Replaced
+from teleopdesign.diagnose.search_plan import PLAN
 
 SPRING, HARD, BIAS, DRAG, GRAVITY = map(
     candidate, ("spring", "hardening_spring", "bias", "quadratic_drag", "gravity")
@@ -59,10 +61,10 @@ def test_the_simplest_of_those_that_explain_as_well_is_added_with_its_alternativ
 def test_beside_a_model_that_leaves_noise_what_else_helps_is_reported(use):
     table = use(shares(spring=0.5, bias=0.4, quadratic_drag=0.1))
     state = looked(table, table.state(table.rungs()), SPRING, BIAS, DRAG)
-    noise = replace(state.floors, allowed=floor(0.6))
-    assert add(table.search(), replace(state, floors=noise)).rungs[-1].could_be == (BIAS,)
-    louder = replace(state.floors, allowed=floor(0.5))
-    assert add(table.search(), replace(state, floors=louder)).rungs[-1].could_be is None
+    noise = floor(0.6)
+    assert add(table.search(), replace(state, floor=noise)).rungs[-1].could_be == (BIAS,)
+    louder = floor(0.5)
+    assert add(table.search(), replace(state, floor=louder)).rungs[-1].could_be is None
 
 
 def in_place_of(ranked, effect, fit):
@@ -71,18 +73,18 @@ def in_place_of(ranked, effect, fit):
 
 
 def test_what_an_added_effect_stood_in_for_takes_its_place(use):
-    """It may not come back in its turn."""
+    """But not where the search was with this set of effects before."""
     table = use(shares(spring=0.8, hardening_spring=0.4, bias=0.1))
     state = table.state(table.rungs("hardening_spring", "bias"))
     (ranked,) = table.rank(state.fit, among=[SPRING]).ranked
     ranked = in_place_of(ranked, HARD, table.fit("spring", "bias"))
     ranking = Ranking(state.fit, (ranked,))
     moved = add(table.search(), replace(state, ranking=ranking, supported=(ranked,)))
-    assert sorted(names(moved)) == ["bias", "spring"] and moved.came_back == {HARD.key}
+    assert sorted(names(moved)) == ["bias", "spring"]
     spring = next(r for r in moved.rungs[1:] if r.added == SPRING)
     assert spring.replaced is None, "the user's model never had what it takes the place of"
     assert moved.fit.check_error == pytest.approx(0.1)
-    again = replace(state, ranking=ranking, supported=(ranked,), came_back=frozenset({HARD.key}))
+    again = replace(state, ranking=ranking, supported=(ranked,), visited=frozenset({moved.effects}))
     assert add(table.search(), again) is None
 
 
@@ -105,7 +107,6 @@ def test_an_effect_of_the_users_model_that_comes_back_was_not_replaced(use):
     state = looked(table, state, BIAS)
     moved = add(table.search(), state)
     assert names(moved) == ["spring"] and moved.rungs[1].replaced is None
-    assert moved.came_back == {BIAS.key}
     assert moved.fit.model.names == {"spring", "bias"}
 
 
@@ -148,28 +149,42 @@ def test_what_another_effect_needs_is_not_removed(use):
     assert remove(table.search(), state) is None
 
 
-@pytest.mark.parametrize(("jitters", "drawn", "removed"), [
-    (False, 1.0, False), (True, 0.4, True), (True, 0.2, False),
-])  # fmt: skip
-def test_what_only_weakens_the_jitter_of_a_clock_is_removed(
-    use, monkeypatch, jitters, drawn, removed
-):
-    """Without it 0.6 are left: no more than nearly two floors of what jitter makes there."""
-    table = use(shares(transmission_compliance=0.3, spring=0.4, bias=0.1))
-    state = table.state(table.rungs("transmission_compliance", "spring", "bias"))
-    low = floor(0.01, jitters=jitters)
-    state = replace(state, floors=replace(state.floors, allowed=low))
-    monkeypatch.setattr(
-        module,
-        "noise_floor",
-        lambda model, *_: floor(
-            drawn
-            if "transmission_compliance" not in model.names and "spring" in model.names
-            else 0.0
-        ),
-    )
+def masked(names, both=0.1):
+    """Each of a spring and a bias explains next to nothing without the other."""
+    if {"spring", "bias"} <= names:
+        return both
+    return 0.97 if "spring" in names else 0.96 if "bias" in names else 1.0
+
+
+def two_added(use, monkeypatch, rule, *, tone=None):
+    """What `add_two` adds to a model without an effect."""
+    table = use(rule)
+    monkeypatch.setattr(Names, "holder", lambda model, at: at, raising=False)
     search = table.search()
-    search.generator = lambda: None
-    moved = remove(search, state)
-    assert (moved is not None) == removed
-    assert not removed or names(moved) == ["spring", "bias"]
+
+    def rank(base, *, step, body):
+        lacks = [c for c in (SPRING, BIAS) if not base.model.has(c.effect.name)]
+        return table.rank(base, among=lacks, step=step)
+
+    search.rank, search.plan = rank, PLAN
+    state = looked(table, table.state(table.rungs()), SPRING, BIAS)
+    residual = None if tone is None else tone * np.cos(np.arange(SHAPE.size)) / 14.0
+    moved = add_two(search, replace(state, supported=(), tone=Tone(residual)))
+    return None if moved is None else set(names(moved))
+
+
+@pytest.mark.parametrize(("rule", "found"), [
+    (masked, {"spring", "bias"}),
+    # the spring does it alone
+    (lambda names: 1.0 - 0.9 * ("spring" in names) - 1e-4 * ("bias" in names), None),
+    # together they leave most of the force
+    (lambda names: masked(names, 0.8), None),
+    (lambda names: masked(names, 0.6), {"spring", "bias"}),
+])  # fmt: skip
+def test_two_that_mask_each_other_are_added_where_each_is_needed(use, monkeypatch, rule, found):
+    assert two_added(use, monkeypatch, rule) == found
+
+
+def test_two_effects_leave_less_than_a_tone_from_outside(use, monkeypatch):
+    assert two_added(use, monkeypatch, masked, tone=0.5) == {"spring", "bias"}
+    assert two_added(use, monkeypatch, masked, tone=0.05) is None

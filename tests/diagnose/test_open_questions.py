@@ -21,11 +21,9 @@ def diagnosis(
     noise=0.1,
     verdict="effects_missing",
     short=False,
-    noisy=False,
 ):
     return SimpleNamespace(
         more_is_missing=short,
-        may_be_noise=noisy,
         rungs=(Rung(None, fit(1.0)), *rungs),
         last=Ranking(fit(1.0), tuple(last)),
         floor=floor(noise),
@@ -99,5 +97,4 @@ def test_an_undecided_verdict_asks_for_what_gains_and_counts():
     assert open_questions(diagnosis(last=last, verdict="model_adequate")) == ()
     (next_one,) = open_questions(diagnosis(last=last, short=True))
     assert next_one == question, "more is missing beside what is named"
-    assert open_questions(diagnosis(last=last, short=True, noisy=True)) == (), "or only noise"
     assert open_questions(diagnosis(last=(loses,), verdict="undecided")) == ()

@@ -7,7 +7,6 @@ from diagnose.stand_ins import SHAPE, fit, floor, ranked
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.order import (
     alternatives_of,
-    is_simpler,
     look_alikes_of,
     rank_key,
     select_equals,
@@ -85,17 +84,6 @@ def test_what_does_as_well_with_as_many_parameters_is_an_alternative():
     assert [c.effect.name for c in alternatives_of(two, of_two, base, floor(0.01))] == ["gravity"]
 
 
-def test_a_candidate_that_only_a_pair_supports_has_look_alikes_too():
-    """A bias beside a gain was called an asymmetry of friction, with certainty."""
-    base, one = fit(0.31), ranked(0.3, "coulomb_asymmetry")
-    same, worse = alike(0.3001, one, "bias"), ranked(0.32, "spring")
-    nothing = alike(0.3, one, "viscous", is_identifiable=False)
-    two = alike(0.3, one, "stribeck")  # two parameters
-    ranking = Ranking(base, (ranked(0.2, "cogging"), one, same, worse, nothing, two))
-    assert look_alikes_of(one, ranking) == (same.candidate,)
-    assert look_alikes_of(worse, ranking) == ()
-
-
 def test_only_what_the_records_support_is_an_alternative():
     base, best = fit(0.6), ranked(0.3, "presliding")
     ranking = Ranking(base, (best, alike(0.3001, best, "spring")))
@@ -115,22 +103,20 @@ def test_half_of_what_the_best_takes_away_is_enough_to_help(size):
     assert select_other_helpers(hardly, ranking) == (best.candidate, helps.candidate)
 
 
-@pytest.mark.parametrize("size", [0.1, 1.0, 10.0])
-def test_simpler_is_what_leaves_no_more_by_its_figure_and_by_its_residuals(size):
-    present, maxwell = fit(size), ranked(size, "maxwell_slip").candidate
-    same = present.check_residual
-    assert is_simpler(ranked(1.0199 * size, "presliding", residual=same), maxwell, present)
-    assert not is_simpler(ranked(1.0201 * size, "presliding", residual=same), maxwell, present)
-    for score, is_it in [(2.99, True), (3.01, False)]:
-        more = ranked(size, "presliding", residual=beside(size, score))
-        assert is_simpler(more, maxwell, present) == is_it
-    # as simple as itself is no simpler
-    assert not is_simpler(ranked(0.5 * size, "maxwell_slip"), maxwell, present)
-
-
 def test_of_two_that_do_the_same_the_first_of_the_catalogue_stays_first():
     """To six digits: the seventh is another machine's arithmetic."""
     one, other = ranked(0.3), ranked(0.3 * (1 - 1e-8), "viscous")
     assert sorted([one, other], key=rank_key) == [one, other]
     better = ranked(0.3 * (1 - 1e-4), "viscous")
     assert sorted([one, better], key=rank_key) == [better, one]
+
+
+def test_a_candidate_that_only_a_pair_supports_has_look_alikes_too():
+    """A bias beside a gain was called an asymmetry of friction, with certainty."""
+    base, one = fit(0.31), ranked(0.3, "coulomb_asymmetry")
+    same, worse = alike(0.3001, one, "bias"), ranked(0.32, "spring")
+    nothing = alike(0.3, one, "viscous", is_identifiable=False)
+    two = alike(0.3, one, "stribeck")  # two parameters
+    ranking = Ranking(base, (ranked(0.2, "cogging"), one, same, worse, nothing, two))
+    assert look_alikes_of(one, ranking) == (same.candidate,)
+    assert look_alikes_of(worse, ranking) == ()

@@ -179,7 +179,7 @@ def test_no_pair_is_sought_where_a_tone_leaves_only_noise(rod, monkeypatch):
         raise AssertionError("a pair was sought")
 
     monkeypatch.setattr(ladder_state, "rank_candidates", lambda base, *_, **__: Ranking(base, ()))
-    monkeypatch.setattr(climb, "add_pair", searched)
+    monkeypatch.setattr(climb, "add_two", searched)
     with pytest.raises(AssertionError, match="sought"):
         ladder.find_missing(prepared.experiment)
     monkeypatch.setattr(ladder_state, "best_tone", lambda *_: noise)

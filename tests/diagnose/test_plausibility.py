@@ -336,30 +336,3 @@ def test_a_check_that_fails_is_an_error_of_its_file(case, tmp_path):
         fitted = fitted.with_effect(broken, values={"damping": 0.1})
         with pytest.raises(ModelError, match=words):
             implausible_effects(fitted, prepared)
-
-
-COUNTER = '''"""A force of the position."""
-from teleopdesign.effects import Effect, Parameter
-
-EFFECT = Effect(
-    role="force", law=lambda now, p: p.stiffness * now.position, absent={"stiffness": 0.0},
-    parameters={"stiffness": Parameter("stiffness", "K", lower=-float("inf"))},
-)
-'''
-
-
-def test_a_force_is_cancelled_only_where_the_sum_is_smaller(case, tmp_path):
-    """A force that is too large, and that nothing cancels, stays in the residual."""
-    model, prepared = case
-    (tmp_path / "counter.py").write_text(COUNTER)
-    counter = load_effect(tmp_path / "counter.py")
-    facts = record_facts(model, "device", prepared)
-    stiff = 6.0 * facts.acting / facts.travel  # +- three times all acting forces
-    alone = model.with_effect(EFFECTS["spring"], values={"stiffness": stiff})
-    assert implausible_effects(alone, prepared) == {}
-    both = replace(alone, known={**alone.known, "counter": counter}).with_effect(
-        counter, values={"stiffness": -0.9 * stiff}
-    )
-    reasons = implausible_effects(both, prepared)
-    assert set(reasons) == {("spring", "device"), ("counter", "device")}
-    assert all("another effect cancels it" in r for r in reasons.values())

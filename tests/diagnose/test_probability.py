@@ -102,15 +102,6 @@ def test_every_candidate_of_every_step_has_its_evidence(end):
     assert [e.ranked.candidate.key for e in evidence if e.accepted] == [("stribeck", "device")]
 
 
-def test_a_floor_that_holds_a_commands_scatter_makes_no_effect_more_likely(end):
-    def summary(one):
-        return [(e.left, e.explained, e.probability()) for e in evidence_of(one)]
-
-    louder = replace(end.floor, value=3.0 * end.floor.value)
-    by_scatter = replace(end, floor=louder)
-    assert summary(by_scatter) == summary(end) != summary(replace(end, sensor_floor=louder))
-
-
 def test_each_candidate_is_behind_the_first_by_its_score_on_all_records(end):
     for ranking in (*(r.ranking for r in end.rungs if r.ranking), end.last):
         first, *others = ranking.ranked
@@ -123,7 +114,7 @@ def test_each_candidate_is_behind_the_first_by_its_score_on_all_records(end):
 
 def test_what_a_step_explains_is_the_part_of_the_squares_above_the_floor(end):
     floor = 0.9 * end.after.check_error
-    evidence = evidence_of(replace(end, sensor_floor=replace(end.floor, value=floor)))
+    evidence = evidence_of(replace(end, floor=replace(end.floor, value=floor)))
     bases = [r.ranking.base for r in end.rungs if r.ranking for _ in r.ranking.ranked]
     bases += [end.last.base for _ in end.last.ranked]
     for one, base in zip(evidence, bases, strict=True):
@@ -191,7 +182,7 @@ def test_an_effect_is_believed_by_what_it_explains_compare_free_functions(end):
 
     def probability(rho):
         beliefs = {} if rho is None else {added.key: Belief(rho, 0.0, "velocity")}
-        noisy = replace(end, floor=floor, sensor_floor=floor, beliefs=beliefs)
+        noisy = replace(end, floor=floor, beliefs=beliefs)
         return next(e.probability() for e in evidence_of(noisy) if e.accepted)
 
     values = [probability(rho) for rho in (None, -1.0, 0.5, 0.71, 0.73, 1.0, math.inf)]

@@ -45,8 +45,7 @@ def diagnosis(steps, *, last=(), first=0.5, noise=0.1, needs=(), **more):
         rungs=tuple(rungs),
         last=Ranking(rungs[-1].fit, tuple(last)),
         estimated=rungs[-1].fit,
-        floor=floor(noise),
-        **{"sensor_floor": floor(noise), **more},
+        **{"floor": floor(noise), **more},
     )
 
 

@@ -1,7 +1,6 @@
 """Plant an effect, diagnose, find it. Plant none, find none. Plant a look-alike, hear so."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.effects import EFFECTS
-from teleopdesign.show.diagnose.text import ladder_text
 
 pytestmark = pytest.mark.slow  # diagnoses of whole cases
 
@@ -62,32 +60,6 @@ def test_where_nothing_is_missing_nothing_is_named(tmp_path):
     assert diagnosis.verdict == "model_adequate"
     assert not diagnosis.missing and not diagnosis.groups
     assert len(diagnosis.rungs) == 1
-
-
-@pytest.mark.parametrize("pushes", [1, 4])
-def test_what_happens_once_is_no_missing_physics(pushes, tmp_path):
-    experiment = load_experiment(write_simulated(tmp_path / "null", None, seed=4))
-    (check,) = experiment.check_records
-    command = check.signals["device.actuator_force"].copy()
-    size = 0.3 * np.sqrt(np.mean(command**2))
-    for begin in np.arange(1, pushes + 1) * 1.5:  # a force that nobody logged
-        command[(check.time > begin) & (check.time < begin + 0.06)] -= size
-    pushed = replace(check, signals={**check.signals, "device.actuator_force": command})
-    records = tuple(pushed if r is check else r for r in experiment.records)
-    experiment = replace(experiment, records=records)
-    diagnosis = find_missing(experiment, Model.from_experiment(experiment, FEW))
-    assert not diagnosis.missing and diagnosis.left > 2.5
-    if pushes > 1:
-        assert diagnosis.verdict == "undecided" and diagnosis.moment is None
-        return
-    assert diagnosis.verdict == "model_adequate" and not diagnosis.more_is_missing
-    assert (
-        diagnosis.moment.begin < 1.51
-        and diagnosis.moment.end > 1.55
-        and diagnosis.moment.without < 1.5
-    )
-    assert f"without one moment ({diagnosis.moment})" in ladder_text(diagnosis)
-    assert answer(diagnosis)["one_moment"]["record"] == check.file
 
 
 def test_one_of_two_look_alikes_is_undecided_between_them(tmp_path):

@@ -12,10 +12,8 @@ from hypothesis import strategies as st
 from teleopdesign.diagnose import undetermined as undetermined_module
 from teleopdesign.diagnose.answer import answer, load_answer, write_answer
 from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.conclusion import find_doubtful_rung, find_hidden_rung
-from teleopdesign.diagnose.criteria import CRITERIA
+from teleopdesign.diagnose.conclusion import find_doubtful_rung
 from teleopdesign.diagnose.identifiability import doubt, explains_most, is_identifiable
-from teleopdesign.diagnose.plausibility import implausible_effects, record_facts
 from teleopdesign.diagnose.products import Product, best_product
 from teleopdesign.diagnose.statements import SetAside, Undetermined
 from teleopdesign.diagnose.undetermined import alike_on_records, find_undetermined, known_together
@@ -104,30 +102,6 @@ def test_simulated_readings_leave_an_effect_that_explains_most_and_is_known_by_t
     assert find_doubtful_rung(little, prepared_case, estimated) is not None, "explains too little"
 
 
-def with_command_error(rung, **changed):
-    return replace(rung, fit=replace(rung.fit, at_command=replace(rung.fit.at_command, **changed)))
-
-
-def test_a_rung_that_the_last_fit_leaves_blind_or_weak_is_not_kept(end):
-    """A limit that moves by a little may hide more of the motion than when it was ranked."""
-    *before, last = end.rungs
-    assert find_hidden_rung(end.rungs) is None
-    assert (
-        find_hidden_rung((*before, with_command_error(last, blind=CRITERIA.blind - 1e-6))) is None
-    )
-    hidden = with_command_error(last, blind=CRITERIA.blind + 1e-6)
-    assert find_hidden_rung((*before, hidden)) == (
-        hidden, "the command has no influence in more than a quarter of the motion"
-    )  # fmt: skip
-    weak = with_command_error(last, weak=True)
-    assert find_hidden_rung((*before, weak))[0] is weak
-    # what the user's model hides already is no charge against what is added to it
-    assert (
-        find_hidden_rung((*(with_command_error(r, blind=0.3, weak=True) for r in before), weak))
-        is None
-    )
-
-
 def in_a_valley(fit, little):
     """The fit with both parameters of `stribeck` alike in the residual, up to a little."""
     level, speed = (fit.free.index(f"device.stribeck.{n}") for n in PAIR)
@@ -178,21 +152,6 @@ def prepared_case(experiment):
     from teleopdesign.measurement.prepare import prepare
 
     return prepare(experiment)
-
-
-def test_two_forces_that_take_each_other_away_are_neither_of_them(end, prepared_case):
-    """Any force, a user's too: where it varies by more than all that act, another cancels it."""
-    model = end.before.model
-    there = model.with_effect(EFFECTS["spring"], at="device", values={"stiffness": 5.0})
-    assert implausible_effects(there, prepared_case) == {}
-    acting = record_facts(model, "device", prepared_case).acting
-    stiff = {"device.spring.stiffness": 60.0 * acting}
-    assert implausible_effects(there.with_values(stiff), prepared_case) == {}
-    much = there.with_effect(EFFECTS["gravity"], at="device")
-    pendulum = {"device.gravity.amplitude": -60.0 * acting, "device.gravity.phase": 0.0}
-    sentence = implausible_effects(much.with_values({**stiff, **pendulum}), prepared_case)
-    assert "only the sum of the two is known" in sentence["spring", "device"]
-    assert ("gravity", "device") in sentence
 
 
 def product(*errors, known):

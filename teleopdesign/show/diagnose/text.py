@@ -212,14 +212,6 @@ def records_line(diagnosis: Diagnosis) -> str:
     )
 
 
-def floors_apart(left: float, without: float) -> tuple[str, str]:
-    """Two errors in noise floors, with as many decimals as show which one is smaller."""
-    if left > CRITERIA.countable:
-        return say_floors(left), say_floors(without)
-    digits = next((d for d in (1, 2, 3) if f"{left:.{d}f}" != f"{without:.{d}f}"), 4)
-    return f"{left:.{digits}f}", f"{without:.{digits}f}"
-
-
 def sentence(diagnosis: Diagnosis) -> str:
     """The verdict of a diagnosis in words."""
     rest = _rest(diagnosis)
@@ -279,19 +271,6 @@ def _named_effects(diagnosis: Diagnosis) -> str:
 def _rest(diagnosis: Diagnosis) -> str:
     """A sentence on what is left above noise; "": only noise is left."""
     left = say_floors(diagnosis.left)
-    if (moment := diagnosis.moment) is not None:
-        whole, without = floors_apart(diagnosis.left, moment.without)
-        return (
-            f" The remaining error is {whole} noise floors, but {without} "
-            f"without one moment ({moment})."
-        )
-    if diagnosis.may_be_noise:
-        floor = diagnosis.floor
-        return (
-            f" The remaining error is {left} noise floors of {100 * floor.value:.3g} %. With this "
-            f"model sensor errors leave {100 * floor.drawn:.3g} %: these records do not show "
-            "whether more is missing."
-        )
     if not diagnosis.more_is_missing:
         return ""
     return f" The remaining error is {left} noise floors: more is missing.{_nearest(diagnosis)}"

@@ -9,7 +9,6 @@ from ...diagnose.criteria import CRITERIA
 from ...diagnose.diagnosis import Diagnosis
 from ...diagnose.statements import LadderRow
 from ...measurement.experiment import Experiment
-from ..diagnose.text import floors_apart
 
 
 def sentence_of(entry: object | None) -> str:
@@ -52,22 +51,10 @@ def verdict(diagnosis: Diagnosis) -> str:
         if more
         else f"The remaining error is near what sensor noise alone would leave, {floor}."
     )
-    if diagnosis.may_be_noise:
-        rest = (
-            f"The remaining error is {left} times the noise floor of {floor}. With this model "
-            f"sensor errors leave {percent(diagnosis.floor.drawn)}: these records do not show "
-            "whether more is missing."
-        )
-    if (moment := diagnosis.moment) is not None:
-        whole, without = floors_apart(diagnosis.left, moment.without)
-        rest = (
-            f"The remaining error is {whole} times what sensor noise alone would leave, "
-            f"{without} times without one moment ({moment})."
-        )
     if diagnosis.verdict == "model_adequate":
         return (
             f"Your model is adequate: it leaves {percent(after)} of the force unexplained, and "
-            f"sensor noise alone would leave {floor}." + (f" {rest}" if moment is not None else "")
+            f"sensor noise alone would leave {floor}."
         )
     if diagnosis.verdict == "effects_missing":
         named = [step_name(r) for r in diagnosis.rungs if r.added in diagnosis.missing]

@@ -4,11 +4,8 @@ from dataclasses import replace
 
 from teleopdesign.base.sentences import (
     number_on_page,
-    percent_on_page,
 )
-from teleopdesign.diagnose.one_moment import Moment
 from teleopdesign.diagnose.statements import Alternative
-from teleopdesign.show.diagnose import text as ladder_text
 from teleopdesign.show.report.words import sentence_of, verdict
 
 
@@ -70,42 +67,19 @@ def test_an_effect_that_helps_and_is_not_named_is_reported_beside_those_that_are
     assert "but each is less likely than not" in each
 
 
-def with_floor(diagnosis, *, floors, drawn=1.0, held=False):
+def with_floor(diagnosis, *, floors, drawn=1.0):
     """The diagnosis with a floor of which the last model leaves so many."""
     value = diagnosis.after.check_error / floors
-    floor = replace(diagnosis.floor, value=value, drawn=drawn * value, held=held, at_command=1.0)
+    floor = replace(diagnosis.floor, value=value, drawn=drawn * value, at_command=1.0)
     return replace(diagnosis, floor=floor)
 
 
-def test_what_is_left_is_near_noise_or_more_is_missing_or_may_hide_in_a_floor_that_was_held(
-    diagnosis,
-):
+def test_what_is_left_is_near_noise_or_more_is_missing(diagnosis):
     near = verdict(with_floor(diagnosis, floors=1.5))
     assert "The remaining error is near what sensor noise alone would leave, " in near
     far = with_floor(diagnosis, floors=4.0, drawn=3.0)
     assert f"error is {number_on_page(far.left, 2)} times what sensor noise" in verdict(far)
     assert "more is missing." in verdict(far)
-    held = with_floor(diagnosis, floors=4.0, drawn=3.0, held=True)
-    assert f"the noise floor of {percent_on_page(held.floor.value)}" in verdict(held)
-    assert f"sensor errors leave {percent_on_page(held.floor.drawn)}" in verdict(held)
-    assert "more is missing" in verdict(with_floor(diagnosis, floors=4.0, drawn=1.1, held=True))
-
-
-def test_what_is_left_at_one_moment_is_reported_with_the_rest_of_the_record(diagnosis):
-    moment = Moment("fit.csv", "device", 1.0, 1.5, 1.25)
-    one = replace(with_floor(diagnosis, floors=4.0), moment=moment)
-    sentence = f"1.2 times without one moment ({moment})"
-    assert sentence.replace("1.2 ", f"{number_on_page(1.25, 2)} ") in verdict(one)
-    only = replace(one, rungs=one.rungs[:1], verdict="model_adequate")
-    assert "Your model is adequate" in verdict(only) and f"({moment})" in verdict(only)
-    close = with_floor(diagnosis, floors=1.806)
-    close = replace(close, moment=replace(moment, without=1.768))
-    for text in (verdict(close), ladder_text.sentence(close)):
-        assert "1.81 " in text and " 1.77 " in text, "not: 1.8, but 1.8 without one moment"
-    plain = replace(only, moment=None)
-    assert verdict(plain).endswith(
-        "sensor noise alone would leave " + percent_on_page(plain.floor.value) + "."
-    )
 
 
 def test_an_entry_of_a_diagnosis_is_a_sentence_and_nothing_is_none():
