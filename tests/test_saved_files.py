@@ -24,8 +24,8 @@ def test_an_answer_loads_as_the_diagnosis_that_it_was():
     assert diagnosis.experiment == td.load_experiment(SAVED / "rod")
     text = str(diagnosis)
     for line in (
-        "(your model, re-estimated)                     3.55%        7.14%",
-        "+ stribeck at device                           0.77%        1.13%",
+        "(your model, re-estimated)                     3.55%          7.14%",
+        "+ stribeck at device                           0.77%          1.13%",
         "      stribeck_velocity = 0.0230 +- 0.0019 m/s",
         "black box: 1.1 % left; nothing was learned from the motion",
         "verdict: effects_missing: stribeck at device.",

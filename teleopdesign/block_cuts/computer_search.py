@@ -24,6 +24,8 @@ from .cuts import COMPUTER
 BLIND = "more than a quarter of the moving rows is blind"
 #: most effects that are added: more than three at once were never told apart
 _MOST = 3
+#: part of what the stated laws leave, below which effects explain it: a right law leaves rounding
+_EXPLAINED = 0.1
 
 
 @dataclass(frozen=True)
@@ -187,7 +189,7 @@ def _with_probabilities(step: ComputerStep, ladder: ComputerLadder) -> ComputerS
         # a law without hidden parts leaves rounding alone; where much more is left, the accepted
         # effects stand in for another one
         ends = ladder.base.error("check"), ladder.last.error("check")
-        explains = ends[1] <= CRITERIA.hidden * ends[0]
+        explains = ends[1] <= _EXPLAINED * ends[0]
         trusted = removed_share(ends, floor) ** CRITERIA.believing if explains else 0.0
         blind = [one for one in step.attempts if one.refused == BLIND]
         if any(one.fit.error("check") < accepted.fit.error("check") for one in blind):

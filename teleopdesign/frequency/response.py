@@ -24,7 +24,6 @@ from ..diagrams import Diagram
 from ..realise.lti import numerical
 from ..realise.tips import linear_tips
 from .frozen_friction import cancellations_left_over, growing_modes, with_frozen_friction
-from .quasi_linear import quasi_linear
 
 if TYPE_CHECKING:
     import control
@@ -209,6 +208,8 @@ class _Case(NamedTuple):
 
 
 def _first_harmonics(diagram: Diagram, of: _Signals, amplitude: float, f: Array) -> _Case:
+    from .quasi_linear import quasi_linear  # it simulates
+
     return _Case(quasi_linear(diagram, of.output, of.input, of.given, amplitude, f))
 
 

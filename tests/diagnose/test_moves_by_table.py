@@ -173,7 +173,7 @@ def two_added(use, monkeypatch, rule, *, tone=None):
     return None if moved is None else set(names(moved))
 
 
-@pytest.mark.parametrize(("rule", "found"), [
+@pytest.mark.parametrize(("rule", "added"), [
     (masked, {"spring", "bias"}),
     # the spring does it alone
     (lambda names: 1.0 - 0.9 * ("spring" in names) - 1e-4 * ("bias" in names), None),
@@ -181,8 +181,8 @@ def two_added(use, monkeypatch, rule, *, tone=None):
     (lambda names: masked(names, 0.8), None),
     (lambda names: masked(names, 0.6), {"spring", "bias"}),
 ])  # fmt: skip
-def test_two_that_mask_each_other_are_added_where_each_is_needed(use, monkeypatch, rule, found):
-    assert two_added(use, monkeypatch, rule) == found
+def test_two_that_mask_each_other_are_added_where_each_is_needed(use, monkeypatch, rule, added):
+    assert two_added(use, monkeypatch, rule) == added
 
 
 def test_two_effects_leave_less_than_a_tone_from_outside(use, monkeypatch):
