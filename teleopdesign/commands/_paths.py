@@ -17,7 +17,9 @@ from ..base.errors import ExperimentError
 from ..base.files import read_whole
 
 #: options that name what a command reads, and what it writes: a file or a folder
-INPUTS = ("folder", "logs", "source", "file", "diagram", "answer", "check", "effect", "law")
+INPUTS = (
+    *("folder", "logs", "source", "file", "diagram", "answer", "check", "effect", "law", "design"),
+)
 OUTPUTS = ("json", "predictions", "figure", "report", "output", "out", "effect_file")
 
 

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import ExperimentError, ModelError, did_you_mean
+from ..base.files import write_text
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
 from ..diagrams import Diagram, four_cases, read_diagram
@@ -114,7 +115,7 @@ def _diagram_of(text: str, path: Path) -> Diagram:
 
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / path.with_suffix(".toml").name
-        file.write_text(text, encoding="utf-8")
+        write_text(file, text)
         return read_diagram(file)
 
 

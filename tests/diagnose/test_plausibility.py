@@ -82,6 +82,16 @@ MISFITS = {
         {"drag": 9.0, "exponent": 0.5},
         "a constant force",
     ),
+    "smoothed_coulomb": (
+        {"smoothing_velocity": 0.3},
+        {"smoothing_velocity": 9.0},
+        "a viscous friction",
+    ),
+    "stops": (
+        {"lower": -0.3, "upper": 0.4},
+        {"lower": -0.8, "upper": 0.9},
+        "no motion reaches either end",
+    ),
     "hardening_spring": ({"neutral": 0.1}, {"neutral": -2.0}, "a spring and a constant force"),
     "gravity": ({"amplitude": 2.0}, {"amplitude": -40.0}, "a spring"),
     "cogging_harmonic": ({"period": 0.5}, {"period": 2.0}, "varies slowly along the travel"),

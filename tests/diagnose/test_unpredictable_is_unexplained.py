@@ -55,6 +55,7 @@ SWEEPS = {
     "actuator_gain": ("gain", (1e-3, 0.03, 0.3, 0.9, 1.1, 3.0, 30.0), {}),
     "actuator_lag": ("time_constant", (1e-3, 0.02, 0.1, 0.2), {}),
     "actuation_delay": ("delay", (1e-3, 0.02, 0.1, 0.2), {}),
+    "actuator_dead_zone": ("half_width", (0.01, 0.1, 0.3, 1.0, 3.0), {}),
     "actuator_saturation": ("limit", (0.01, 0.3, 0.8, 1.0, 1.1, 1.3, 1.6), {}),
     "position_dependent_gain": ("fall", (0.1, 1.0, 10.0, 100.0, 1e4), {"centre": 0.0}),
     "torque_ripple": ("amplitude", (0.1, 0.5, 1.0), {"period": 0.3, "phase": 0.0}),

@@ -206,7 +206,7 @@ def test_a_bode_plot_of_the_four_cases_says_what_it_leaves_out(tmp_path):
         cancellation=CANCELLATION,
         force_feedback=FEEDBACK,
     )
-    response = bode(four_cases(diagram), speed=0.05)
+    response = bode(four_cases(diagram))
     assert list(response.data["case"].values) == ["none", "MBC", "FF", "hybrid"]
     assert response.left_out["hybrid"] == ("Z_M.coulomb",)
     assert response.data["frequency"].attrs["units"] == "Hz"

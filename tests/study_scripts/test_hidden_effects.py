@@ -184,6 +184,8 @@ def test_a_plan_hides_every_effect_of_the_catalogue_on_both_kinds_of_machine():
     others = {n for n, e in EFFECTS.items() if e.role == "tip_level" or e.channels()}
     # hidden in records of their own: tests/diagnose/test_along_the_stroke.py
     others |= {"cogging_harmonic", "position_dependent_gain"}
+    # tests/diagnose/test_ends_and_dead_zones.py
+    others |= {"smoothed_coulomb", "stops", "actuator_dead_zone"}
     for kind, wanted in (("device", set(EFFECTS) - contact), ("teleoperator", set(EFFECTS))):
         hidden = {c.effect for c in cases if c.kind == kind and c.level == "clear"}
         assert hidden >= wanted - others

@@ -40,7 +40,7 @@ def _as_svg(figure: Figure) -> str:
     """A figure as SVG inside a page."""
     import matplotlib.pyplot as plt
 
-    text = StringIO()
-    figure.savefig(text, format="svg")
+    out = StringIO()
+    figure.savefig(out, format="svg")
     plt.close(figure)
-    return text.getvalue()[text.getvalue().index("<svg") :]
+    return out.getvalue()[out.getvalue().index("<svg") :]
