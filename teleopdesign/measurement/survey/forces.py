@@ -124,7 +124,7 @@ def _find_driving_force(
             f"{force!r} is read as the actuator's force: the command {wanted!r} leaves "
             f"{apart:.0%} of it unexplained, more than noise"
         )
-    elif likeness(force, "actuator_force") < SURE_NAME or names_part(force):
+    elif likeness(force, "actuator_force") < SURE_NAME or not _is_named(free[force]):
         share = physics[force].explained
         if not _is_named(free[force]):
             error = error_of_chance(survey, file, (force, share), f"{join_names(free)}{beside}")
