@@ -13,6 +13,7 @@ from study_models import product, value
 import teleopdesign as td
 from teleopdesign import (
     arms,
+    block_cuts,
     blocks,
     derive,
     diagrams,
@@ -150,6 +151,9 @@ QUICK: Mapping[str, Callable[[], Any]] = {
     "arm": lambda: arms.Chain((_link(),)),
     "base parameters": lambda: arms.base_parameters(arms.Chain((_link(), _link()))),
     "felt friction": lambda: diagrams.felt_friction(np.eye(2), [0.4, 0.5]),
+    "diagram experiment": lambda: _diagram_experiment(),
+    "cuts": lambda: _diagram_experiment().cuts,
+    "logging plan": lambda: block_cuts.what_to_log(diagram()),
 }
 SLOW: Mapping[str, Callable[[], Any]] = {
     "model": model,
@@ -160,11 +164,26 @@ SLOW: Mapping[str, Callable[[], Any]] = {
     "finding": lambda: td.check_experiment(experiment())[0],
     "description": lambda: td.describe(model(), experiment()),
     "design": lambda: _design(),
+    "diagnosis of blocks": lambda: td.find_missing(_diagram_experiment(), at=["R_A"]),
+    "verification": lambda: td.verify(_design(), experiment()),
 }
 
 
 def _study() -> td.Study:
     return td.study(product, {"x": [1.0, 2.0], "y": [0.5, 0.7]}, measures=value, workers=1)
+
+
+@lru_cache(maxsize=1)
+def _diagram_experiment() -> td.DiagramExperiment:
+    log = td.simulate_diagram(diagram(), duration=2.0, inputs={"R_D": np.sin})
+    names = ("R_A", "R_M", "L")
+    data = {n: log[n].values for n in names}
+    data |= {"t": log.data["time"].values, "R_D": np.sin(log.data["time"].values)}
+    channels = {n: {"column": n, "unit": "N"} for n in ("R_D", "R_A", "R_M")}
+    channels |= {"time": {"column": "t", "unit": "s"}, "L": {"column": "L", "unit": "m"}}
+    return td.diagram_experiment(
+        diagram(), data, channels=channels, outside=["R_V"], sample_period=1e-3, bandwidth=60
+    )
 
 
 def _link() -> arms.Link:

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.frozen import is_same
 from ..diagnose.evidence import SAME
 from ..diagnose.fit import standard_errors
 from ..diagnose.solve import BLOCK
@@ -27,6 +28,8 @@ from .diagram_experiment import DiagramExperiment, RecordedLog
 TRIM = 0.25
 #: s of a block that is held out where no record is for checks only
 HELD_OUT = 1.0
+#: error of a cut that double precision leaves, where a log holds every digit
+ROUNDING = 1e-12
 #: draws of the rounding: the floor is then known to a few percent
 DRAWS = 8
 #: decimals of a column; with more the rounding is none that counts
@@ -64,7 +67,7 @@ class ControlData:
     """The recorded signals of the computer's cuts, low-passed, and the rows that count."""
 
     def __init__(self, part: ComputerPart, rows: Sequence[Passes], bandwidth: float) -> None:
-        self.part, self.rows = part, tuple(rows)
+        self.part, self.rows, self.bandwidth = part, tuple(rows), bandwidth
         self.spectra = [spectrum(_count(r), r.period) for r in self.rows]
         self.gains = [s.lowpass(bandwidth) for s in self.spectra]
         held_out = all(r.use == "fit" for r in self.rows)
@@ -83,6 +86,14 @@ class ControlData:
             for c in part.cuts
         }
         self.shifts = (0,) if part.computer.one_pass else (0, -1, 1)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, ControlData):
+            return NotImplemented
+        contents = ((one.part, one.rows, one.bandwidth) for one in (self, other))
+        return is_same(*contents)
+
+    __hash__ = None  # type: ignore[assignment]
 
     def _pairs(self) -> list[tuple[dict[str, Array], dict[str, NDArray[np.bool_]]]]:
         return list(zip(self.recorded, self.masks, strict=True))
@@ -259,7 +270,7 @@ def floors(data: ControlData, experiment: DiagramExperiment, seed: int = 0) -> d
                 made = _round_to(after[s] + beside, step) - before[s] - beside
                 left = data.low(i, made)[data.masks[i]["check"]]
                 sums[s] += float(np.sum(left**2)) / data.scale["check", s] ** 2 / DRAWS
-    return {c.name: float(np.sqrt(sums[c.signal])) for c in data.part.cuts}
+    return {c.name: max(float(np.sqrt(sums[c.signal])), ROUNDING) for c in data.part.cuts}
 
 
 def _round_to(samples: Array, step: float) -> Array:

@@ -122,6 +122,25 @@ def list_displaced_parameters(base: Fit, fit: Fit, *, least: float = 1.0) -> lis
     return sorted(n for n in driven if n in base.model.parameters and _is_there(base, n, least))
 
 
+def displaces(base: Fit, fit: Fit, *, least: float) -> bool:
+    """Whether a fit drives an effect of the base to its absence.
+
+    An effect of several elements is there as long as one of them is.
+
+    least: as in `list_displaced_parameters`
+    """
+    for name in list_displaced_parameters(base, fit, least=least):
+        place, *of_effect = name.split(".")
+        if len(of_effect) == 1:  # of the body itself
+            return True
+        effect = of_effect[0]
+        strengths = base.model.body(place).effect(effect).absent
+        ended = {f"{place}.{effect}.{n}" for n in strengths} <= set(fit.at_bound)
+        if len(strengths) == 1 or ended:
+            return True
+    return False
+
+
 def _is_there(base: Fit, name: str, least: float) -> bool:
     """Whether the records show that the effect of a parameter is present.
 

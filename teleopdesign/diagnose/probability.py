@@ -19,7 +19,7 @@ import numpy as np
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate
 from .criteria import CRITERIA, Criteria
-from .decision import helps_but_is_barred, list_displaced_parameters
+from .decision import displaces, helps_but_is_barred
 from .evidence import chance
 from .free_functions import Belief
 from .ladder_end import LadderEnd
@@ -176,11 +176,8 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     for r in ranking.ranked:
         driven = set(r.fit.at_bound) - bound
         # an accepted effect may have a parameter at its bound, because it was supported with it
-        gone = (
-            list_displaced_parameters(ranking.base, r.fit, least=CRITERIA.close)
-            if accepted
-            else driven
-        )
+        least = CRITERIA.close
+        gone = displaces(ranking.base, r.fit, least=least) if accepted else bool(driven)
         serious = r.counts and r.candidate.key in alike | rarer and not gone
         weight = CRITERIA.rarer if r.candidate.key in rarer else 1.0
         weights[r.candidate.key] = (

@@ -110,7 +110,7 @@ def _search_claim(
         )
     except ModelError as problem:  # a body that this simulation does not take
         return TopicClaim(topic, Claim("the device as simulated is passive", Unknown(str(problem))))
-    return TopicClaim.searched(topic, claim)
+    return TopicClaim.from_search(topic, claim)
 
 
 def margins(device: IdentifiedDevice, compensator: Compensator | None = None) -> Sequence[Margin]:

@@ -203,7 +203,7 @@ def _search_claim(
         )
     except ModelError as problem:  # what this simulation does not take
         return TopicClaim(topic, Claim(statement, Unknown(str(problem))))
-    return TopicClaim.searched(topic, claim)
+    return TopicClaim.from_search(topic, claim)
 
 
 @dataclass(frozen=True)

@@ -232,7 +232,7 @@ DEAR = set(
     """
     HorizonError RecordedLoop SimulationComparison ArmPaths DeterminedParameter
     Proposal Workbench Reference Remedy Rival Separation SimulatedDiagnosis Page
-    ForceDisplacement Loop
+    ForceDisplacement Loop BlockDiagnosis Verification
     CoulombLevel LargestStiffness LevelAtSpeed Line SteadyRun MarginMap FrequencyMargins
     PassivityControlled Region SecondOpinion SimulatedMotion Given SimulationFit Tuned CheckedLimit
     ParetoFront Point PointOutcome Progress TunedControllers Setup BodyEquation ControllerEquation

@@ -113,7 +113,7 @@ class TopicClaim(ByValue):
     time: Time = "continuous"
 
     @classmethod
-    def searched(cls, topic: str, claim: Claim) -> TopicClaim:
+    def from_search(cls, topic: str, claim: Claim) -> TopicClaim:
         """A claim that a search decided, whose motion was replayed in simulation."""
         verdict = claim.verdict
         if isinstance(verdict, Refutation) and isinstance(verdict.record, SimulatedMotion):
