@@ -57,7 +57,7 @@ def forces_on(diagram: Diagram, cut: Cut) -> ForcesOnBody:
     if isinstance(block, Moving):
         loads: dict[str, float] = {}
         for signal, weight in block.loads.items():
-            loads |= _known_terms(diagram, signal, float(weight), cut)
+            _add_up(loads, _known_terms(diagram, signal, float(weight), cut))
         held = len(_bodies(diagram, cut)) > 1
         return ForcesOnBody(block.motion, (block.command, 1.0), tuple(loads.items()), held)
     assert isinstance(block, Attached)
@@ -76,8 +76,14 @@ def _known_terms(diagram: Diagram, signal: str, weight: float, cut: Cut) -> dict
     terms: dict[str, float] = {}
     junction = next((j for j in diagram.junctions if j.output == signal), None)
     for name, w in () if junction is None else junction.terms.items():
-        terms |= _known_terms(diagram, name, weight * float(w), cut)
+        _add_up(terms, _known_terms(diagram, name, weight * float(w), cut))
     return terms
+
+
+def _add_up(terms: dict[str, float], more: Mapping[str, float]) -> None:
+    """Add weights to those of the same signals."""
+    for name, weight in more.items():
+        terms[name] = terms.get(name, 0.0) + weight
 
 
 def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:

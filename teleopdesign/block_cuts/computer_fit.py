@@ -20,12 +20,11 @@ from ..diagnose.fit import standard_errors
 from ..diagnose.solve import BLOCK
 from ..effects.of_blocks.controllers import ControlEffect
 from ..measurement.filtering import Array, spectrum
+from ..measurement.prepare import TRIM
 from .computer import ComputerPart, Passes, Placed, velocity_of
 from .cuts import COMPUTER
 from .diagram_experiment import DiagramExperiment, RecordedLog
 
-#: s left out at each end of a record, as in every force error
-TRIM = 0.25
 #: s of a block that is held out where no record is for checks only
 HELD_OUT = 1.0
 #: error of a cut that double precision leaves, where a log holds every digit

@@ -88,9 +88,7 @@ class DiagramExperiment(ByValue):
 
     def axis(self, signal: str) -> str:
         """Axis of a signal, "prismatic" or "revolute": that of the body that it moves or holds."""
-        bodies = [b for b in self.diagram.blocks if isinstance(b, Moving | Attached)]
-        near = [b for b in bodies if signal in (*b.inputs, *b.outputs)]
-        return str(getattr((near or bodies)[0].body, "axis", "prismatic"))
+        return axis_of(self.diagram, signal)
 
     def unit(self, effect: ControlEffect, at: str) -> str:
         """Unit of the parameter of an effect at a block: a force is that of the block's output."""
@@ -119,6 +117,13 @@ class DiagramExperiment(ByValue):
             f"  {log.file} ({log.use}): {n} rows" for log, n in zip(self.logs, rows, strict=True)
         ]
         return "\n".join([*lines, *(f"  {line}" for line in repr(self.cuts).splitlines())])
+
+
+def axis_of(diagram: Diagram, signal: str) -> str:
+    """Axis of a signal, "prismatic" or "revolute": that of the body that it moves or holds."""
+    bodies = [b for b in diagram.blocks if isinstance(b, Moving | Attached)]
+    near = [b for b in bodies if signal in (*b.inputs, *b.outputs)]
+    return str(getattr((near or bodies)[0].body, "axis", "prismatic"))
 
 
 def body_of_axis(axis: str) -> dict[str, BodyDescription]:

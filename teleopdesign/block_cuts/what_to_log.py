@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..base.arguments import check_types
+from ..base.units import unit_of
 from ..diagrams import Control, Diagram, Moving
 from .cuts import Cuts, cuts_of
+from .diagram_experiment import axis_of
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,8 @@ class LoggingPlan:
         for one in self.signals:
             motion = self.diagram.is_position(one.name)
             motion |= self.diagram.outside.get(one.name) == "position"
-            unit = "m" if motion else "N"
+            quantity = "position" if motion else "force"
+            unit = unit_of(quantity, axis_of(self.diagram, one.name))
             lines.append(f'"{one.name}" = {{ column = "{one.name}", unit = "{unit}" }}')
         return "\n".join(lines)
 

@@ -33,11 +33,13 @@ class ExpectedError(ByValue):
     """Rms force error about its mean along the stated motion, N or N m; 95 %.
 
     case: "hybrid", "MBC" or "none": what can be built with the recorded sensors
-    low, high: ends of the interval;  without: no compensation
+    simulated: at the estimates;  without: no compensation, at the estimates
+    low, high: ends of the interval; NaN: the drawn bodies cannot be simulated
     unexplained: rms force that the diagnosis left unexplained
     """
 
     case: str
+    simulated: float
     low: float
     high: float
     without: float
@@ -116,6 +118,7 @@ def expected_error(
     try:
         low, high = error_interval(diagram, motion, sampling)
     except ModelError:
-        low = high = simulated
-    low, high = min(low, simulated), max(high, simulated)
-    return ExpectedError(case, low, math.hypot(high, unexplained), without, unexplained)
+        low = high = math.nan
+    if not math.isnan(low):
+        low, high = min(low, simulated), math.hypot(max(high, simulated), unexplained)
+    return ExpectedError(case, simulated, low, high, without, unexplained)

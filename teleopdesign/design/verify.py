@@ -24,7 +24,7 @@ from ..diagrams import Diagram, four_cases, read_diagram
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
-from ..measurement.prepare import prepare
+from ..measurement.prepare import TRIM, prepare
 from ..simulate import Sampling, Trajectory, simulate_many
 from .expected import drawn_values
 from .outcome import Design
@@ -32,8 +32,7 @@ from .prediction import BRISTLE_SHARE
 
 #: s: longest part of a record that is simulated; several cycles of a slow motion
 LONGEST = 20.0
-#: s at both ends that do not count, as in a comparison of forces
-ENDS = 0.25
+_NO_DESIGN = "holds no design, expected a file that `teleopdesign design --json` wrote"
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,12 +89,22 @@ def read_plan(path: str | Path, place: str | None = None) -> Plan:
     path = Path(path)
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
+        bodies = content["bodies"] if "bodies" in content else {content["place"]: content}
+        at = next(iter(bodies)) if place is None else place
     except (OSError, ValueError) as error:
         raise ExperimentError(f"{path}: cannot be read as a design: {error}") from None
-    bodies = content.get("bodies", {content.get("place"): content})
-    at = next(iter(bodies)) if place is None else place
-    if at not in bodies or "diagram_toml" not in (one := bodies[at] or {}):
+    except (KeyError, TypeError, StopIteration):
+        raise ExperimentError(f"{path}: {_NO_DESIGN}") from None
+    if at not in bodies:
         raise ExperimentError(f'{path}: no design for "{at}"{did_you_mean(str(at), bodies)}')
+    try:
+        return _plan_from(bodies[at], at, path)
+    except (KeyError, TypeError):
+        raise ExperimentError(f'{path}: "{at}": {_NO_DESIGN}') from None
+
+
+def _plan_from(one: Mapping[str, Any], at: str, path: Path) -> Plan:
+    """The plan of one body; raises KeyError, TypeError: the content is none of a design."""
     return Plan(
         _diagram_of(one["diagram_toml"], path),
         Sampling(
@@ -171,7 +180,7 @@ def _rows_that_count(motion: Motion) -> Array:
     """Which of the simulated samples count, (n,)."""
     number = min(len(motion.time), int(LONGEST / motion.sample_time))
     at = np.arange(number) * motion.sample_time
-    return np.asarray((at >= ENDS) & (at <= at[-1] - ENDS))
+    return np.asarray((at >= TRIM) & (at <= at[-1] - TRIM))
 
 
 def _force_along(diagram: Diagram, motion: Motion, sampling: Sampling, *, draws: int = 16) -> Array:

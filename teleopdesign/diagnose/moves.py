@@ -43,8 +43,7 @@ def add(search: LadderSearch, state: LadderState) -> LadderState | None:
         best = select_simplest(supported, criteria=search.criteria)
         moved = _add_candidate(search, state, best)
         if moved is not None and moved.effects not in state.visited:
-            fewer = remove(search, moved)
-            return moved if fewer is None or fewer.effects in state.visited else fewer
+            return _without_superfluous(search, state, moved)
         supported.remove(best)
     return None
 
@@ -156,6 +155,14 @@ def _needs_both(search: LadderSearch, state: LadderState, pair: tuple[Rung, Rung
     return without is None or is_better(without, both, floor, criteria=criteria)
 
 
+def _without_superfluous(
+    search: LadderSearch, state: LadderState, moved: LadderState
+) -> LadderState:
+    """A state after a move, without one effect that the move made superfluous."""
+    fewer = remove(search, moved)
+    return moved if fewer is None or fewer.effects in state.visited else fewer
+
+
 def remove(search: LadderSearch, state: LadderState) -> LadderState | None:
     """Remove one effect that later effects made superfluous, and fit the others again."""
     for rung in state.rungs[1:-1]:
@@ -199,7 +206,7 @@ def swap(search: LadderSearch, state: LadderState) -> LadderState | None:
         rungs = [new if r is rung else r for r in state.rungs]
         moved = _in_order(search, state, rungs, new.fit)
         if moved is not None and (new.added == rung.added or moved.effects not in state.visited):
-            return remove(search, moved) or moved
+            return _without_superfluous(search, state, moved)
     return None
 
 

@@ -73,10 +73,16 @@ def cancellations_left_over(diagram: Diagram, left_out: Collection[str]) -> tupl
         if part.name not in left_out
         and isinstance(part.controller, Controller)
         and any(
-            stage.law.bound or (stage.law.name == CANCEL and "coulomb.level" in stage.values)
+            stage.law.bound or (stage.law.name == CANCEL and _takes_friction(stage.values))
             for stage in part.controller.stages
         )
     )
+
+
+def _takes_friction(names: Collection[str]) -> bool:
+    """Whether parameters such as "coulomb.level" are those of friction."""
+    effects = {name.partition(".")[0] for name in names} & EFFECTS.keys()
+    return any(EFFECTS[effect].role in FRICTION for effect in effects)
 
 
 def growing_modes(diagram: Diagram, *, speed: float = 0.0) -> str | None:

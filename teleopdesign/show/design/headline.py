@@ -30,14 +30,17 @@ def _what_to_build(design: Design) -> str:
         parts.append("H, with the force sensor between hand and device")
     what = f"build {' and '.join(parts)}" if parts else "build no compensation"
     left = ", ".join(f"{name} ({why})" for name, why in design.not_cancelled.items())
-    return f"{what}; " + (f"found and not compensated: {left}" if left else "all found effects")
+    return f"{what}; found and not compensated: {left or 'nothing'}"
 
 
 def _error_to_expect(design: Design) -> str:
     e, unit = design.expected, unit_of("force", design.body.axis)
-    line = f"expected force error: from {e.low:.3g} to {e.high:.3g} {unit} rms (95 %), without "
+    size = f"from {e.low:.3g} to {e.high:.3g} {unit} rms (95 %)"
+    if math.isnan(e.low):
+        size = f"{e.simulated:.3g} {unit} rms, in an interval that is not known"
+    line = f"expected force error: {size}, without "
     line += f"compensation {e.without:.3g}"
-    if e.unexplained > 0:
+    if e.unexplained > 0 and not math.isnan(e.low):
         line += f"; in the upper end {e.unexplained:.2g} {unit} that no effect explains"
     return line
 
@@ -68,9 +71,11 @@ def _verdict(claims: Sequence[Claim]) -> str:
     if against:
         return f"no: {against[0].heading}: {against[0].statement}"
     proofs = [c for c in claims if c.status == "proved"]
+    for_it = any(c.status == "evidence" and c.holds for c in claims)
+    known = "not known, simulated motions release no energy" if for_it else "not known"
     if not proofs:
-        return "not known; simulated motions release no energy"
+        return known
     margin = getattr(proofs[0].verdict, "margin", math.nan)
     unit = getattr(proofs[0].verdict, "unit", "")
     words = f"proved for friction and its cancellation (margin {margin:.3g} {unit})"
-    return f"{words}; the whole device: not known, simulated motions release no energy"
+    return f"{words}; the whole device: {known}"
