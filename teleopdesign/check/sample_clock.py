@@ -1,10 +1,9 @@
-"""Sample clock: unit, rate, rounding and jitter of the stamps, and jitter that no stamp shows.
+"""Sample clock: a rate that no logger has, and jitter that no stamp shows.
 
-Reading a record already handles gaps, clocks that were set back and uneven stamps; the remaining
-errors and their cost are reported here. A reading at another moment than its row says errs by the
-motion in between. Twice differentiated, this error may be larger than the acceleration itself: a
-fit then finds an inertia near zero, and what only weakens this error, such as a tip behind a
-spring, seems to explain a force.
+Reading a record handles and reports what its stamps show: gaps, clocks that were set back, jitter.
+A reading at another moment than its row says errs by the motion in between. Twice differentiated,
+this error may be larger than the acceleration itself: a fit then finds an inertia near zero, and
+what only weakens this error, such as a tip behind a spring, seems to explain a force.
 """
 
 from __future__ import annotations
@@ -13,22 +12,15 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..base.errors import ExperimentError
-from ..base.finding import Finding, Graph, Series
-from ..measurement.channel import factor_of
+from ..base.finding import Finding
 from ..measurement.encoder import reading_step, sampling_jitter
 from ..measurement.experiment import Experiment
-from ..measurement.filtering import Array
 from ..measurement.prepare import Stretch
 from ..measurement.record import Record
-from ..measurement.tables import read_columns
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
 #: Hz: lowest and highest plausible rate of a log
 SLOWEST, FASTEST = 5.0, 1e6
-#: part of a sample time that stamps may be off and still count as uniform, and beyond which using
-#: them as uniform needs care
-UNIFORM, CARE = 0.01, 0.05
 #: part of a sample time that readings may be early or late and still count as in time
 IN_TIME = 0.02
 #: part of the squares of a measured acceleration from which jitter of the clock leaves nothing to
@@ -37,14 +29,12 @@ IN_TIME = 0.02
 #: eight recordings of real machines. Higher: tips are named that weaken the jitter; lower: effects
 #: are missed that its floor leaves visible
 JITTER = 0.25
-#: points of a graph
-POINTS = 1000
 
 
 def find_clock_errors(recording: CheckedRecording) -> Iterator[Finding]:
     """Errors of the clock, or that it has none; stops where jitter leaves nothing to tell."""
     experiment = recording.experiment
-    errors = [f for record in experiment.records for f in _check_stamps(experiment, record)]
+    errors = [f for record in experiment.records for f in _check_rate(experiment, record)]
     for signal in recording.varying:
         if signal.quantity == "position":
             errors += _check_scatter(signal)
@@ -59,8 +49,8 @@ def find_clock_errors(recording: CheckedRecording) -> Iterator[Finding]:
 CHECK = RecordingCheck(order=240, find=find_clock_errors, may_stop=True)
 
 
-def _check_stamps(experiment: Experiment, record: Record) -> Iterator[Finding]:
-    """A rate that no logger has, and stamps that are off the uniform time of the record."""
+def _check_rate(experiment: Experiment, record: Record) -> Iterator[Finding]:
+    """A rate that no logger has."""
     h, channel = record.sample_time, experiment.channels.get("time")
     if not SLOWEST <= 1 / h <= FASTEST:
         unit = "s" if channel is None else channel.unit
@@ -72,39 +62,6 @@ def _check_stamps(experiment: Experiment, record: Record) -> Iterator[Finding]:
             f'unit = "{meant}" at channels.time.'
         )
         yield Finding("sample clock", "warning", sentence, {"rate": 1 / h}, record.file)
-    # the reading steps describe the treatment of uneven stamps
-    stamps = None if record.reading else stamps_of(experiment, record)
-    if stamps is None:
-        return
-    off = stamps - record.time
-    rms, worst = float(np.sqrt(np.mean(off**2))), float(np.abs(off).max())
-    if rms <= UNIFORM * h:
-        return
-    some = slice(None, None, max(1, len(off) // POINTS))
-    points = Series("stamps", record.time[some], 1e3 * off[some])
-    yield Finding(
-        "sample clock",
-        "note" if rms < CARE * h else "warning",
-        f"the time stamps are {1e3 * rms:.3g} ms rms off a uniform clock of {1 / h:.6g} Hz "
-        f"({100 * rms / h:.2g} % of a sample, {1e3 * worst:.3g} ms at worst): the samples are "
-        "used as if they were uniform.",
-        {"rate": 1 / h, "jitter": rms, "worst": worst},
-        record.file,
-        Graph("time (s)", "stamp less uniform time (ms)", (points,)),
-    )
-
-
-def stamps_of(experiment: Experiment, record: Record) -> Array | None:
-    """Time stamps of the record as written (n,), s; None: it has none, or its file is gone."""
-    channel, path = experiment.channels.get("time"), experiment.folder / record.file
-    if channel is None or not path.is_file():
-        return None
-    try:
-        columns = read_columns(path, record.file, {channel.column: "channels.time"})
-    except ExperimentError:
-        return None
-    stamps = columns.values[channel.column] * factor_of(channel, experiment.bodies, "channels.time")
-    return stamps if len(stamps) == len(record.time) and np.isfinite(stamps).all() else None
 
 
 def jitter_of(experiment: Experiment, body: str, file: str) -> float:

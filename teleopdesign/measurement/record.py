@@ -15,7 +15,6 @@ from .description import BodyDescription
 from .log_clock import clock_of_log
 from .reading import ReadingStep
 from .signals_of_log import signals_of_log
-from .slower_signals import with_slower_signals
 from .spans import cut_to
 from .tables import LogColumns, read_columns
 
@@ -145,10 +144,7 @@ def record_of(
     to_seconds = None
     if sample_rate is None:
         to_seconds = factor_of(channels["time"], bodies, "channels.time")
-    columns = with_slower_signals(
-        columns, channels, name, sample_rate=sample_rate, to_seconds=to_seconds
-    )
-    clock, steps = clock_of_log(
+    clock, columns, steps = clock_of_log(
         columns, channels, name, file=file, sample_rate=sample_rate, to_seconds=to_seconds
     )
     signals, more = signals_of_log(columns, channels, conversions, clock, file)

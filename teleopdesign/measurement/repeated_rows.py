@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .encoder import reading_step
-from .record_clock import Array
+from .row_places import Array
 
 #: a row in which all readings repeat may be lost if the probability of this by chance is at most
 #: this. Rows count as lost only if they are more than this share of all rows

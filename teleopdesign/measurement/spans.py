@@ -9,8 +9,8 @@ import numpy as np
 from ..base.errors import ExperimentError
 from .channel import Channel, factor_of
 from .description import BodyDescription
+from .stamps import seconds_since_first
 from .tables import LogColumns
-from .wrapped_stamps import seconds_since_first
 
 
 def cut_to(

@@ -26,7 +26,7 @@ from .doors.text import open_text
 from .doors.workbook import open_workbook
 from .numbers_in_cells import numbers_of
 from .reading import ReadingStep
-from .wrapped_stamps import unwrap_stamps
+from .stamps import unwrap_stamps
 
 Array = NDArray[np.float64]
 Result = TypeVar("Result")

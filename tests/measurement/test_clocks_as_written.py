@@ -9,15 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.measurement.channel import Channel
 from teleopdesign.measurement.doors._cells import stamps_in_texts
 from teleopdesign.measurement.doors._dates import stamps_of
 from teleopdesign.measurement.from_arrays import log_of
-from teleopdesign.measurement.log_clock import _repeats
-from teleopdesign.measurement.stamp_unit import unit_of_steps
+from teleopdesign.measurement.stamps import seconds_since_first, unit_of_steps, unwrap_stamps
 from teleopdesign.measurement.survey import Choices, spans_of, survey_log
-from teleopdesign.measurement.tables import LogColumns, open_log, read_columns
-from teleopdesign.measurement.wrapped_stamps import seconds_since_first, unwrap_stamps
+from teleopdesign.measurement.tables import open_log, read_columns
 
 ROWS = 800
 T = 0.004 * np.arange(ROWS)
@@ -129,24 +126,6 @@ def test_days_of_a_spreadsheet_are_days():
     assert unit_of_steps(46346.9 + T / 86400)[0] == "day"
     assert unit_of_steps(0.25 + T / 86400)[0] == "day"
     assert unit_of_steps(T)[0] == "s"
-
-
-def test_rows_equal_to_the_one_before_are_marked_from_the_second_row_on():
-    """In all columns of this clock but the time; the first row has none before it."""
-    x = np.array([1.0, 1.0, 2.0, 2.0, 2.0, 3.0])
-    u = np.array([5.0, 5.0, 5.0, 5.0, 6.0, 6.0])
-    columns = LogColumns({"t": np.arange(6.0), "x": x, "u": u, "slow": np.arange(6.0)})
-    channels = {
-        "time": Channel("time", None, "t", "s", None, None),
-        "device.position": Channel("position", "device", "x", "m", None, None),
-        "device.actuator_force": Channel("actuator_force", "device", "u", "N", None, None),
-        "device.temperature": Channel("temperature", "device", "slow", "degC", None, None),
-    }
-    marked = _repeats(columns, channels, np.arange(6), {"t", "x", "u"})
-    assert marked.tolist() == [False, True, False, True, False, False]
-    assert _repeats(columns, channels, np.array([0, 2, 3]), {"t", "x", "u"}).tolist() == [
-        *(False, False, True)
-    ]
 
 
 def test_of_two_clocks_that_of_the_position_is_the_time():

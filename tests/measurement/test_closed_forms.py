@@ -336,7 +336,7 @@ def test_sixty_four_rows_of_a_second_are_a_record():
 
 @pytest.mark.parametrize(("off", "is_even"), [(0.19, True), (0.21, False)])
 def test_steps_a_fifth_of_a_row_longer_are_those_of_an_even_clock(off, is_even):
-    from teleopdesign.measurement.time_grid import clock_of
+    from teleopdesign.measurement.record_clock import clock_of
 
     t = np.arange(200) / 100.0
     t[100] += off / 2 / 100.0

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from teleopdesign.measurement.doors._log import Log
-from teleopdesign.measurement.stamp_unit import unit_of_steps
+from teleopdesign.measurement.record_clock import clock_of
+from teleopdesign.measurement.stamps import unit_of_steps
 from teleopdesign.measurement.survey import Choices, survey_log
-from teleopdesign.measurement.time_grid import clock_of
 
 
 def stamps_of(seconds, rate, step, start=0.37, scale=1.0):

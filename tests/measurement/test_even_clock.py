@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.measurement.even_clock import even_clock, is_only_rounded
-from teleopdesign.measurement.record_clock import segments_of
+from teleopdesign.measurement.record_clock import clock_of, segments_of
 
 
 @given(
@@ -27,7 +26,7 @@ def test_an_even_clock_is_the_line_through_the_stamps_of_all_segments(lengths, p
     ]
     stamps = np.concatenate(parts)
     segments = segments_of(np.repeat(np.arange(len(lengths)), lengths), len(stamps))
-    clock = even_clock(stamps, segments, "log")
+    clock = clock_of(stamps, segments, np.zeros(len(stamps), dtype=bool), "log")
     matrix = np.zeros((len(stamps), 1 + len(segments)))
     for k, s in enumerate(segments):
         matrix[s, 0] = np.arange(s.stop - s.start)
@@ -39,32 +38,3 @@ def test_an_even_clock_is_the_line_through_the_stamps_of_all_segments(lengths, p
         np.sqrt(np.mean((stamps - matrix @ solution) ** 2)), rel=1e-4
     )
     assert clock.exact and clock.segments == segments and clock.lost == 0
-
-
-@pytest.mark.parametrize(("digits", "rate"), [(3, 1024.0), (2, 60.0), (4, 3000.0), (6, 333_333.0)])
-def test_stamps_that_are_rounded_lie_on_their_clock_and_others_do_not(digits, rate):
-    n = 1200
-    stamps = np.round(np.arange(n) / rate, digits)
-    whole = (slice(0, n),)
-    assert is_only_rounded(stamps, whole, 1.0 / rate)
-    # one row more in the middle: the second half is a row later
-    late = np.round(
-        (np.arange(n) + (np.arange(n) >= n // 2) * 3 * max(1, 10.0**-digits * rate)) / rate, digits
-    )
-    assert not is_only_rounded(late, whole, 1.0 / rate)
-
-
-@pytest.mark.parametrize(("off", "rounded"), [(1, True), (2, False)])
-def test_one_row_may_lie_off_by_half_of_the_last_digit_and_a_fifth_of_a_row(off, rounded):
-    """Of 4 ms, written in ms, on two segments that begin anew: up to 1.3 ms."""
-    stamps = np.tile(0.004 * np.arange(300), 2)
-    stamps[450] += 0.001 * off
-    segments = (slice(0, 300), slice(300, 600))
-    assert is_only_rounded(stamps, segments, 0.004) == rounded
-
-
-def test_segments_of_one_row_each_have_no_clock():
-    stamps = 0.01 * np.arange(100)
-    assert even_clock(stamps, tuple(slice(k, k + 1) for k in range(100)), "log") is None
-    assert even_clock(stamps[::-1], (slice(0, 100),), "log") is None
-    assert even_clock(np.full(100, np.nan), (slice(0, 100),), "log") is None

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from measurement.columns_by_hand import Q, U, look
 
+from teleopdesign.measurement.stamps import unwrap_stamps
 from teleopdesign.measurement.tables import open_log, read_columns
-from teleopdesign.measurement.wrapped_stamps import unwrap_stamps
 
 SINCE = 0.005 * np.arange(1000) + 0.0004 * np.random.default_rng(5).random(1000)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from teleopdesign.measurement.stamp_unit import unit_of_steps
+from teleopdesign.measurement.stamps import unit_of_steps
 
 
 @pytest.mark.parametrize(

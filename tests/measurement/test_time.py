@@ -6,9 +6,8 @@ from measurement.rod_example import rod_columns, rows
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
-from teleopdesign.measurement.log_clock import _effect_of_even_stamps
-from teleopdesign.measurement.record_clock import RecordClock
-from teleopdesign.measurement.time_grid import clock_of
+from teleopdesign.measurement.record_clock import RecordClock, clock_of
+from teleopdesign.measurement.true_stamps import effect_of_even_stamps
 
 
 def with_segments(folder, labels, stamps=None):
@@ -105,8 +104,8 @@ def test_what_even_stamps_would_cost_is_a_part_of_the_travel_in_any_unit(size):
     whole = (slice(0, n),)
     stamps = time + 0.1 * off
     clock = RecordClock(np.arange(n), stamps, np.arange(n), time, h, whole, whole)
-    text = _effect_of_even_stamps(clock, [size * stamps])
+    text = effect_of_even_stamps(clock, [size * stamps])
     assert text == "read as even, positions would err by 0.02 % of the travel"
-    slower = _effect_of_even_stamps(clock, [size * stamps, size * np.round(stamps)])
+    slower = effect_of_even_stamps(clock, [size * stamps, size * np.round(stamps)])
     assert float(slower.split()[7]) >= 0.02, "the position that would err most counts"
-    assert _effect_of_even_stamps(clock, []) == "none"
+    assert effect_of_even_stamps(clock, []) == "none"

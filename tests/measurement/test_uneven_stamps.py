@@ -7,15 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.measurement.record_clock import segments_of
-from teleopdesign.measurement.uneven_stamps import rows_in_order, sparse_clock
+from teleopdesign.measurement.record_clock import clock_of, segments_of
+from teleopdesign.measurement.row_places import rows_in_order
 
 
 def clock_by(stamps, labels=None, same=None):
     segments = segments_of(labels, len(stamps))
     same = np.zeros(len(stamps), dtype=bool) if same is None else same
-    parts, *changes = rows_in_order(stamps, segments, same)
-    return sparse_clock(stamps, parts, tuple(changes), "log"), parts, changes
+    return clock_of(stamps, segments, same, "log")
 
 
 @given(seed=st.integers(0, 10_000), jitter=st.floats(0.0, 0.1))
@@ -26,14 +25,14 @@ def test_rows_that_are_missing_leave_their_places(seed, jitter):
         return
     h = 0.004
     stamps = 30.0 + h * (places + jitter * rng.uniform(-1, 1, len(places)))
-    clock, parts, changes = clock_by(stamps)
-    assert changes == [0, 0, 0] and len(parts) == 1
+    clock = clock_by(stamps)
+    assert (clock.dropped, clock.sorted, clock.restarts) == (0, 0, 0) and len(clock.of_rows) == 1
     assert np.array_equal(clock.places, places - places[0])
     assert len(clock.time) == places[-1] - places[0] + 1
     assert clock.lost == len(clock.time) - len(places)
     assert clock.sample_time == pytest.approx(h, rel=1e-3)
     assert clock.time[0] == pytest.approx(30.0 + h * places[0], abs=0.2 * h)
-    assert clock.jitter <= jitter * h + 1e-12 and clock.gaps == 0 and not clock.exact
+    assert clock.jitter <= jitter * h + 1e-12 and clock.gaps == 0
 
 
 @pytest.mark.parametrize(("lost", "pauses"), [((5, 5), 0), ((6, 5), 1), ((6, 40), 2)])
@@ -41,7 +40,7 @@ def test_a_pause_parts_the_rows_and_the_longest_is_reported(lost, pauses):
     h, places = 0.01, np.arange(900)
     for at, n in zip((200, 500), lost, strict=True):
         places[at:] += n
-    clock, *_ = clock_by(h * places)
+    clock = clock_by(h * places)
     assert clock.gaps == pauses and len(clock.segments) == pauses + 1
     expected = h * (max(lost) + 1) if pauses else 0.0
     assert clock.longest_gap == pytest.approx(expected)
@@ -59,8 +58,8 @@ def test_rows_twice_are_dropped_and_rows_out_of_order_moved():
     order[[200, 201, 202]] = [202, 200, 201]
     order = np.insert(order, 300, 299)
     stamps = h * order
-    clock, (part,), changes = clock_by(stamps)
-    assert changes == [1, 5, 0] and np.all(np.diff(stamps[part]) > 0) and len(part) == 500
+    clock = clock_by(stamps)
+    assert np.all(np.diff(clock.stamps) > 0) and len(clock.rows) == 500
     assert (clock.dropped, clock.sorted, clock.restarts) == (1, 5, 0)
     # a row that says the same again less than a quarter of a step later is a repeat as well
     for early, same, dropped in [(0.24, True, 1), (0.26, True, 0), (0.24, False, 0)]:
@@ -79,11 +78,11 @@ def test_a_clock_that_was_set_anew_begins_a_stretch_and_time_goes_on():
         _, *changes = rows_in_order(stamps, (slice(0, 400),), np.zeros(400, dtype=bool))
         assert changes[2] == begins
     stamps = np.r_[90.0 + h * np.arange(300), 20.0 + h * np.arange(300)]
-    clock, parts, changes = clock_by(stamps)
-    assert changes == [0, 0, 1] and len(parts) == 2 and clock.gaps == 0
+    clock = clock_by(stamps)
+    assert clock.restarts == 1 and len(clock.of_rows) == 2 and clock.gaps == 0
     assert clock.time == pytest.approx(90.0 + h * np.arange(600))
     # segments of a user may begin anew: each has its time
-    clock, *_ = clock_by(stamps, labels=np.repeat([0, 1], 300))
+    clock = clock_by(stamps, labels=np.repeat([0, 1], 300))
     assert clock.time == pytest.approx(stamps)
 
 
@@ -92,7 +91,7 @@ def test_stamps_that_many_rows_share_are_counted(share, counted):
     h, n = 0.01, 1000
     twice = round(share * n)
     stamps = np.sort(np.r_[h * np.arange(n - twice), h * np.arange(10, 10 + twice)])
-    clock, *_ = clock_by(stamps)
+    clock = clock_by(stamps)
     assert clock.counted == counted
     if counted:
         assert clock.sample_time == pytest.approx(h * (n - twice - 1) / (n - 1), rel=1e-3)
@@ -102,7 +101,7 @@ def test_stamps_that_many_rows_share_are_counted(share, counted):
 def test_stamps_of_no_clock_get_a_grid_of_as_many_samples():
     rng = np.random.default_rng(0)
     stamps = np.sort(rng.uniform(0.0, 8.0, 800))
-    clock, *_ = clock_by(stamps)
+    clock = clock_by(stamps)
     assert clock.jitter == math.inf and clock.lost == 0
     assert clock.sample_time == pytest.approx(np.ptp(stamps) / 799, rel=0.1)
     near = np.abs(clock.time[clock.places] - stamps)
@@ -121,7 +120,7 @@ def test_a_row_out_of_order_among_stamps_that_rows_share_begins_no_new_clock():
 def test_rows_with_two_stamps_alone_are_counted_from_the_first_to_the_last(change):
     """Whole seconds of a log of 1.5 s: no stretch lies between two changes."""
     stamps = np.where(np.arange(150) < change, 7.0, 8.0)
-    clock, *_ = clock_by(stamps)
+    clock = clock_by(stamps)
     assert clock.counted and clock.sample_time == pytest.approx(1 / 149)
     assert clock.time == pytest.approx(7.0 + np.arange(150) / 149)
 
@@ -133,12 +132,12 @@ def test_a_row_is_a_repeat_only_of_one_that_its_clock_counted_just_before():
     stamps[0] += 1e-3 * h  # uneven by a hair
     same = np.zeros(600, dtype=bool)
     same[[0, 300, 450]] = True
-    _, parts, changes = clock_by(stamps, same=same)
-    assert [len(p) for p in parts] == [300, 300] and changes == [0, 0, 1]
+    clock = clock_by(stamps, same=same)
+    assert clock.dropped == 0 and clock.restarts == 1 and len(clock.rows) == 600
     for early, dropped in [(0.24, 1), (0.26, 0)]:
         stamps[450] = stamps[449] + early * h
-        _, parts, changes = clock_by(stamps, same=same)
-        assert changes == [dropped, 0, 1] and (450 in parts[1]) == (not dropped)
+        clock = clock_by(stamps, same=same)
+        assert clock.dropped == dropped and (450 in clock.rows) == (not dropped)
     same[450] = False
     stamps[450] = stamps[449] + 0.1 * h
-    assert clock_by(stamps, same=same)[2] == [0, 0, 1], "another reading, however early"
+    assert clock_by(stamps, same=same).dropped == 0, "another reading, however early"

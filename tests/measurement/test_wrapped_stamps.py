@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from teleopdesign.measurement.wrapped_stamps import seconds_since_first, unwrap_stamps
+from teleopdesign.measurement.stamps import seconds_since_first, unwrap_stamps
 
 
 @pytest.mark.parametrize("bits", [16, 24, 32])

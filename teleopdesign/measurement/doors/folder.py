@@ -18,8 +18,7 @@ from ...base.errors import ExperimentError
 from ...base.units import measures, si_factor
 from ..column_names import likeness, unit_in_name
 from ..numbers_in_cells import numbers_of
-from ..stamp_unit import unit_of_steps
-from ..wrapped_stamps import unwrap_stamps
+from ..stamps import unit_of_steps, unwrap_stamps
 from ._log import Array, Log, join_names
 
 #: all tables must overlap in time for at least this part of the shortest one

@@ -21,7 +21,7 @@ from ..doors._log import Log, join_names
 from ..doors.folder import are_quantities
 from ..numbers_in_cells import numbers_of
 from ..record_clock import FEWEST
-from ..wrapped_stamps import unwrap_stamps
+from ..stamps import unwrap_stamps
 from .assumed_rate import ASSUMED
 from .axis_kind import axis_of
 from .candidate_clocks import counts_rows

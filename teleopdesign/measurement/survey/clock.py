@@ -20,10 +20,9 @@ from ..column_names import (
 from ..doors._log import Log, bare_column, join_names
 from ..log_clock import OF_ANOTHER_CLOCK
 from ..numbers_in_cells import holds_dates, numbers_of
+from ..record_clock import clock_of
 from ..signed_numbers import sign_code_of
-from ..stamp_unit import unit_in_place_of, unit_of_steps
-from ..time_grid import clock_of
-from ..wrapped_stamps import seconds_since_first, unwrap_stamps
+from ..stamps import seconds_since_first, unit_in_place_of, unit_of_steps, unwrap_stamps
 from .assumed_rate import ASSUMED, rate_of_velocity
 from .candidate_clocks import (
     busiest_clock,

@@ -18,9 +18,8 @@ from numpy.typing import NDArray
 from ....base.errors import ExperimentError
 from ....base.units import si_factor
 from ...numbers_in_cells import holds_dates, numbers_of
-from ...stamp_unit import unit_of_steps
-from ...time_grid import DATE
-from ...wrapped_stamps import unwrap_stamps
+from ...record_clock import DATE
+from ...stamps import unit_of_steps, unwrap_stamps
 from .._cells import is_column_of_texts
 from .._log import Array, Log, join_names
 from ._table import FEWEST, CellTable, LongSignal, LongTable, as_text

@@ -17,7 +17,7 @@ import numpy as np
 
 from ....base.units import si_factor
 from ...column_names import likeness
-from ...wrapped_stamps import unwrap_stamps
+from ...stamps import unwrap_stamps
 from .._log import Array
 from ._table import CellTable, LongSignal, LongTable
 

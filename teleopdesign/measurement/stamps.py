@@ -1,0 +1,166 @@
+"""Time stamps as they are written: their unit, and the wraps and late turns of their clock.
+
+A microcontroller that counts microseconds in 32 bits starts again after 71 minutes; a time of day
+starts again at midnight; a clock without a zone goes back an hour in autumn. A logger that reads
+the seconds of a clock before their fraction writes 24.997, 24.002, 25.009.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.units import si_factor
+from .row_places import GOES_ON
+
+Array = NDArray[np.float64]
+
+#: step of a counter of 16, 24 or 32 bits at its wrap -> the reason in words
+COUNTERS = {2.0**bits: f"a counter of {bits} bits wraps" for bits in (16, 24, 32)}
+#: s by which a clock steps back -> the reason in words: an hour in autumn, a twelve-hour dial, a
+#: day, a week of GPS
+CLOCKS = {
+    3600.0: "the clock goes back an hour",
+    43_200.0: "the time of day begins anew after twelve hours",
+    86_400.0: "the time of day begins anew at midnight",
+    604_800.0: "the week begins anew",
+}
+#: s of a part of a clock that is read by itself -> its name
+PARTS = {1.0: "second", 60.0: "minute", 3600.0: "hour", 86_400.0: "day"}
+#: part of that time which the rows that it displaces may last, and the steps beside them: only rows
+#: at its turn are displaced. Higher: a pause before a clock was set back passes for one
+TURN = 0.25
+#: units of stamps, as parts of a second
+_SECONDS = (1.0, 1e3, 1e6, 1e9)
+#: longest step over a wrap, in usual steps: a few rows may be lost there
+LONGEST_STEP = 20.0
+#: fewest usual steps in the period of a wrap: with fewer, the column counts the rows of blocks
+FEWEST_STEPS = 500.0
+#: s in a day
+DAY = 86_400.0
+#: days between two rows: 0.2 s, as in seconds
+LONGEST_DAYS = 0.2 / DAY
+_SHORTEST = 1.0  # s: shortest duration of a record
+#: rows a second that no log of a machine has; a scope may have 1 MHz
+FASTEST = 1.001e6
+
+
+def unwrap_stamps(stamps: Array) -> tuple[Array, tuple[str, ...]]:
+    """Stamps without the wraps of their counter or clock, and a note on each kind of wrap.
+
+    A step back is a wrap if adding its period leaves a step like the others. Where a step forward
+    by the same period lies beside it, the rows between them are displaced by that period.
+
+    stamps: (n,) in any unit, NaN where there is none
+    """
+    rows = np.flatnonzero(np.isfinite(stamps))
+    shown = stamps[rows]
+    steps = np.diff(shown)
+    if not np.any(steps > 0) or not np.any(steps < 0):
+        return stamps, ()
+    moved, notes = _turned_in_time(shown, steps)
+    steps = np.diff(shown + moved)
+    usual = float(np.median(steps[steps > 0]))
+    periods = dict(COUNTERS)
+    periods |= {unit * length: why for length, why in CLOCKS.items() for unit in _SECONDS}
+    count: dict[str, int] = {}
+    for row in np.flatnonzero(steps < 0).tolist():
+        for period, why in periods.items():
+            step = float(steps[row]) + period
+            if 0 < step <= LONGEST_STEP * usual and period > FEWEST_STEPS * usual:
+                moved[row + 1 :] += period
+                count[why] = count.get(why, 0) + 1
+                break
+    notes += [f"{why}{f' {n} times' if n > 1 else ''}: time counts on" for why, n in count.items()]
+    if not notes:
+        return stamps, ()
+    whole = stamps.copy()
+    whole[rows] += moved
+    return whole, tuple(notes)
+
+
+def _turned_in_time(stamps: Array, steps: Array) -> tuple[Array, list[str]]:
+    """Correction of stamps whose seconds, minutes, hours or days turn late or early; and notes."""
+    usual = float(np.median(steps[steps > 0]))
+    moved, notes = np.zeros(len(stamps)), []
+    for length, name in PARTS.items():
+        for period in (unit * length for unit in _SECONDS):
+            longest = min(LONGEST_STEP * usual, TURN * period)
+            rest = steps - np.sign(steps) * period
+            near = np.flatnonzero((rest > 0) & (rest <= longest))
+            late = _displaced_rows(near, steps, stamps, TURN * period)
+            for shift, when, more in ((1, "late", "later"), (-1, "early", "earlier")):
+                if count := int(np.count_nonzero(late == shift)):
+                    moved[late == shift] += shift * period
+                    of = "row" if count == 1 else "rows"
+                    notes.append(f"the {name} turns {when} in {count} {of}: read a {name} {more}")
+    return moved, notes
+
+
+def _displaced_rows(
+    turns: NDArray[np.intp], steps: Array, stamps: Array, longest: float
+) -> NDArray[np.int_]:
+    """1 for each row that is a period early, -1 for each that is a period late, 0 for the others.
+
+    turns: steps by a period, forward or back;  longest: of such rows
+    """
+    shift = np.zeros(len(stamps), dtype=int)
+    k = 0
+    while k + 1 < len(turns):
+        here, there = int(turns[k]), int(turns[k + 1])
+        k += 1
+        lasts = float(stamps[there] - stamps[here + 1])
+        if steps[here] * steps[there] < 0.0 <= lasts <= longest:
+            shift[here + 1 : there + 1] = -np.sign(steps[here])
+            k += 1
+    return shift
+
+
+def seconds_since_first(stamps: Array) -> Array:
+    """Time from the first row of the log, s; after a clock was set back, the time continues.
+
+    stamps: (n,) s, NaN where there is none; rows a little out of order keep their stamps
+    """
+    rows = np.flatnonzero(np.isfinite(stamps))
+    since = stamps - (stamps[rows[0]] if len(rows) else 0.0)
+    steps = np.diff(since[rows])
+    if not np.any(steps > 0):
+        return np.asarray(since)
+    usual = float(np.median(steps[steps > 0]))
+    set_back = steps < -(GOES_ON + 0.5) * usual
+    since[rows[1:]] += np.cumsum(np.where(set_back, usual - steps, 0.0))
+    return np.asarray(since)
+
+
+def unit_of_steps(stamps: Array) -> tuple[str, str]:
+    """Unit of a time column from its usual step, and the reason if the unit is a guess."""
+    finite = stamps[np.isfinite(stamps)]
+    step = float(np.median(np.abs(np.diff(finite))))
+    if step == 0.0:  # most rows share a stamp
+        step = float(np.ptp(finite)) / max(len(finite) - 1, 1)
+    # a spreadsheet counts days; read in seconds, such a log would be too short for a record
+    if step < LONGEST_DAYS and _SHORTEST / DAY < float(np.ptp(finite)) < _SHORTEST:
+        return "day", f"day: only in days are steps of {step:.4g} usual for a log"
+    scales = ((0.2, "s"), (200.0, "ms"), (2e5, "us"), (math.inf, "ns"))
+    unit = next(name for largest, name in scales if step < largest or largest == math.inf)
+    if unit == "s" and step > 1e-5:
+        return "s", ""
+    return unit, f"{unit}: only in {unit} are steps of {step:.4g} usual for a log"
+
+
+def unit_in_place_of(stated: str, stamps: Array) -> tuple[str, str] | None:
+    """The unit of a time column whose name states another, and the reason; None: it may be right.
+
+    The name is wrong where its unit makes the log too short for a record and its rows faster than
+    those of any logger: seconds in a column "time_us".
+    """
+    steps = np.abs(np.diff(stamps[np.isfinite(stamps)]))
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    factor = si_factor(stated, quantity="time")
+    if usual == 0.0 or usual * factor * FASTEST > 1.0 or np.sum(steps) * factor > _SHORTEST:
+        return None
+    unit, _ = unit_of_steps(stamps)
+    rate = f"{1.0 / (usual * factor):.3g} rows a second"
+    return unit, f"{unit}: in {stated}, as its name says, the log would have {rate}"
