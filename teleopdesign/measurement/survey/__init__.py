@@ -30,8 +30,8 @@ from .content import NONE, Array, Choices, Survey, SurveyedColumn
 from .derivative import wrap_of
 from .forces import describe_forces
 from .position import describe_position, find_position
+from .relations import unused_columns
 from .trials import longest_trial, name_trials
-from .unused import unused_columns
 
 __all__ = [
     "Choices",

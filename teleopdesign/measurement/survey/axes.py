@@ -64,18 +64,6 @@ def same_but_axis(one: str, other: str) -> bool:
     return len(numbers) == 2 and () not in numbers and len(stems) == 1
 
 
-def has_sibling(name: str, other: str, names: Collection[str]) -> bool:
-    """Whether a column of another axis has a counterpart at the axis of `name` among the names.
-
-    For "J1_pos", "J2_vel" has the counterpart "J1_vel".
-    """
-    if of_another_joint(name, other, names):
-        return True
-    return of_another_axis(name, other) and any(
-        n != name and same_but_axis(n, other) and stand_together(n, name) for n in names
-    )
-
-
 def axis_that_moves(
     name: str, others: Collection[str], travels: Mapping[str, float], names: Collection[str] = ()
 ) -> str:

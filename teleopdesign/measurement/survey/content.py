@@ -59,7 +59,7 @@ class Survey:
     unused: column that is in no channel -> reason;  unread: column without numbers -> reason
     remarks: lines of text above the table
     trials: where the second and later trials begin, s from the first row
-    motions: column without a name that is the position of another body -> its velocity
+    relations: column that is no force beside the position -> what it is
     """
 
     axis: str
@@ -75,7 +75,7 @@ class Survey:
     remarks: tuple[str, ...] = ()
     unread: dict[str, str] = field(default_factory=dict)
     trials: tuple[float, ...] = ()
-    motions: dict[str, str] = field(default_factory=dict)
+    relations: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -117,11 +117,6 @@ def unit_in_log(name: str, names: Collection[str]) -> str | None:
 
 def moves(column: SurveyedColumn) -> bool:
     return bool(np.ptp(column.values) > 0)
-
-
-def names_at_rest(survey: Survey) -> list[str]:
-    """The columns that do not change."""
-    return [name for name, column in survey.columns.items() if not moves(column)]
 
 
 def columns_in_use(survey: Survey) -> set[str]:

@@ -7,24 +7,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..column_names import is_another_quantity, is_difference, likeness, words_of
+from ..column_names import is_another_quantity, is_difference, likeness
 from ..filtering import spectrum
 from ..first_guess import motion_columns
 from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of, rises
 
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
-#: correlation from which a column is the derivative of a velocity beside it, and no force: numbers
-#: of a planned path agree to their digits, and friction of 1 % of the force lowers it below
-EXACT = 0.9999
-#: part of the rows in which a speed that was computed from two rows has the sign of their step;
-#: least part of the rows with a step, and without one; fewest rows with a step either way; and
-#: rows that are compared
-SAME_SIGNS, BOTH_KINDS, EITHER_WAY, MOST_STEPS = 0.99, 0.05, 5, 20_000
-#: words in names of accelerations
-ACCELERATIONS = frozenset(
-    "acceleration accel acc beschleunigung acceleracion qdd ddq xdd ddx qddot ddtheta".split()
-)
 #: part of its path that a motion one way goes forward, noise of the readings included; times its
 #: spread that the mean of a speed is, from which its noise says little; and part by which the mean
 #: of a speed may differ from the motion: filters and a start from rest
@@ -41,9 +30,6 @@ USUAL_COUNTS = tuple(
     )
 )
 NEAR_USUAL = 0.02
-#: part of its range that a number crosses at once where it wraps: a body that is reversed so fast
-#: would not reach the ends of this range in between
-WHOLE_RANGE = 0.9
 #: usual steps from row to row that a leap of a wrap is longer than: a fifth of a turn in a row
 UNLIKE = 5.0
 #: lengths of a turn in units of angle; fewest counts of a turn, below which a number of counts may
@@ -89,17 +75,6 @@ def turn_of(x: Array) -> str | None:
     units = {360.0: "deg", 2 * math.pi: "rad"}
     wrap = wrap_of(x)
     return None if wrap is None else units.get(wrap)
-
-
-def overflow_of(x: Array) -> float | None:
-    """Size of a column's leaps from one end of its range to the other, as of a number that wraps.
-
-    None: the column does not leap so at least twice, or leaps of this size are usual for it.
-    """
-    reach, steps = float(np.ptp(x)), np.abs(np.diff(x))
-    leaps = steps[steps > WHOLE_RANGE * reach]
-    is_rare = len(leaps) >= 2 and float(np.median(steps)) < (1.0 - WHOLE_RANGE) * reach
-    return float(np.median(leaps)) if is_rare else None
 
 
 def derivative_factor(x: Array, v: Array, sample_time: float) -> tuple[float, float]:
@@ -188,21 +163,6 @@ def rate_agreement(x: Array, v: Array, sample_time: float) -> float:
     return 1.0 if is_mean_rate(x, v, sample_time) else agree
 
 
-def is_acceleration(column: SurveyedColumn, velocity: Array | None, sample_time: float) -> bool:
-    """Whether a column is an acceleration: by a word of its name, or exactly by its numbers.
-
-    velocity: (n,), a column of the log.  A planned path holds position, velocity and acceleration;
-        the force of a drive contains friction and noise as well
-    """
-    if is_force(column):
-        return False
-    if ACCELERATIONS.intersection(words_of(column.name)):
-        return True
-    if velocity is None:
-        return False
-    return derivative_factor(velocity, column.values, sample_time)[1] > EXACT
-
-
 def has_both_signs(x: Array, v: Array, sample_time: float) -> bool:
     """Whether v changes its sign with the direction of x, as a velocity does; True for one way.
 
@@ -215,32 +175,6 @@ def has_both_signs(x: Array, v: Array, sample_time: float) -> bool:
     if min(len(forward), len(backward)) < (1.0 - ONE_WAY) * len(v):
         return True
     return float(forward.mean() * backward.mean()) <= 0.0
-
-
-def has_signs_of_steps(position: SurveyedColumn, column: SurveyedColumn) -> bool:
-    """Whether a column has the sign of each step of a position, and is zero where that is at rest.
-
-    It is the speed that a program computed from two rows, or this speed with the other sign, as
-    that of a control error. Where its clock is uneven, it is no derivative on the clock of the log.
-    A force moves a body later, and holds it at rest.
-    """
-    if len(position.readings) != len(column.readings) or is_no_velocity(column):
-        return False
-    x, v = position.readings[:MOST_STEPS], column.readings[:MOST_STEPS]
-    rows = np.isfinite(x) & np.isfinite(v)
-    x, v = x[rows], v[rows]
-    if len(x) < 2:
-        return False
-    at_rest = np.diff(x) == 0.0
-    moved = 1.0 - float(np.mean(at_rest))
-    if min(moved, 1.0 - moved) < BOTH_KINDS:
-        return False
-    if np.mean(at_rest == (v[1:] == 0.0)) < SAME_SIGNS:
-        return False
-    steps, signs = np.sign(np.diff(unwrap_column(x, wrap_of(x)))), np.sign(v[1:])
-    if min(np.count_nonzero(steps > 0.0), np.count_nonzero(steps < 0.0)) < EITHER_WAY:
-        return False
-    return max(float(np.mean(steps == s * signs)) for s in (1.0, -1.0)) >= SAME_SIGNS
 
 
 def is_mean_rate(x: Array, v: Array, sample_time: float) -> bool:

@@ -4,11 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
 
 from ...base.units import si_factor
 from ..column_names import is_difference, is_wanted, likeness
 from ..doors._log import join_names
-from ..first_guess import FirstGuess, explain_force, is_turned, left_by_motion
+from ..first_guess import (
+    SURELY,
+    FirstGuess,
+    explain_force,
+    goes_one_way,
+    is_turned,
+    left_by_motion,
+    motion_columns,
+)
+from ..law_of_readings import law_of_readings, spring_of_copy
 from .acting import current_that_acted, names_current, names_part, names_voltage
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
 from .balance import hand_by_balance, scale_by_balance
@@ -20,22 +32,20 @@ from .content import (
     Survey,
     SurveyedColumn,
     as_likely,
-    columns_in_use,
     explain_ambiguity,
     is_unit_of,
     sample_time_of,
 )
-from .copies import follows, pulls_back
 from .derivative import unwrap_column, wrap_of
-from .force_candidates import possible_forces
 from .force_entry import describe_force, force_to_si
-from .no_force import (
+from .refusals import (
     error_of_chance,
     error_of_place,
     error_without_force,
     taken_for_something_else,
     tells_forces,
 )
+from .relations import possible_forces, relations_of
 from .scatter import state_scatter
 
 #: part of a column that the motion may explain by chance; a column with less counts as a force only
@@ -46,6 +56,9 @@ OF_CURRENT = 2.0
 #: part of a column that the motion explains, from which physics shows that the column is the force
 DRIVES = 0.3
 
+#: coefficients of a cubic: one position as a function of another bends at both ends at most; and
+#: the part of the squares of a position that it leaves
+POWERS, OF_A_POSITION = 4, 0.01
 #: part of what one sign of the measured force leaves, below which the other sign is surely right
 SURELY_LESS = 0.8
 
@@ -62,8 +75,8 @@ def describe_forces(
     h = sample_time_of(survey)
     entry = survey.channels["position"]
     x = unwrap_column(survey.columns[position].values, wrap_of(survey.columns[position].values))
-    used = {position, velocity, time_name, *columns_in_use(survey)}
-    free = possible_forces(survey, position, velocity, used, x)
+    survey.relations = dict(relations_of(survey, position, velocity, x))
+    free = possible_forces(survey, position, velocity, time_name)
     physics = {n: explain_force(c.values, x, h) for n, c in free.items()}
     sizes = _sizes_beside_signed(free, position, survey)
     scores = {
@@ -74,8 +87,7 @@ def describe_forces(
         + OF_CURRENT * (choices.torque_constant is not None and _is_for_constant(c))
         for n, c in free.items()
     }
-    beside = taken_for_something_else(survey, velocity)
-    force, measured = _find_driving_force(survey, free, physics, scores, choices, (file, beside))
+    force, measured = _find_driving_force(survey, free, physics, scores, choices, (file, velocity))
     survey.channels["actuator_force"] = describe_force(survey, force, "actuator_force", choices)
     if measured:
         survey.channels["actuator_force"]["measured"] = True
@@ -104,18 +116,18 @@ def _find_driving_force(
     physics: Mapping[str, FirstGuess],
     scores: Mapping[str, float],
     choices: Choices,
-    messages: tuple[str, str],
+    messages: tuple[str, str | None],
 ) -> tuple[str, bool]:
     """The column of the actuator force, and whether it was measured in place of a command.
 
     If names alone do not decide, a guess is noted.
-    messages: the file, and which other column may be the force
+    messages: the file, and the column of the velocity
     """
-    file, beside = messages
+    file, velocity = messages
     if choices.actuator_force is not None:
         return choices.actuator_force, False
     if not scores:
-        raise error_without_force(survey, file, beside)
+        raise error_without_force(survey, file, velocity)
     force = max(scores, key=lambda n: scores[n])
     why = None
     if (acted := current_that_acted(force, free, scores)) is not None:
@@ -127,10 +139,11 @@ def _find_driving_force(
     elif likeness(force, "actuator_force") < SURE_NAME or not _is_named(free[force]):
         share = physics[force].explained
         if not _is_named(free[force]):
-            error = error_of_chance(survey, file, (force, share), f"{join_names(free)}{beside}")
+            others = f"{join_names(free)}{taken_for_something_else(survey, velocity)}"
+            error = error_of_chance(survey, file, (force, share), others)
             if share < CHANCE or not tells_forces(survey):
                 raise error
-            if _follows_place(survey, force):
+            if follows_place(survey, force):
                 raise error_of_place(survey, file, force)
         why = f"{force!r} is read as the actuator's force: the motion explains {share:.0%} of it"
     elif others := as_likely(scores, force):
@@ -146,11 +159,42 @@ def _is_named(column: SurveyedColumn) -> bool:
     return named or is_unit_of(column.unit, "force")
 
 
-def _follows_place(survey: Survey, name: str) -> bool:
-    """Whether a column is a function of the position, or this of it, as a second position is."""
+def follows_place(survey: Survey, name: str) -> bool:
+    """Whether a column follows the position, or this the column, as a second position does.
+
+    A cubic of the one then leaves next to nothing of the other, in which no friction is certain:
+    that is part of a force. Along a motion one way everything that rises is a function of the
+    position, and nothing is said.
+    """
     x = survey.columns[survey.channels["position"]["column"]].values
-    x, values, h = unwrap_column(x, wrap_of(x)), survey.columns[name].values, sample_time_of(survey)
-    return follows(values, x, h) or follows(x, values, h)
+    pair, h = (unwrap_column(x, wrap_of(x)), survey.columns[name].values), sample_time_of(survey)
+    return _is_function_of(*pair, h) or _is_function_of(*pair[::-1], h)
+
+
+def _is_function_of(position: Array, column: Array, h: float) -> bool:
+    if goes_one_way(motion_columns(position, h)[2]):
+        return False
+    place = (position - position.mean()) / max(float(np.ptp(position)), np.finfo(float).tiny)
+    powers = np.vander(place, POWERS)
+    rest = column - powers @ np.linalg.lstsq(powers, column, rcond=None)[0]
+    if np.var(rest) >= OF_A_POSITION * np.var(column):
+        return False
+    guess = explain_force(rest, position, h)
+    brakes = zip((guess.level, guess.damping), guess.errors[1:], strict=True)
+    return not any(abs(value) > SURELY * error for value, error in brakes)
+
+
+def _pulls_back(command: Array, position: Array, h: float) -> bool:
+    """Whether a controller computes a command from the position so that it pulls back.
+
+    Where a hand moves a device against such a law, the damper of the controller drives as friction
+    with a wrong sign would.
+
+    h: time between two rows
+    """
+    law = spring_of_copy(command, position)
+    law = law or law_of_readings(command, position, [slice(0, len(command))], sample_time=h)
+    return law is not None and law.stiffness > 0.0
 
 
 def _sizes_beside_signed(
@@ -238,7 +282,7 @@ def _choose_signs(
         total = u + better * f
         with_hand = explain_force(total, x, h)
     turned = with_hand.explained > DRIVES and is_turned(total, x, h)
-    if turned and not (hand is None and pulls_back(u, x, h)):
+    if turned and not (hand is None and _pulls_back(u, x, h)):
         survey.channels["position"]["sign"] = -1
         if "velocity" in survey.channels:
             survey.channels["velocity"]["sign"] = -1
@@ -246,13 +290,8 @@ def _choose_signs(
             "-1: with the sign of the log, friction would drive the motion, or inertia be "
             "negative; a motor that brakes what a hand or a spring moves looks the same"
         )
-        with_hand = FirstGuess(
-            -with_hand.inertia,
-            -with_hand.level,
-            -with_hand.damping,
-            with_hand.explained,
-            with_hand.errors,
-        )
+        size = with_hand
+        with_hand = replace(size, inertia=-size.inertia, level=-size.level, damping=-size.damping)
     survey.first = with_hand
     ratio = float(survey.channels["position"].get("gear_ratio", 1.0))
     if ratio != 1.0:

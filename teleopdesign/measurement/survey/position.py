@@ -17,7 +17,7 @@ from ..column_names import (
     why_no_unit,
 )
 from ..encoder import ENOUGH, grid_of, reading_step
-from .axes import axis_that_moves, has_sibling
+from .axes import axis_that_moves
 from .axis_kind import drives_in_turns
 from .content import (
     OF_SENSORS,
@@ -34,7 +34,6 @@ from .content import (
     moves,
     sample_time_of,
 )
-from .copies import most_explained
 from .derivative import (
     DERIVATIVE,
     derivative_factor,
@@ -49,13 +48,11 @@ from .derivative import (
 )
 from .encoder_counts import guess_counts_per_turn, is_counter
 from .force_entry import describe_code
-from .no_position import error_without_position, has_only_speeds
-from .set_point import followed_columns, may_be_set_point
+from .refusals import error_without_position, has_only_speeds
+from .set_point import followed_columns, may_be_set_point, most_explained
 
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
 BY_NAME = 0.1
-#: difference between two correlations that tells nothing
-SAME = 0.005
 #: relative difference between a velocity and the derivative of its position that filters and
 #: rounding may cause
 SAME_TIME = 0.1
@@ -85,8 +82,6 @@ def find_position(
         for other, column_2 in moving.items():
             if other == name or is_no_velocity(column_2):
                 continue
-            if has_sibling(name, other, moving):
-                continue
             agree = rate_agreement(flat[name], column_2.values, h)
             if not is_velocity(column_2) and follows_direction(flat[name], column_2.values, h):
                 continue
@@ -95,7 +90,6 @@ def find_position(
             if agree > DERIVATIVE and sure > derivative.get(name, ("", 0.0))[1]:
                 derivative[name] = (other, sure)
         scores[name] = score + 0.4 * (name in derivative)
-    scores = {n: s - 0.4 * _is_rate(n, derivative) for n, s in scores.items()}
     # a column whose name or unit is of something else is never a position
     known = choices.units  # except with a chosen unit: a wrong choice is refused with its name
     scores = {n: s for n, s in scores.items() if n in known or not _is_another(moving[n])}
@@ -117,17 +111,6 @@ def find_position(
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
     return best, velocity
-
-
-def _is_rate(name: str, derivative: Mapping[str, tuple[str, float]]) -> bool:
-    """Whether a column is a velocity with an acceleration, and no position with a velocity.
-
-    derivative: column -> its derivative, and how surely it is
-    """
-    if name not in derivative:
-        return False
-    _, sure = derivative[name]
-    return any(of == name and other > sure - SAME for of, other in derivative.values())
 
 
 def _note_choice(

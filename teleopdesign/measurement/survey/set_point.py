@@ -1,9 +1,7 @@
 """Set points among the columns of a log: the position of a controlled machine follows them.
 
 A set point has the numbers of the position, only earlier. Such a column is neither the position nor
-a force, whatever its name: "r" beside "y", "SV" beside "PV", "reference" beside "measurement". A
-drive that plans its path reaches a step of its set point later than any delay: there, the position
-comes to rest at each value that was held.
+a force, whatever its name: "r" beside "y", "SV" beside "PV", "reference" beside "measurement".
 """
 
 from __future__ import annotations
@@ -14,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..column_names import WANTED, likeness, words_of
+from ..first_guess import explain_force
+from ..law_of_readings import is_copy
 from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of
 from .derivative import DERIVATIVE
 
@@ -57,7 +57,7 @@ def follows(column: Array, other: Array) -> bool:
     at_once = _apart(column, other, 0)
     later = min(_apart(column, other, k) for k in _delays(len(column)))
     earlier = min(_apart(other, column, k) for k in _delays(len(column)))
-    return later < min(at_once, earlier, APART) or settles_at(column, other)
+    return later < min(at_once, earlier, APART)
 
 
 def lags(column: Array, other: Array) -> bool:
@@ -66,19 +66,6 @@ def lags(column: Array, other: Array) -> bool:
     The delay may be less than a row, as that of a position behind the path that a drive plans.
     """
     return has_numbers_of(column, other) and _apart(column, other, 1) < _apart(other, column, 1)
-
-
-def settles_at(position: Array, column: Array) -> bool:
-    """Whether a position comes to rest at the values that another column holds.
-
-    At the ends of the holds the position has the numbers of the column, and moves slower than on
-    the average. A relay has only two values as well, but it switches where the position is fast.
-    """
-    ends = _ends_of_holds(column)
-    if not _rests_at(ends, position):
-        return False
-    held, spread = column[ends], float(np.var(column[ends]))
-    return float(np.mean((position[ends] - held) ** 2)) < APART * spread
 
 
 def is_sent_to_places(position: Array, column: SurveyedColumn) -> bool:
@@ -122,8 +109,6 @@ def has_numbers_of(column: Array, position: Array) -> bool:
     """Whether a column has the numbers of the position, at the same time, earlier or later."""
     if not _are_alike(column, position):
         return False
-    if settles_at(position, column):
-        return True
     delays = _delays(len(column))
     least = (min(_apart(column, position, k), _apart(position, column, k)) for k in delays)
     return min(_apart(column, position, 0), *least) < APART
@@ -161,3 +146,29 @@ def _apart(late: Array, early: Array, delay: int) -> float:
     rows = len(late) - delay
     whole = float(np.var(late))
     return float(np.mean((late[delay:] - early[:rows]) ** 2)) / whole if whole > 0 else np.inf
+
+
+def most_explained(names: list[str], flat: Mapping[str, Array], h: float) -> str:
+    """That of equally likely positions whose motion explains most of any other column.
+
+    Of two with the same numbers it is the later one: the earlier one is the path that was planned.
+    A set point is no such column: friction alone explains the steps of a set point that the
+    position reaches.
+
+    flat: values (n,) of the columns, by name;  h: time between two rows
+    """
+    if len(names) == 1:
+        return names[0]
+    shares = {
+        name: max(
+            (
+                explain_force(f, flat[name], h).explained
+                for n, f in flat.items()
+                if n != name and not is_copy(f, flat[name]) and not has_numbers_of(f, flat[name])
+            ),
+            default=0.0,
+        )
+        for name in names
+    }
+    best = max(shares, key=lambda name: shares[name])
+    return next((name for name in names if lags(flat[name], flat[best])), best)

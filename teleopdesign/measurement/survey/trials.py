@@ -13,11 +13,6 @@ from .content import Array, Survey, SurveyedColumn
 
 #: rows of a trial, on average: what changes more often is a signal
 ROWS_OF_A_TRIAL = 50
-#: rows of the longest trial from which it says enough by itself
-ENOUGH = 500
-#: times the usual step of a column within trials that its step from one trial to the next is at
-#: least, if it leaps: of two trials that follow at once, a body moves by a usual step
-LEAP = 20.0
 
 
 def trial_column(raw: Mapping[str, Array]) -> str | None:
@@ -47,29 +42,13 @@ def name_trials(survey: Survey, raw: Mapping[str, Array]) -> None:
 def longest_trial(survey: Survey) -> dict[str, SurveyedColumn]:
     """The columns in the longest trial; all rows, where it is short or the log has no trials.
 
-    Between two trials a position may leap: of such a leap no physics tells signs or units. Then a
-    short trial counts alone, too, if it has the rows of a record.
+    Between two trials a position may leap: of such a leap no physics tells signs or units.
     """
     longest = max(_trials(survey), key=lambda rows: rows.stop - rows.start)
     rows = longest.stop - longest.start
-    if rows < FEWEST or rows < ENOUGH and not _leaps(survey):
+    if rows < FEWEST:
         return survey.columns
     return {n: replace(c, values=c.values[longest]) for n, c in survey.columns.items()}
-
-
-def _leaps(survey: Survey) -> bool:
-    """Whether two columns or more, the number of the trial aside, leap from one trial to the next.
-
-    A command alone may: it begins at another level.
-    """
-    label = survey.channels.get("segment", {}).get("column")
-    starts = np.array([rows.start for rows in _trials(survey)][1:], dtype=np.intp)
-    leaping = 0
-    for name, column in survey.columns.items():
-        steps = np.abs(np.diff(column.values))
-        usual = float(np.quantile(steps, 0.95)) if len(steps) else 0.0
-        leaping += name != label and bool(np.any(steps[starts - 1] > LEAP * usual) and usual > 0)
-    return leaping > 1
 
 
 def _trials(survey: Survey) -> tuple[slice, ...]:

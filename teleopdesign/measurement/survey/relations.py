@@ -1,0 +1,233 @@
+"""What each column of a log is beside its position, and so why it is in no channel.
+
+A column is no force where one of the relations of `relations_of` holds: it is the position or its
+velocity once more, a set point, or the motion of another body. The same sentence says why the
+column is not used, and is given where no force is left. A force that is left out without a remark
+would look like physics that the model lacks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from ...base.units import is_unit
+from ..column_names import is_another_quantity, is_difference, is_wanted, likeness, words_of
+from ..doors._log import Log
+from ..law_of_readings import is_copy
+from .axes import of_another_axis, same_but_axis
+from .content import (
+    SURE_NAME,
+    Array,
+    Survey,
+    SurveyedColumn,
+    columns_in_use,
+    is_unit_of,
+    moves,
+    rises,
+    sample_time_of,
+)
+from .derivative import (
+    DERIVATIVE,
+    derivative_factor,
+    follows_direction,
+    has_both_signs,
+    is_no_velocity,
+    is_velocity,
+    may_be_ramp,
+    rate_agreement,
+    unwrap_column,
+    wrap_of,
+)
+from .set_point import follows, has_numbers_of, is_sent_to_places, may_be_set_point
+
+#: correlation from which one column is the derivative of another to its digits, as of a planned
+#: path: friction of 1 % of a force lowers it below
+EXACT = 0.9999
+#: part of what the position leaves of a velocity, below which another column is its position: two
+#: joints that move alike explain most of each other's velocities, and a spring's force is nearly a
+#: copy of its position
+CLEARLY_LESS = 0.5
+#: words in names of accelerations
+ACCELERATIONS = frozenset(
+    "acceleration accel acc beschleunigung acceleracion qdd ddq xdd ddx qddot ddtheta".split()
+)
+
+
+def relations_of(
+    survey: Survey, position: str, velocity: str | None, x: Array
+) -> Iterator[tuple[str, str]]:
+    """Columns that are no force beside a position x (n,), each with what it is, as a noun phrase.
+
+    velocity: its column, if there is one.  A column in the unit of a force has no relation
+    """
+    speed = None if velocity is None else survey.columns[velocity].values
+    elsewhere = dict(_motions_elsewhere(survey, x, sample_time_of(survey)))
+    for name, column in survey.columns.items():
+        used = name in (position, velocity) or name in columns_in_use(survey)
+        if used or not moves(column) or is_unit_of(column.unit, "force"):
+            continue
+        what = _relation(column, position, x, speed) or elsewhere.get(name)
+        if what is not None:
+            yield name, what
+
+
+def _relation(column: SurveyedColumn, position: str, x: Array, speed: Array | None) -> str | None:
+    """What a column is beside a position x (n,) and its velocity; None: it may be a force."""
+    name, values = column.name, column.values
+    forces = max(likeness(name, f"{whose}_force") for whose in ("actuator", "interaction"))
+    if column.unit and is_unit(column.unit):
+        if is_unit_of(column.unit, "velocity"):
+            return f"a velocity, but not that of {position!r}"
+        beside = is_unit_of(column.unit, "position")
+        return f"a position beside {position!r}" if beside else f"a column in {column.unit}"
+    if likeness(name, "actuator_force") == 0 and same_but_axis(name, position):
+        return f"a column of another axis than {position!r}: --position chooses the axis"
+    if may_be_set_point(column) and has_numbers_of(values, x):
+        if follows(x, values):
+            return f"a set point: {position!r} follows it"
+        return f"a set point, or a reading once more: it has the numbers of {position!r}"
+    if is_sent_to_places(x, column):
+        return f"a set point: {position!r} rests at a place of its own for each of its values"
+    if forces == 0 and is_copy(values, x):
+        return f"{position!r} times a constant plus a constant: another unit, or a control error"
+    if forces == 0 and speed is not None and is_copy(values, speed):
+        return f"the velocity of {position!r} once more: another unit, or a control error"
+    # a symbol is no word: "v" may be a voltage as well
+    if is_velocity(column) and any(
+        len(w) > 1 and likeness(w, "velocity") >= SURE_NAME for w in words_of(name)
+    ):
+        return "a velocity by its name"
+    return "an acceleration by its name" if ACCELERATIONS.intersection(words_of(name)) else None
+
+
+def possible_forces(survey: Survey, *used: str | None) -> dict[str, SurveyedColumn]:
+    """The columns that may be a force: those of no other relation to the position."""
+    return {
+        name: column
+        for name, column in survey.columns.items()
+        if name not in (*used, *survey.relations) and name not in columns_in_use(survey)
+        if moves(column) and (not rises(column.readings) or may_be_ramp(column))
+    }
+
+
+def _motions_elsewhere(survey: Survey, x: Array, h: float) -> Iterator[tuple[str, str]]:
+    """Columns without names that are no forces, for one is the derivative of another.
+
+    Position, velocity and acceleration of a planned path are exactly so. Two such columns alone
+    tell less: the friction of a body that goes to and fro at one speed is the derivative of its
+    position, too. They are another body's where the position x (n,) leaves more of the velocity.
+    """
+    columns = {n: c.values for n, c in survey.columns.items() if moves(c) and _is_nameless(c)}
+    rates = {
+        one: {n: derivative_factor(y, v, h)[1] for n, v in columns.items() if n != one}
+        for one, y in columns.items()
+    }
+    exact = {one: [n for n, agree in of.items() if agree > EXACT] for one, of in rates.items()}
+    for one, after in exact.items():
+        for two, three in ((b, c) for b in after for c in exact[b] if c != one):
+            for name in (one, two, three):
+                yield name, "a motion that was planned: an exact derivative, or integral, of others"
+    places: dict[str, str] = {}
+    for name, values in columns.items():
+        of_name = ((of[name], one) for one, of in rates.items() if name in of)
+        agree, place = max(of_name, default=(0.0, ""))
+        if agree <= DERIVATIVE:
+            continue
+        other = columns[place]
+        if has_numbers_of(other, x) or is_copy(other, x):
+            continue
+        beside = abs(derivative_factor(x, values, h)[1])
+        # the velocity of this body has a derivative, too: a force of inertia
+        own = derivative_factor(x, other, h)[1] > DERIVATIVE
+        if own or 1.0 - agree > CLEARLY_LESS * (1.0 - beside):
+            continue
+        if not follows_direction(other, values, h) and has_both_signs(other, values, h):
+            places[place] = name
+    for place, name in places.items():
+        if place not in places.values():
+            yield place, f"the position of another body: {name!r} is its derivative"
+            yield name, f"the velocity of another body: the derivative of {place!r}"
+
+
+def _is_nameless(column: SurveyedColumn) -> bool:
+    """Whether neither unit nor name of a column says anything: "column 3", "CH2"."""
+    kinds = ("position", "velocity", "actuator_force", "interaction_force")
+    return column.unit is None and not any(likeness(column.name, kind) > 0 for kind in kinds)
+
+
+def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[str, str]:
+    """Column -> reason why it is in no channel, in the order of the log.
+
+    raw: the columns of numbers, by name
+    """
+    used = columns_in_use(survey)
+    used |= {log.clocks[name] for name in used if name in log.clocks}
+    left = [name for name in dict.fromkeys(log.names) if name not in used]
+    return {name: _explain_unused(name, log, raw, survey) for name in left}
+
+
+def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Survey) -> str:
+    if (count := log.names.count(name)) > 1:
+        return f"{count} columns have this name"
+    if name not in raw:
+        why = survey.unread.get(name, "")
+        return why if why.startswith("one value") else f"holds no numbers{f' ({why})' * bool(why)}"
+    if name in log.clocks.values():
+        return "stamps of a topic that is not used"
+    column = survey.columns.get(name)
+    if column is None:
+        return f"has {len(raw[name])} rows, another number than the time"
+    if not moves(column):
+        return "does not change"
+    if rises(column.readings):
+        return "only rises, as a second clock or a counter does"
+    return (
+        _explain_by_name(column, survey)
+        or survey.relations.get(name)
+        or _explain_no_force(column, survey)
+    )
+
+
+def _explain_by_name(column: SurveyedColumn, survey: Survey) -> str | None:
+    """What name and unit say of a signal that is neither position, velocity nor force."""
+    name, unit, position = column.name, column.unit, survey.channels["position"]["column"]
+    if of_another_axis(name, position, survey.columns):
+        return f"of another axis than {position!r}: --position chooses the axis"
+    kinds = [q for q in ("position", "velocity", "force") if is_unit_of(unit, q)]
+    if unit is not None and is_unit(unit) and not kinds:
+        return f"in {unit}: no position, velocity or force"
+    if is_another_quantity(name) and not kinds:
+        return (
+            "its name is not that of a position, velocity or force; for a pressure that acts on "
+            "the body: "
+            f'interaction_force = {{ column = "{name}", unit = "N", scale = N per unit of it }}'
+        )
+    if is_wanted(name) and "force" not in kinds:
+        return "a desired value, not a measured one"
+    return "by its name a difference, such as the error of a controller" * is_difference(name)
+
+
+def _explain_no_force(column: SurveyedColumn, survey: Survey) -> str:
+    """What a column is that might be a force: a velocity, or explained too little."""
+    name, position = column.name, survey.channels["position"]["column"]
+    x = survey.columns[position].values
+    # a voltage is nearly in proportion to the speed
+    may_agree = not is_no_velocity(column)
+    x = unwrap_column(x, wrap_of(x))
+    if may_agree and rate_agreement(x, column.values, sample_time_of(survey)) > DERIVATIVE:
+        if "velocity" in survey.channels:
+            return f"a second velocity for {position!r}"
+        state = f"its unit is not known: state the unit with --unit {name + '=UNIT'!r}"
+        how = "" if column.unit else f"; {state}"
+        return f"the velocity of {position!r}, which is computed from the position{how}"
+    for quantity in ("position", "velocity"):
+        if not column.unit and likeness(name, quantity) >= SURE_NAME:
+            return f"a {quantity}, but not that of {position!r}"
+    force = survey.channels["actuator_force"]["column"]
+    share, best = (survey.explained.get(n) for n in (name, force))
+    beside = "" if best is None else f", and {max(best, 0.0):.0%} of {force!r}"
+    explained = f": the motion explains {max(share or 0.0, 0.0):.0%} of it{beside}"
+    explained = explained if share is not None else ""
+    if likeness(name, "actuator_force") >= SURE_NAME:
+        return f"a second force beside {force!r}{explained}"
+    return f"its name is not that of a force{explained}"
