@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..base.finding import Finding
 from ..base.folders import Shelf
 from ..measurement.prepare import Prepared
-from ..model import Model
 from ._recording import CheckedRecording, RecordingCheck
+
+if TYPE_CHECKING:
+    from ..model import Model
 
 CHECKS: Mapping[str, RecordingCheck] = Shelf(
     __package__,

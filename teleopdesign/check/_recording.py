@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,9 @@ from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, prepare
 from ..measurement.record import Record
-from ..model import Model
+
+if TYPE_CHECKING:
+    from ..model import Model
 
 #: most samples from which the smallest step of a channel is determined
 ENOUGH = 200_000
@@ -175,6 +178,8 @@ def look_at(
 
     model: None: that of the experiment
     """
+    from ..model import Model  # effects need sympy: a recording without a model is looked at faster
+
     resting = [
         body
         for body in experiment.bodies

@@ -7,6 +7,7 @@ it cannot be distinguished from rest test no model with dry friction.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,8 +15,10 @@ from ..base.finding import Finding
 from ..measurement.bandwidth import hides_motion, share_in_motion
 from ..measurement.encoder import rests
 from ..measurement.prepare import Prepared, Stretch
-from ..model import Model
 from ._recording import CheckedRecording, RecordingCheck
+
+if TYPE_CHECKING:
+    from ..model import Model
 
 #: a bandwidth is proposed if the rows in motion are at least this part of those at a bandwidth two
 #: octaves lower

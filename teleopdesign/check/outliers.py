@@ -11,8 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d
-from scipy.special import ndtri
 
 from ..base.finding import Finding
 from ..measurement.filtering import Array
@@ -147,6 +145,8 @@ def _match_events(
 
     left: shape of the event: distance in samples -> part of its size
     """
+    from scipy.special import ndtri
+
     reach, scale = max(left), _local_scale(off, floor)
     # the largest of so many normal values by chance, in standard deviations
     largest = float(-ndtri(0.5 * FALSE_ALARM / max(len(off), 1)))
@@ -169,6 +169,9 @@ def _local_scale(e: Array, floor: float) -> Array:
 
     floor: least value
     """
+    from scipy.ndimage import maximum_filter1d
+    from scipy.special import ndtri
+
     scale = np.full(len(e), max(floor, 1e-300))
     for size, part in ((256, 0.5), (1024, 0.99)):
         size = min(size, len(e))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import comb
 
 Array = NDArray[np.float64]
 
@@ -137,7 +138,9 @@ def sampling_jitter(x: Array, step: float, sample_time: float) -> float:
         return 0.0
     pieces = x[: count * PIECE].reshape(count, PIECE)
     scatter = np.sqrt(np.mean(np.diff(pieces, DIFFERENCE, axis=1) ** 2, axis=1))
-    scatter /= np.sqrt(comb(2 * DIFFERENCE, DIFFERENCE))  # gain of the difference for white noise
+    scatter /= math.sqrt(
+        math.comb(2 * DIFFERENCE, DIFFERENCE)
+    )  # gain of the difference for white noise
     # over several rows the motion is much larger than the scatter, which would choose the pieces
     moved = np.mean((pieces[:, DIFFERENCE:] - pieces[:, :-DIFFERENCE]) ** 2, axis=1)
     fast = moved >= np.quantile(moved, 0.75)

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from ..base.units import MAINS
 from .filtering import Array
@@ -92,6 +91,8 @@ def _wave(count: int, sample_time: float, frequency: float) -> NDArray[np.comple
 
 def _peak(y: Array, sample_time: float, near: float) -> float:
     """Frequency (Hz) of the tone in `y`, within `WITHIN` of `near`."""
+    from scipy.optimize import minimize_scalar  # its import takes longer than reading a log
+
     window = np.hanning(len(y))
     power = np.abs(np.fft.rfft(y * window))
     grid = np.fft.rfftfreq(len(y), sample_time)

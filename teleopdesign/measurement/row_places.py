@@ -51,6 +51,14 @@ def rows_in_order(
     return [part for part in parts if len(part) > 1], dropped, moved, restarts
 
 
+def are_out_of_order(stamps: Array) -> bool:
+    """Whether stamps are those of one clock, each once, with rows a little out of order."""
+    steps, ordered = np.diff(stamps), np.diff(np.sort(stamps))
+    if not np.any(steps < 0) or not np.all(ordered > 0):
+        return False
+    return bool(steps.min() >= -(GOES_ON + 0.5) * np.median(ordered))
+
+
 def without_pauses(
     stamps: Array, parts: Sequence[RowNumbers], pause: float
 ) -> tuple[list[RowNumbers], float]:

@@ -11,8 +11,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
-from scipy.special import bdtrc
 
 from .repeated_rows import runs_of
 from .resample import cubic_through_four
@@ -78,6 +76,8 @@ def find_spikes(x: Array, step: float) -> Mask:
 
 def are_contacts(spikes: Mask, position: Array) -> bool:
     """Whether the spikes of a force (n,) lie where the velocity of the body (n,) changes most."""
+    from scipy.special import bdtrc
+
     first, past = runs_of(spikes)
     inner = (first >= 3) & (past <= len(position) - 3)
     if not inner.any():
@@ -101,6 +101,8 @@ def fill_spikes(x: Array, spikes: Mask) -> Array:
 
 def _course(x: Array) -> Array:
     """The median of the rows about each reading (n,); at the ends the parabola through medians."""
+    from scipy.ndimage import median_filter
+
     course, half = median_filter(x, NEAR), NEAR // 2
     nodes = half + NEAR * np.arange(3)
     for side in (course, course[::-1]):

@@ -6,6 +6,7 @@ import shlex
 import zlib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import TypeVar
 
@@ -166,7 +167,26 @@ def read_columns(path: Path, file: str, wanted: Wanted) -> LogColumns:
     raises ExperimentError: unknown kind of file, unreadable, column missing, not numbers, columns
         of different length
     """
-    return columns_of(open_log(path, file), file, wanted)
+    try:
+        known = path.stat()
+        state = (known.st_mtime_ns, known.st_size) if path.is_file() else None
+    except OSError:
+        state = None
+    if state is None:  # a folder of tables, or what is not there
+        return columns_of(open_log(path, file), file, wanted)
+    return _columns_of_file(path.resolve(), path, file, state, tuple(wanted.items()))
+
+
+# the fit and the check record are often parts of one file
+@lru_cache(maxsize=2)
+def _columns_of_file(
+    resolved: Path, path: Path, file: str, state: object, wanted: tuple[tuple[str, str], ...]
+) -> LogColumns:
+    """The columns of a file, read once as long as it stays as it is: nothing writes into them."""
+    columns = columns_of(open_log(path, file), file, dict(wanted))
+    for values in columns.values.values():
+        values.setflags(write=False)
+    return columns
 
 
 def columns_of(log: Log, file: str, wanted: Wanted) -> LogColumns:

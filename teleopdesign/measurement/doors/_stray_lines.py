@@ -1,13 +1,85 @@
-"""Lines of a text table that are no rows: messages, repeated headers, rows of another width."""
+"""The rows of a text table, without lines that are none: messages, repeated headers, cut rows."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
+
 from ...base.errors import ExperimentError, quote
 from ._cells import is_empty
-from ._dialect import Dialect, cells_of, is_value
-from ._log import join_names
+from ._dialect import COMMENTS, Dialect, cells_of, is_value, without_end
+from ._log import MOST_BYTES, join_names, refuse_size
 
+#: most lines that are no rows (messages of a logger that restarts, a garbled row), as a number and
+#: as a part of the rows, that are left out. More such lines mean that the table has another form
+FEW_STRAYS, MOST_STRAYS = 10, 0.01
+#: lines that are looked at together, and with what a row of plain numbers begins
+_BLOCK, _BEGINS_A_ROW = 5_000, frozenset("0123456789+-.")
+#: what stands for bytes that are no letter, as at the end of a file that was cut within a letter
+CUT_LETTER = "\ufffd"
 _BEGINS_A_NUMBER = (*'0123456789+-.,;|\t"',)
+
+
+def rows_of_numbers(
+    stream: Iterable[str], dialect: Dialect, file: str, strays: list[int]
+) -> Iterator[str]:
+    """The lines of the table that are rows of numbers.
+
+    strays: gets the number of the row before which a line was left out; such a line has too few
+        cells or no number in any cell
+    raises ExperimentError: a row with too many cells; too many lines that are no rows
+    """
+    width, separator = len(dialect.header), dialect.separator
+    count = bytes_read = again = 0
+    cut = False  # whether the last line was left out: the last line of a file may be incomplete
+    numbered = enumerate(stream)
+    while block := list(islice(numbered, _BLOCK)):
+        bytes_read += sum(len(line) for _, line in block)
+        refuse_size(count + again, file)
+        if bytes_read > MOST_BYTES:
+            raise ExperimentError(f"{file}: found over {MOST_BYTES:.2g} bytes of text")
+        if block[0][0] >= dialect.first and _are_plain_rows([x for _, x in block], dialect):
+            count, cut = count + len(block), False
+            yield from (line for _, line in block)
+            continue
+        for k, line in block:
+            bare = line.lstrip()
+            if k < dialect.first or not bare or bare.startswith(COMMENTS):
+                continue
+            if line[-1] == CUT_LETTER:  # without an end of line: the last one of the file
+                return
+            line = without_end(line, separator)
+            if dialect.labels and is_header_again(line, dialect):
+                strays.append(count + 1)
+                again, cut = again + 1, False
+                continue
+            count += 1
+            cells = len(line.split()) if separator == " " else line.count(separator) + 1
+            quoted_cells = '"' in line and separator != " "
+            if cut := cells < width and not quoted_cells or is_text(line, dialect):
+                strays.append(count)
+                count -= 1
+                if len(strays) - again > max(FEW_STRAYS, MOST_STRAYS * count):
+                    raise ragged_row_error(file, strays[0], cells, width)
+                continue
+            if cells > width and not quoted_cells and separator != " ":
+                if cells > width + 1 or not line.rstrip("\r\n").endswith(separator):
+                    nameless = text_without_name(line, dialect) if count == 1 else ""
+                    raise ragged_row_error(file, count, cells, width, nameless)
+                line = line.rstrip("\r\n")[:-1] + "\n"
+            yield line
+    if cut:
+        strays.pop()  # reported as an incomplete row
+
+
+def _are_plain_rows(lines: Sequence[str], dialect: Dialect) -> bool:
+    """Whether all of some lines are rows of plain numbers: nearly all lines of most files."""
+    separator = dialect.separator
+    if separator == " " or not {line[:1] for line in lines} <= _BEGINS_A_ROW:
+        return False
+    cells = {line.count(separator) + 1 for line in lines}
+    odd = ('"', CUT_LETTER, *";" * (separator != ";"))
+    return cells == {len(dialect.header)} and not any(x in line for x in odd for line in lines)
 
 
 def is_text(line: str, dialect: Dialect) -> bool:

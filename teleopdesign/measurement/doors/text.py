@@ -21,7 +21,6 @@ from ...base.errors import ExperimentError, quote
 from ._cell_shapes import LineShape
 from ._cells import column_of, part_of_column, parts_thousands
 from ._dialect import (
-    COMMENTS,
     LOOKED_AT,
     SEPARATORS,
     Dialect,
@@ -29,21 +28,15 @@ from ._dialect import (
     dialect_of,
     first_lines,
     open_bytes,
-    without_end,
 )
 from ._line_shapes import LINE_SHAPES
-from ._log import MOST_BYTES, Array, Log, refuse_size
-from ._stray_lines import is_header_again, is_text, ragged_row_error, text_without_name
+from ._log import Array, Log
+from ._stray_lines import CUT_LETTER, rows_of_numbers
 from .shapes import best_shape, table_of
 from .shapes._table import MOST_ROWS
 
 #: rows that are read in one block: 20 MB of text
 _ROWS = 200_000
-#: most lines that are no rows (messages of a logger that restarts, a garbled row), as a number and
-#: as a part of the rows, that are left out. More such lines mean that the table has another form
-FEW_STRAYS, MOST_STRAYS = 10, 0.01
-#: what stands for bytes that are no letter, as at the end of a file that was cut within a letter
-CUT_LETTER = "\ufffd"
 
 
 @dataclass(frozen=True)
@@ -184,7 +177,7 @@ def _read(text: _Text, names: Sequence[str], strays: list[int]) -> dict[str, Any
     places = [dialect.header.index(name) for name in names]
     try:
         with text.lines() as stream:
-            lines = _rows(stream, text, strays)
+            lines = rows_of_numbers(stream, text.dialect, text.file, strays)
             if dialect.comma:
                 lines = _with_points(lines, dialect.separator, places)
             parts = [*_numbers(lines, dialect.separator, places)]
@@ -225,7 +218,7 @@ def _read_cell_by_cell(text: _Text, names: Sequence[str], strays: list[int]) -> 
     places = [text.dialect.header.index(name) for name in names]
     blocks: list[list[NDArray[Any]]] = [[] for _ in places]
     with text.lines() as stream:
-        lines = _rows(stream, text, strays)
+        lines = rows_of_numbers(stream, text.dialect, text.file, strays)
         while block := list(islice(lines, _ROWS)):
             plain = separator != " " and not any('"' in line for line in block)
             rows = [line.split(separator) if plain else cells_of(line, separator) for line in block]
@@ -245,52 +238,6 @@ def _read_cell_by_cell(text: _Text, names: Sequence[str], strays: list[int]) -> 
             )
         column.clear()
     return columns
-
-
-def _rows(stream: Iterable[str], text: _Text, strays: list[int]) -> Iterator[str]:
-    """The lines of the table that are rows of numbers.
-
-    strays: gets the number of the row before which a line was left out; such a line has too few
-        cells or no number in any cell
-    raises ExperimentError: a row with too many cells; too many lines that are no rows
-    """
-    dialect, file = text.dialect, text.file
-    width, separator = len(dialect.header), dialect.separator
-    count = bytes_read = again = 0
-    cut = False  # whether the last line was left out: the last line of a file may be incomplete
-    for k, line in enumerate(stream):
-        bare = line.lstrip()
-        if k < dialect.first or not bare or bare.startswith(COMMENTS):
-            continue
-        if line[-1] == CUT_LETTER:  # without an end of line: the last one of the file
-            return
-        bytes_read += len(line)
-        if (count + again + 1) % 100_000 == 0:
-            refuse_size(count + again + 1, file)
-            if bytes_read > MOST_BYTES:
-                raise ExperimentError(f"{file}: found over {MOST_BYTES:.2g} bytes of text")
-        line = without_end(line, separator)
-        if dialect.labels and is_header_again(line, dialect):
-            strays.append(count + 1)
-            again, cut = again + 1, False
-            continue
-        count += 1
-        cells = len(line.split()) if separator == " " else line.count(separator) + 1
-        quoted_cells = '"' in line and separator != " "
-        if cut := cells < width and not quoted_cells or is_text(line, dialect):
-            strays.append(count)
-            count -= 1
-            if len(strays) - again > max(FEW_STRAYS, MOST_STRAYS * count):
-                raise ragged_row_error(file, strays[0], cells, width)
-            continue
-        if cells > width and not quoted_cells and separator != " ":
-            if cells > width + 1 or not line.rstrip("\r\n").endswith(separator):
-                nameless = text_without_name(line, dialect) if count == 1 else ""
-                raise ragged_row_error(file, count, cells, width, nameless)
-            line = line.rstrip("\r\n")[:-1] + "\n"
-        yield line
-    if cut:
-        strays.pop()  # reported as an incomplete row
 
 
 def _with_points(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[str]:

@@ -92,6 +92,7 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
         survey.channels["time"] = {"column": time_name, "unit": unit}
     else:
         survey.channels["sample_rate"] = {"value": choices.sample_rate or ASSUMED, "unit": "Hz"}
+    survey.is_stated = choices.states_all
     name_trials(survey, raw)
     survey.columns = longest_trial(survey)
     position, velocity = find_position(survey, time_name, choices, file)

@@ -21,6 +21,7 @@ from ..doors._log import Log, bare_column, join_names
 from ..log_clock import OF_ANOTHER_CLOCK
 from ..numbers_in_cells import holds_dates, numbers_of
 from ..record_clock import clock_of
+from ..row_places import are_out_of_order
 from ..signed_numbers import sign_code_of
 from ..stamps import seconds_since_first, unit_in_place_of, unit_of_steps, unwrap_stamps
 from .assumed_rate import ASSUMED, rate_of_velocity
@@ -191,10 +192,13 @@ def rate_without_time(
 
 
 def _rises_as_clock(name: str, values: Array, log: Log) -> bool:
-    """Whether a time by its name or unit rises once its wraps and late seconds are mended."""
+    """Whether a time by its name or unit rises once its wraps and its order are mended."""
     unit = log.units.get(name)
     timed = unit is not None and unit != "counts" and measures(unit, "time")
-    return (timed or likeness(name, "time") > 0) and rises(unwrap_stamps(values)[0])
+    if not timed and likeness(name, "time") == 0:
+        return False
+    stamps = unwrap_stamps(values[np.isfinite(values)])[0]
+    return rises(stamps) or are_out_of_order(stamps)
 
 
 def _is_coarse_time(name: str, values: Array, log: Log) -> bool:

@@ -59,6 +59,7 @@ class Survey:
     unused: column that is in no channel -> reason;  unread: column without numbers -> reason
     remarks: lines of text above the table
     trials: where the second and later trials begin, s from the first row
+    is_stated: whether the user states all columns, so that none is guessed
     relations: column that is no force beside the position -> what it is
     """
 
@@ -76,6 +77,7 @@ class Survey:
     unread: dict[str, str] = field(default_factory=dict)
     trials: tuple[float, ...] = ()
     relations: dict[str, str] = field(default_factory=dict)
+    is_stated: bool = False
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,12 @@ class Choices:
     gear_ratio: float | None = None
     counts_per_turn: float | None = None
     sample_rate: float | None = None
+
+    @property
+    def states_all(self) -> bool:
+        """Whether the user states each column that takes part in a comparison."""
+        stated = (self.position, self.actuator_force, self.interaction_force)
+        return None not in stated
 
 
 def unit_in_log(name: str, names: Collection[str]) -> str | None:

@@ -75,8 +75,11 @@ def describe_forces(
     h = sample_time_of(survey)
     entry = survey.channels["position"]
     x = unwrap_column(survey.columns[position].values, wrap_of(survey.columns[position].values))
-    survey.relations = dict(relations_of(survey, position, velocity, x))
-    free = possible_forces(survey, position, velocity, time_name)
+    if choices.states_all:
+        free = {}
+    else:
+        survey.relations = dict(relations_of(survey, position, velocity, x))
+        free = possible_forces(survey, position, velocity, time_name)
     physics = {n: explain_force(c.values, x, h) for n, c in free.items()}
     sizes = _sizes_beside_signed(free, position, survey)
     scores = {

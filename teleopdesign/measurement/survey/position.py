@@ -67,6 +67,8 @@ def find_position(
     h = sample_time_of(survey)
     free = {n: c for n, c in survey.columns.items() if moves(c) and n not in columns_in_use(survey)}
     chosen = choices.position
+    if choices.states_all:  # only its velocity is looked for, among the columns that are called so
+        free = {n: c for n, c in free.items() if n == chosen or is_velocity(c)}
     moving = {n: c for n, c in free.items() if n == chosen or may_be_position(n, survey.columns, h)}
     flat = {n: unwrap_column(c.values, wrap_of(c.values)) for n, c in moving.items()}
     followed = followed_columns(_without_names(moving, flat))

@@ -181,6 +181,8 @@ def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Surve
         return "does not change"
     if rises(column.readings):
         return "only rises, as a second clock or a counter does"
+    if survey.is_stated:
+        return "not among the columns that are stated"
     return (
         _explain_by_name(column, survey)
         or survey.relations.get(name)

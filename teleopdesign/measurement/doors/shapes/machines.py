@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...column_names import words_of
+from ...row_places import are_out_of_order
 from .._log import Array, join_names
 from ._table import FEWEST_ROWS, CellTable, LongSignal, LongTable, as_text, time_of
 
@@ -56,6 +57,8 @@ def machines_by_time(table: CellTable) -> LongTable | None:
     """Batches of rows of several machines: the time is set back to where an earlier part ended."""
     time = time_of(table)
     if not time or not np.all(np.isfinite(table.numeric[time])):
+        return None
+    if are_out_of_order(table.numeric[time]):
         return None
     parts, returns = parts_by_time(table.numeric[time])
     count = int(parts.max(initial=-1)) + 1
