@@ -23,10 +23,10 @@ from ..diagnose import Diagnosis
 from ..diagnose import find_missing as find_missing_in_body
 from ..diagrams import Attached, Diagram, Moving
 from ..effects import EFFECTS, Effect
-from ..measurement.channel import channels_from
+from ..measurement.channel import Layout, channels_from
 from ..measurement.description import BodyDescription
 from ..measurement.experiment import Experiment
-from ..measurement.record import record_of
+from ..measurement.record import RecordEntry, record_of
 from ..measurement.tables import LogColumns
 from ..model import Model
 from .computer import ComputerPart, passes_of
@@ -108,18 +108,15 @@ def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
         content["time"] = experiment.channels["time"].content
     table = next(iter(experiment.channels.values()))
     channels = channels_from(Table(content, table.file, "channels"), described)
+    layout = Layout(channels, described, experiment.sample_rate)
     # the rest position of a hand is free in each record
     rest = frozenset({"position_zero"}) if terms.held else frozenset()
     records = tuple(
         record_of(
             _columns(experiment, cut, command, log),
             f"{experiment.folder.name}/{log.file}",
-            file=log.file,
-            use=log.use,
-            offset_names=log.offset_names | rest,
-            channels=channels,
-            bodies=described,
-            sample_rate=experiment.sample_rate,
+            RecordEntry(log.file, log.use, log.offset_names | rest),
+            layout,
         )
         for log in experiment.logs
     )

@@ -12,11 +12,11 @@ from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.toml import Table, read_toml
 from ..base.units import to_si
 from ..diagrams import Diagram, read_diagram
-from ..measurement.channel import Channel, channel_from, frequency_from
+from ..measurement.channel import Channel, Layout, channel_from, frequency_from
 from ..measurement.experiment import Experiment, folder_of_experiment, record_entries
 from ..measurement.experiment import load_experiment as load_body_experiment
 from ..measurement.from_arrays import log_of
-from ..measurement.spans import cut_to
+from ..measurement.record import cut_to
 from ..measurement.tables import columns_of, read_columns
 from .diagram_experiment import DiagramExperiment, RecordedLog, StatedComputer, body_of_axis
 
@@ -52,7 +52,8 @@ def load_experiment(folder: str | Path) -> Experiment | DiagramExperiment:
         columns = read_columns(place / file, name, wanted)
         if span is not None:
             bodies = body_of_axis(made.axis(made.recorded[0]))
-            columns = cut_to(columns, span, made.channel, bodies, made.sample_rate, name)
+            layout = Layout(made.channel, bodies, made.sample_rate)
+            columns = cut_to(columns, span, layout, name)
             file = f"{file} {span[0]:g}-{span[1]:g} s"
         logs.append(RecordedLog(file, use, offset_names, columns))
     return replace(made, logs=tuple(logs))

@@ -1,13 +1,15 @@
 """Channels: which column of a record is which quantity of which body, its unit and its accuracy."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.toml import Table
 from ..base.units import si_factor, to_si
-from .conversion import KEYS, Conversion, conversion_of
+from .conversion import KEYS, Array, Conversion, conversion_of
 from .description import ONE_BODY, BodyDescription
 
 # name of a body's channel -> its quantity in the table of units
@@ -57,6 +59,45 @@ class Channel:
     def delay(self) -> float:
         """Delay of the signal in the log, s; positive if the log has the signal late."""
         return 0.0 if self.conversion is None else self.conversion.delay
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What the columns of an experiment's logs are.
+
+    channels: "device.position" and the like, "time", "segment"
+    sample_rate: of the rows, Hz; None: the channel "time" has their times
+    """
+
+    channels: Mapping[str, Channel]
+    bodies: Mapping[str, BodyDescription]
+    sample_rate: float | None = None
+
+    @property
+    def wanted(self) -> dict[str, str]:
+        """Column -> the channel that needs it, as messages name the channel."""
+        return {
+            column: f"channels.{key.removeprefix('device.')}"
+            for key, channel in self.channels.items()
+            for column in channel.columns
+        }
+
+    def stamps(self, values: Mapping[str, Array], apart: Collection[str] = ()) -> Array:
+        """The time of each row (n,), s, as written, or counted; NaN where there is none.
+
+        values: column -> (n,);  apart: columns with other rows
+        """
+        if self.sample_rate is not None:
+            count = max((len(x) for c, x in values.items() if c not in apart), default=0)
+            return np.asarray(np.arange(count) / self.sample_rate)
+        time = self.channels["time"]
+        return values[time.column] * factor_of(time, self.bodies, "channels.time")
+
+
+def layout_from(experiment: Table, bodies: Mapping[str, BodyDescription]) -> Layout:
+    """Read [channels] and the sample rate of an experiment; raises ExperimentError: see there."""
+    table = experiment.table("channels")
+    return Layout(channels_from(table, bodies), bodies, sample_rate_from(experiment, table))
 
 
 def channels_from(table: Table, bodies: Mapping[str, BodyDescription]) -> dict[str, Channel]:

@@ -13,11 +13,11 @@ from ..base.shown import html_table
 from ..base.toml import Table, describe_toml_value, read_toml
 from ..base.units import unit_of
 from .arm_description import ArmDescription, arm_from
-from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sample_rate_from
+from .channel import BODY_QUANTITIES, Channel, frequency_from, layout_from
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
 from .doors.bag import is_bag
 from .reading import ReadingStep, reading_table
-from .record import SEPARATE, Record, read_record
+from .record import SEPARATE, Record, RecordEntry, read_record
 from .tables import is_log, tables_in
 
 _FILE = "experiment.toml"
@@ -130,29 +130,17 @@ def load_experiment(folder: str | Path) -> Experiment:
     model = experiment.table("model")
     arm, bodies = arm_from(model, folder) if "arm" in model.content else (None, bodies_from(model))
     environment = environment_from(model, bodies) if arm is None else None
-    channels = channels_from(experiment.table("channels"), bodies)
-    sample_rate = sample_rate_from(experiment, experiment.table("channels"))
+    layout = layout_from(experiment, bodies)
     comparison = experiment.table("comparison")
     comparison.allow(("bandwidth",))
     bandwidth = frequency_from(comparison, "bandwidth") if comparison.content else None
-    records = tuple(
-        read_record(
-            folder,
-            file,
-            use=use,
-            offset_names=offset_names,
-            channels=channels,
-            bodies=bodies,
-            sample_rate=sample_rate,
-            span=span,
-        )
-        for file, use, offset_names, span in record_entries(experiment, folder)
-    )
+    entries = record_entries(experiment, folder)
+    records = tuple(read_record(folder, entry, layout) for entry in entries)
     _check_bandwidth(bandwidth, records, comparison)
     guessed = experiment.table("guessed")
     guesses = {key: guessed.text(key) for key in guessed.content}
     return Experiment(
-        folder, title, bodies, environment, channels, bandwidth, records, guesses, arm
+        folder, title, bodies, environment, layout.channels, bandwidth, records, guesses, arm
     )
 
 
@@ -190,11 +178,9 @@ def folder_of_experiment(path: Path) -> Path:
     return path
 
 
-def record_entries(
-    experiment: Table, folder: Path
-) -> list[tuple[str, str, frozenset[str], tuple[float, ...] | None]]:
-    """(file, use, separate offsets, span) of each [[records]], checked before any file is read."""
-    entries: list[tuple[str, str, frozenset[str], tuple[float, ...] | None]] = []
+def record_entries(experiment: Table, folder: Path) -> list[RecordEntry]:
+    """Each of [[records]], checked before any file is read."""
+    entries: list[RecordEntry] = []
     for table in experiment.tables("records"):
         table.allow(("file", "use", "span", *SEPARATE))
         file, span = table.text("file"), _span(table)
@@ -209,7 +195,7 @@ def record_entries(
         separate = {
             name for name in SEPARATE if _choice(table, name, ("common", "own"), "common") == "own"
         }
-        entries.append((file, use, frozenset(separate), span))
+        entries.append(RecordEntry(file, use, frozenset(separate), span))
     if not any(use == "fit" for _, use, _, _ in entries):
         raise ExperimentError(
             f'{experiment.where("records")}: found {len(entries)} records, none with use = "fit", '

@@ -12,15 +12,14 @@ from ..base.arguments import check_types
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.toml import Table
 from ..base.units import AXES, unit_of
-from .channel import BODY_QUANTITIES, channels_from, sample_rate_from
+from .channel import BODY_QUANTITIES, layout_from
 from .column_names import as_unit, likeness, unfit_unit, unit_in_name, why_no_unit
 from .description import BodyDescription, ModelValue, bodies_from
 from .doors._log import Log
 from .experiment import Experiment
 from .first_guess import guess_from
 from .numbers_in_cells import holds_dates
-from .record import Record, record_of, wanted_columns
-from .spans import cut_to
+from .record import Record, RecordEntry, cut_to, record_of
 from .tables import columns_of
 
 #: a channel in a call: the name of a column, or a table as in [channels]
@@ -151,33 +150,21 @@ def build_experiment(
     _refuse_overlap(spans)
     table = Table(content, _WHERE)
     bodies = bodies_from(table.table("model"))
-    channels = channels_from(table.table("channels"), bodies)
-    rate = sample_rate_from(table, table.table("channels"))
-    columns = columns_of(log, _WHERE, wanted_columns(channels))
+    layout = layout_from(table, bodies)
+    columns = columns_of(log, _WHERE, layout.wanted)
     records: list[Record] = []
     for k, (use, span) in enumerate(spans, start=1):
         name = use if span is None else f"{use} {span[0]:g}-{span[-1]:g} s"
         if any(r.file == name for r in records):
             name = f"{name} ({k})"
-        part = columns if span is None else cut_to(columns, span, channels, bodies, rate, _WHERE)
-        records.append(
-            record_of(
-                part,
-                f"{_WHERE}: {name}",
-                file=name,
-                use=use,
-                offset_names=frozenset(),
-                channels=channels,
-                bodies=bodies,
-                sample_rate=rate,
-            )
-        )
+        part = columns if span is None else cut_to(columns, span, layout, _WHERE)
+        records.append(record_of(part, f"{_WHERE}: {name}", RecordEntry(name, use), layout))
     if not any(r.use == "fit" for r in records):
         raise ExperimentError(f"{_WHERE}: fit: found no span, expected at least one (begin, end)")
     fitted = [r for r in records if r.use == "fit"]
     bodies = {name: with_first_values(body, fitted) for name, body in bodies.items()}
     where = Path(title) if folder is None else folder
-    return Experiment(where, title, bodies, None, channels, bandwidth, tuple(records))
+    return Experiment(where, title, bodies, None, layout.channels, bandwidth, tuple(records))
 
 
 def with_first_values(body: BodyDescription, records: Sequence[Record]) -> BodyDescription:

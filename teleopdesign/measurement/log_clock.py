@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError, quote
-from .channel import Channel
+from .channel import Channel, Layout
 from .reading import ReadingStep, count_of
 from .record_clock import DATE, RecordClock, clock_of, counted_clock, segments_of
 from .repeated_rows import repeated_rows, rows_between_readings
@@ -39,24 +39,18 @@ class LogClock:
 
 
 def clock_of_log(
-    columns: LogColumns,
-    channels: Mapping[str, Channel],
-    name: str,
-    *,
-    file: str,
-    sample_rate: float | None,
-    to_seconds: float | None,
+    columns: LogColumns, layout: Layout, name: str, *, file: str
 ) -> tuple[LogClock, LogColumns, list[ReadingStep]]:
     """The clock of a log, its columns, and the steps that led to it.
 
-    name: of the log in messages;  sample_rate: Hz; None: the log has a time channel
-    to_seconds: factor of the time channel's unit
+    name: of the log in messages;  file: of the record
     returns: columns of slower bodies and sensors have stamps of their own
     raises ExperimentError: see `clock_of`; too many cells without a number
     """
+    channels, sample_rate = layout.channels, layout.sample_rate
     steps: list[ReadingStep] = []
     where = name if sample_rate is not None else f"{name}: channels.time"
-    stamps = _stamps_of_rows(columns, channels, sample_rate, to_seconds)
+    stamps = layout.stamps(columns.values, columns.stamps)
     if len(stamps) and np.abs(stamps[0]) > DATE:
         stamps = stamps - stamps[0]
         text, rule = "stamps that count from long ago", "time from the first row"
@@ -84,19 +78,6 @@ def clock_of_log(
     stamped, more = read_at_stamps(clock, positions, file)
     steps += _left_out(file, ~filled, again, between, clock.sample_time)
     return LogClock(clock, stamped), columns, steps + _order(clock, file) + more
-
-
-def _stamps_of_rows(
-    columns: LogColumns,
-    channels: Mapping[str, Channel],
-    sample_rate: float | None,
-    to_seconds: float | None,
-) -> Array:
-    """The time of each row, s, as written, or counted at a rate in Hz."""
-    if sample_rate is not None:
-        own = (len(x) for c, x in columns.values.items() if c not in columns.stamps)
-        return np.arange(max(own, default=0)) / sample_rate
-    return columns.values[channels["time"].column] * (to_seconds or 1.0)
 
 
 def _on_this_clock(

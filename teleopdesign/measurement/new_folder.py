@@ -12,12 +12,12 @@ import numpy as np
 from ..base.errors import ExperimentError
 from ..base.files import write_beside, write_text
 from ..base.toml import Table, comment_text, inline_text, string_text
-from .channel import channels_from, sample_rate_from
+from .channel import layout_from
 from .description import bodies_from
 from .encoder import reading_step, rests
 from .first_guess import FirstGuess, guess_from
 from .motion import SHORTEST as SEGMENT
-from .record import read_record
+from .record import RecordEntry, read_record
 from .record_clock import FEWEST, SHORTEST
 from .reversals import runs_one_way
 from .survey import Survey, spans_of
@@ -189,23 +189,11 @@ def _first_values(survey: Survey, folder: Path, records: Sequence[Mapping[str, A
     """First values of the model from the fit records, read as the experiment will read them."""
     content = {"channels": _channels(survey), "model": {"device": {"axis": survey.axis}}}
     table = Table(content, f"{folder.name}/{_FILE}")
-    bodies = bodies_from(table.table("model"))
-    channels = channels_from(table.table("channels"), bodies)
-    rate = sample_rate_from(table, table.table("channels"))
-    read = [
-        read_record(
-            folder,
-            r["file"],
-            use="fit",
-            offset_names=frozenset(),
-            channels=channels,
-            bodies=bodies,
-            sample_rate=rate,
-            span=r.get("span"),
-        )
-        for r in records
-        if r["use"] == "fit"
+    layout = layout_from(table, bodies_from(table.table("model")))
+    fitted = [
+        RecordEntry(r["file"], "fit", span=r.get("span")) for r in records if r["use"] == "fit"
     ]
+    read = [read_record(folder, entry, layout) for entry in fitted]
     return guess_from(read, "device")
 
 

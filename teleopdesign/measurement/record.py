@@ -1,21 +1,21 @@
 """One recording: signals in SI units on a uniform time, and the corrections of its log."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import final
+from typing import NamedTuple, final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
 from ..base.shown import html_table
-from .channel import Channel, conversion_to_si, factor_of
-from .description import BodyDescription
+from .channel import Layout, conversion_to_si
 from .log_clock import clock_of_log
 from .reading import ReadingStep
 from .signals_of_log import signals_of_log
-from .spans import cut_to
+from .stamps import seconds_since_first
 from .tables import LogColumns, read_columns
 
 #: keys of [[records]] at which "own" gives the record a separate value
@@ -76,87 +76,81 @@ class Record(ByValue):
         return html_table(repr(self), head, rows, note=steps)
 
 
-def read_record(
-    folder: Path,
-    file: str,
-    *,
-    use: str,
-    offset_names: frozenset[str],
-    channels: Mapping[str, Channel],
-    bodies: Mapping[str, BodyDescription],
-    sample_rate: float | None,
-    span: tuple[float, ...] | None = None,
-) -> Record:
+class RecordEntry(NamedTuple):
+    """One of [[records]]: a file, its use, its separate offsets, and the span (s) that counts."""
+
+    file: str
+    use: str
+    offset_names: frozenset[str] = frozenset()
+    span: tuple[float, ...] | None = None
+
+
+def read_record(folder: Path, entry: RecordEntry, layout: Layout) -> Record:
     """Read one record file of an experiment's folder.
 
-    sample_rate: Hz; None: the channel "time" gives the time
-    span: (begin, end) in s from the log's first row; None: the whole log
     raises ExperimentError: see `read_columns` and `clock_of`
     """
-    name = f"{folder.name}/{file}"
-    columns = read_columns(folder / file, name, wanted_columns(channels))
-    if span is not None:
-        columns = cut_to(columns, span, channels, bodies, sample_rate, name)
-        file = f"{file} {span[0]:g}-{span[1]:g} s"  # taken off again by `log_name`
-    return record_of(
-        columns,
-        name,
-        file=file,
-        use=use,
-        offset_names=offset_names,
-        channels=channels,
-        bodies=bodies,
-        sample_rate=sample_rate,
-    )
+    name = f"{folder.name}/{entry.file}"
+    columns = read_columns(folder / entry.file, name, layout.wanted)
+    if (span := entry.span) is not None:
+        columns = cut_to(columns, span, layout, name)
+        # taken off again by `log_name`
+        entry = entry._replace(file=f"{entry.file} {span[0]:g}-{span[1]:g} s")
+    return record_of(columns, name, entry, layout)
 
 
-def wanted_columns(channels: Mapping[str, Channel]) -> dict[str, str]:
-    """Column -> the channel that needs it, as messages name the channel."""
-    return {
-        column: f"channels.{short_name(key)}"
-        for key, channel in channels.items()
-        for column in channel.columns
-    }
-
-
-def record_of(
+def cut_to(
     columns: LogColumns,
-    name: str,
-    *,
-    file: str,
-    use: str,
-    offset_names: frozenset[str],
-    channels: Mapping[str, Channel],
-    bodies: Mapping[str, BodyDescription],
-    sample_rate: float | None,
-) -> Record:
-    """The record from the columns of one log.
+    span: Sequence[float],
+    layout: Layout,
+    where: str,
+) -> LogColumns:
+    """The rows of a log between two instants.
 
-    name: of the log in messages;  file: of the record
-    sample_rate: Hz; None: the log has a time channel
+    span: (begin, end) in s from the first row; after a clock was set back the seconds count on
+    raises ExperimentError: no two numbers in order, or no row between them
+    """
+    if len(span) != 2 or not np.isfinite(span).all() or not span[0] < span[1]:
+        raise ExperimentError(
+            f"{where}: span: found {list(span)}, expected [begin, end] in s, from the first row"
+        )
+    since = seconds_since_first(layout.stamps(columns.values))
+    inside = (since >= span[0]) & (since < span[1])
+    if not inside.any():
+        last = float(np.nanmax(since)) if len(since) else 0.0
+        raise ExperimentError(
+            f"{where}: span: found no row from {span[0]:g} to {span[1]:g} s, the log ends at "
+            f"{last:g} s"
+        )
+    values = {
+        name: column if name in columns.stamps else column[inside]
+        for name, column in columns.values.items()
+    }
+    return LogColumns(values, columns.stamps, columns.notes)
+
+
+def record_of(columns: LogColumns, name: str, entry: RecordEntry, layout: Layout) -> Record:
+    """The record from the columns of one log, which are cut to its span.
+
+    name: of the log in messages
     raises ExperimentError: too short, time that does not increase, too many cells without a number
     """
     conversions = {
-        key: conversion_to_si(channel, bodies, f"channels.{key}.unit")
-        for key, channel in channels.items()
+        key: conversion_to_si(channel, layout.bodies, f"channels.{key}.unit")
+        for key, channel in layout.channels.items()
         if channel.body is not None
     }
-    to_seconds = None
-    if sample_rate is None:
-        to_seconds = factor_of(channels["time"], bodies, "channels.time")
-    clock, columns, steps = clock_of_log(
-        columns, channels, name, file=file, sample_rate=sample_rate, to_seconds=to_seconds
-    )
-    signals, more = signals_of_log(columns, channels, conversions, clock, file)
+    clock, columns, steps = clock_of_log(columns, layout, name, file=entry.file)
+    signals, more = signals_of_log(columns, layout.channels, conversions, clock, entry.file)
     return Record(
-        file,
-        use,
-        offset_names,
+        entry.file,
+        entry.use,
+        entry.offset_names,
         clock.clock.time,
         clock.clock.sample_time,
         clock.clock.segments,
         signals,
-        (*columns.steps(file), *steps, *more),
+        (*columns.steps(entry.file), *steps, *more),
     )
 
 
