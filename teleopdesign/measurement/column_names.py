@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 import unicodedata
+from collections.abc import Collection
 from functools import lru_cache
 
 from ..base.units import is_unit, measures, noun_of
@@ -117,17 +118,14 @@ OTHER_UNITS = OTHER_QUANTITIES | frozenset("°c c w kw mw db ohm".split())
 
 #: words beside which "x" is a direction and no position: "ForceX", "acc_x"
 ALONG = frozenset("force torque moment effort wrench vel velocity speed acc accel gyro mag".split())
-#: words in names of differences, such as the error of a controller: "q_err", "Schleppfehler"
-DIFFERENCES = tuple(
-    "error err fehler abweichung deviation erreur ecart errore 误差 誤差 偏差 오차 ошибка".split()
-)
-
 #: units that are words as well: "x_in" is an input, "hand_ft" force and torque, "Arms" are A (rms)
 _ONLY_IN_BRACKETS = ("in", "ft", "arms")
 #: quotes at the end of a name, as dSPACE writes paths: `"Model Root"/"Plant"/"x [mm]"`
 _QUOTES = "\"'"
 #: most letters of a text in brackets that may be a unit, without a sign of a product
 _UNIT_LETTERS = 5
+#: letters that a word exceeds that ends a compound: "Motorstrom", "Schleppfehler"
+COMPOUND = 4
 #: least letters of a name that is a unit and nothing else; a shorter one is a symbol such as "s"
 _WHOLE_NAME = 3
 
@@ -278,7 +276,7 @@ def likeness(name: str, quantity: str) -> float:
             # languages without spaces between words have a known word within a longer one
             exact = word == known or not known.isascii() and known in word
             # the last part of a compound names it: "Drehmoment", "Istwinkel"
-            ends = may_end and len(known) > 4 and word.endswith(known)
+            ends = may_end and len(known) > COMPOUND and word.endswith(known)
             if exact or ends or len(known) > 3 and word.startswith(known):
                 best = max(best, (1.0 if exact else 0.9) - 0.02 * min(rank, LAST_RANK))
     return best
@@ -290,16 +288,19 @@ def is_another_quantity(name: str) -> bool:
     return bool(OTHER_QUANTITIES.intersection(words_of(name))) or unit in OTHER_UNITS
 
 
-def is_difference(name: str) -> bool:
-    """Whether a name says that its column is the difference of two quantities, as an error is."""
+def has_word(name: str, listed: Collection[str]) -> bool:
+    """Whether a word of a name is one of those listed, or a compound of which it is the end.
+
+    Languages without spaces between words have a known word within a longer one.
+    """
     return any(
         word == known
-        or len(known) > 3
-        and word.endswith(known)
         or not known.isascii()
         and known in word
+        or len(known) > COMPOUND
+        and word.endswith(known)
         for word in words_of(name)
-        for known in DIFFERENCES
+        for known in listed
     )
 
 

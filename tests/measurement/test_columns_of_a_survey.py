@@ -5,8 +5,6 @@ import pytest
 
 from teleopdesign.measurement.survey.acting import (
     current_that_acted,
-    names_current,
-    names_torque,
 )
 from teleopdesign.measurement.survey.content import (
     AS_LIKELY,
@@ -18,6 +16,7 @@ from teleopdesign.measurement.survey.content import (
     reasons,
     rises,
 )
+from teleopdesign.measurement.survey.words import says
 
 
 @pytest.mark.parametrize(
@@ -148,4 +147,5 @@ def test_only_a_measured_current_stands_for_a_command():
     ],
 )
 def test_a_name_suggests_a_current_or_a_torque_and_never_both(name, current, torque):
-    assert names_current(name) is current and names_torque(name) is torque
+    assert says(name, "current") is current
+    assert (says(name, "torque") and not says(name, "current")) is torque

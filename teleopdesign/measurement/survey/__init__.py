@@ -22,9 +22,8 @@ from ..doors.folder import are_quantities
 from ..numbers_in_cells import numbers_of
 from ..record_clock import FEWEST
 from ..stamps import unwrap_stamps
-from .assumed_rate import ASSUMED
 from .axis_kind import axis_of
-from .candidate_clocks import counts_rows
+from .candidate_clocks import ASSUMED, counts_rows
 from .clock import duration_of, interpolate_columns, numeric_columns, rate_without_time, time_column
 from .content import NONE, Array, Choices, Survey, SurveyedColumn
 from .derivative import wrap_of

@@ -10,8 +10,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..column_names import is_wanted, likeness, words_of
+from ..column_names import is_wanted, likeness
 from .content import SURE_NAME, Array, SurveyedColumn
+from .words import says
 
 #: a measured current equals the commanded one if the difference has at most this part of its
 #: squares, without the noise of single rows: the current loop of a drive and its sensor leave less
@@ -23,25 +24,6 @@ FOLLOWED = 0.01
 ONE_SIDE = 0.1
 #: most rows by which a drive may be late behind its command; it may also smooth over these rows
 LATE = 4
-#: words of a current, in the languages that `column_names` reads
-CURRENT = (
-    "current", "curr", "cur", "strom", "courant", "corriente", "corrente", "i", "iq", "amps",
-    "電流", "电流", "전류", "ток",
-)  # fmt: skip
-#: words of a voltage, which drives a motor against its speed
-VOLTAGES = frozenset(("voltage", "volts", "spannung", "uq", "vq"))
-#: words of a torque or force, which is no current
-TORQUE = (
-    "torque", "moment", "drehmoment", "couple", "coppia", "force", "kraft", "fuerza", "forza",
-    "tau", "トルク", "力矩", "扭矩", "토크", "момент", "сила",
-)  # fmt: skip
-#: parts that have a position, a speed and a force
-PARTS = frozenset("motor servo axis joint".split())
-
-
-def names_part(name: str) -> bool:
-    """Whether a name tells a part of a device and no quantity of it: "motor", "Motor 2"."""
-    return bool(words_of(name)) and PARTS.issuperset(words_of(name))
 
 
 def current_that_acted(
@@ -71,7 +53,7 @@ def _is_current(column: SurveyedColumn) -> bool:
     """Whether a column is the current of a motor, by unit or by name."""
     if likeness(column.name, "actuator_force") < SURE_NAME:
         return False
-    return column.unit in ("A", "mA") or column.unit is None and names_current(column.name)
+    return column.unit in ("A", "mA") or column.unit is None and says(column.name, "current")
 
 
 def _lacks_a_side(measured: Array, wanted: Array) -> bool:
@@ -83,33 +65,6 @@ def _smaller_side(x: Array) -> float:
     """The largest value of the smaller side of zero, over that of the larger side."""
     sides = sorted((max(float(np.max(x)), 0.0), max(-float(np.min(x)), 0.0)))
     return sides[0] / sides[1] if sides[1] > 0.0 else 0.0
-
-
-def names_current(name: str) -> bool:
-    """Whether a name suggests the current of a motor, whatever the unit."""
-    return _has_word_of(name, CURRENT)
-
-
-def names_voltage(name: str) -> bool:
-    """Whether a name suggests the voltage of a motor, whatever the unit."""
-    return bool(VOLTAGES.intersection(words_of(name)))
-
-
-def names_torque(name: str) -> bool:
-    """Whether a name suggests a torque or force, and not a current."""
-    return _has_word_of(name, TORQUE) and not names_current(name)
-
-
-def _has_word_of(name: str, listed: tuple[str, ...]) -> bool:
-    return any(
-        word == known
-        or not known.isascii()
-        and known in word  # no spaces between words
-        or len(known) > 4
-        and word.endswith(known)  # the last part of a compound: "Motorstrom"
-        for word in words_of(name)
-        for known in listed
-    )
 
 
 def _unexplained_share(wanted: Array, measured: Array) -> float:

@@ -7,30 +7,13 @@ from ..column_names import words_of
 from .content import Choices, Survey
 from .derivative import turn_of
 from .encoder_counts import is_counter
-
-#: names of drives that report positions in turns; and words for rotating parts
-IN_TURNS = frozenset(("odrive", "moteus"))
-#: joints of limbs turn, also where they lift: "shoulder_lift_joint"
-LIMBS = frozenset("shoulder elbow wrist hip knee ankle".split())
-TURNING = (
-    IN_TURNS
-    | LIMBS
-    | set("q angle winkel theta phi enc encoder joint motor servo rotor wheel shaft".split())
-)
-#: words for parts that slide, in names without an angle: "torso_lift_joint" is a joint that slides
-SLIDING = frozenset("lift elevator slide slider prismatic linear rail carriage".split())
-ANGLES = LIMBS | frozenset("angle winkel theta phi".split())
-#: words of a force that turns; "iq" is the current that makes the torque of a brushless motor
-TORQUES = frozenset(
-    "torque torques drehmoment moment couple coppia tau effort iq "
-    "トルク 力矩 扭矩 토크 момент".split()
-)
+from .words import SAYS, says
 
 
 def drives_in_turns(name: str) -> list[str]:
     """The drives that report turns under this name; ODrives call it "pos_estimate"."""
     words = set(words_of(name))
-    return sorted(IN_TURNS & words) or ["ODrive"] * ({"pos", "estimate"} <= words)
+    return sorted({*SAYS["drive in turns"]} & words) or ["ODrive"] * ({"pos", "estimate"} <= words)
 
 
 def axis_of(survey: Survey, position: str, choices: Choices) -> str:
@@ -51,7 +34,6 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
         force = choices.torque_constant[1].rpartition("/")[0]
         return "revolute" if measures(force, "force", "revolute") else "prismatic"
     units = [c.unit for c in survey.columns.values() if c.unit and is_unit(c.unit)]
-    names = {word for name in survey.columns for word in words_of(name)}
     rates = {a for a in AXES for u in units if measures(u, "velocity", a)}
     forces = [u for u in units if measures(u, "force")]
     turned = [u for u in units if measures(u, "force", "revolute")]
@@ -66,10 +48,9 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
     elif turned and not forces:
         why, axis = f"forces are in {turned[0]}", "revolute"
     else:
-        words = words_of(position)
-        sliding = SLIDING.intersection(words) and not ANGLES.intersection(words)
-        turning = TURNING.intersection(words) or drives_in_turns(position)
-        torques = TORQUES.intersection(names)
+        sliding = says(position, "sliding") and not says(position, "limb", "angle")
+        turning = says(position, "turning", "limb", "angle") or drives_in_turns(position)
+        torques = [name for name in survey.columns if says(name, "turning torque")]
         counts = unit is None and is_counter(survey.columns[position])
         revolute = turning or torques or counts or unit == "counts" or "A" in units
         axis = "revolute" if revolute and not sliding else "prismatic"
@@ -79,7 +60,7 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
         elif turning:
             why = f"the name {position!r} is that of an angle"
         elif torques:
-            why = f"the name of a column contains {min(torques)!r}"
+            why = f"the name {torques[0]!r} is that of a torque"
         elif counts:
             why = f"{position!r} holds whole numbers, as the counter of an encoder does"
     survey.guesses["model.device.axis"] = f"the axis is {axis}: {why}"

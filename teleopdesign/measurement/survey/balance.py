@@ -14,11 +14,12 @@ from collections.abc import Mapping
 
 from ...base.sentences import with_standard_error
 from ...base.units import measures, si_factor
-from ..column_names import is_wanted, likeness, words_of
+from ..column_names import is_wanted, likeness
 from ..first_guess import balance_factor, explain_force
 from .content import SURE_NAME, Array, Choices, Survey, SurveyedColumn
 from .force_entry import PLACEHOLDER, force_to_si
 from .remarks import gear_ratio_in
+from .words import says
 
 #: a column without a clear name counts as the force of the hand if it leaves at most this part of
 #: the squares that the motion does not explain: with a higher limit, one of many columns would pass
@@ -29,14 +30,6 @@ FACTOR_OF_ONE = 1.25
 #: relative standard error of a factor up to which a balance states a constant: the printed number
 #: then has more than one valid digit
 KNOWN = 0.05
-#: beginnings of words for the motor side of a gear
-MOTOR = ("motor", "moteur", "モータ", "电机", "мотор")
-#: words of a force or torque: those of `column_names` without letters and words of a command, for
-#: a voltage that drives a motor balances its current too
-FORCE = (
-    "torque", "moment", "drehmoment", "tau", "force", "kraft", "couple", "coppia", "fuerza",
-    "forza", "トルク", "力矩", "扭矩", "토크", "момент", "сила",
-)  # fmt: skip
 
 
 def hand_by_balance(
@@ -92,20 +85,7 @@ def _may_balance(column: SurveyedColumn, axis: str, *, named: bool) -> bool:
         return False
     if unit is not None:
         return measures(unit, "force", axis)
-    return (
-        not named
-        or not _is_motors(name)
-        and any(
-            word.endswith(known) if len(known) > 4 else word == known or _is_within(known, word)
-            for word in words_of(name)
-            for known in FORCE
-        )
-    )
-
-
-def _is_within(known: str, word: str) -> bool:
-    """Whether a word of a language without spaces contains another word."""
-    return not known.isascii() and known in word
+    return not named or says(name, "torque") and not says(name, "motor side")
 
 
 def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choices) -> None:
@@ -116,7 +96,7 @@ def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choic
     """
     ratio_and_line = gear_ratio_in(survey.remarks) if choices.gear_ratio is None else None
     is_motors = choices.gear_ratio is None and all(
-        _is_motors(_column_of(survey, key)) for key in ("position", "actuator_force")
+        says(_column_of(survey, key), "motor side") for key in ("position", "actuator_force")
     )
     if ratio_and_line is not None and is_motors:
         _guess_gear(survey, ratio_and_line[0], f"a line of the log states {ratio_and_line[1]!r}")
@@ -174,10 +154,6 @@ def _command_scale(survey: Survey, motion: tuple[Array, float]) -> tuple[float, 
     if factor == 0:
         return 1.0, math.inf
     return 1 / abs(factor), error / factor**2
-
-
-def _is_motors(name: str) -> bool:
-    return any(word.startswith(MOTOR) for word in words_of(name))
 
 
 def _guess_constant(survey: Survey, ratio: float, error: float) -> None:

@@ -24,13 +24,14 @@ from ..record_clock import clock_of
 from ..row_places import are_out_of_order
 from ..signed_numbers import sign_code_of
 from ..stamps import seconds_since_first, unit_in_place_of, unit_of_steps, unwrap_stamps
-from .assumed_rate import ASSUMED, rate_of_velocity
 from .candidate_clocks import (
+    ASSUMED,
     busiest_clock,
     clock_of_position,
     clock_without_name,
     counts_rows,
     position_by_name,
+    rate_of_velocity,
 )
 from .content import (
     SURE_NAME,
@@ -43,6 +44,7 @@ from .content import (
     unit_in_log,
 )
 from .remarks import sample_rate_in
+from .words import says, says_only
 
 #: quantities whose units are not those of a time
 QUANTITIES = ("position", "velocity", "force")
@@ -50,11 +52,9 @@ QUANTITIES = ("position", "velocity", "force")
 MOST = 60_000
 #: least changes of stamps that many rows share, from which they tell the rate of the rows
 FEWEST_CHANGES = 3
-#: names of a column that holds the time from one row to the next, and the part of their median by
-#: which such times may differ: more uneven ones are no clock
-STEPS, UNEVEN = frozenset(("dt", "timestep", "deltat", "δt")), 0.5
-#: names of the clock of a microcontroller; beside other words, ticks are those of an encoder
-CLOCKS = frozenset(("tick", "systick", "clock", "uptime"))
+#: part of their median by which times from one row to the next may differ: more uneven ones are no
+#: clock
+UNEVEN = 0.5
 
 
 def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, str], Log]:
@@ -177,7 +177,7 @@ def rate_without_time(
         return stated[0], f"a line of the log states {stated[1]!r}"
     for name, values in raw.items():
         steps = values[np.isfinite(values)]
-        if not STEPS.intersection(words_of(name)) or len(steps) < 2 or steps.min() < 0:
+        if not says(name, "step of time") or len(steps) < 2 or steps.min() < 0:
             continue
         usual = float(np.median(steps))
         if not usual > 0 or float(np.median(np.abs(steps - usual))) > UNEVEN * usual:
@@ -243,7 +243,7 @@ def _is_unit_of_time(name: str) -> bool:
 
 def _is_called_clock(name: str) -> bool:
     """Whether a name consists only of a unit of time, or is that of a clock."""
-    return _is_unit_of_time(name) or CLOCKS.issuperset(words_of(name) or [""])
+    return _is_unit_of_time(name) or says_only(name, "clock")
 
 
 def duration_of(

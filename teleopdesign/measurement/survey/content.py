@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.units import is_unit, measures
-from ..column_names import likeness, unit_in_name, words_of
+from ..column_names import likeness, unit_in_name
 from ..doors._log import bare_column
 from ..first_guess import FirstGuess
 from ..signed_numbers import SignCode
+from .words import says
 
 Array = NDArray[np.float64]
 
@@ -25,10 +26,6 @@ OF_SENSORS = ("V", "mV")
 #: columns whose scores differ by less are equally likely, as of several joints in one log: the part
 #: of a score that comes from physics is known no better
 AS_LIKELY = 0.05
-#: words of a length or a place along a line
-LENGTHS = frozenset(
-    "position pos x weg displacement displ disp stroke slider verschiebung deplacement".split()
-)
 #: in place of a column's name: the log has none of that quantity
 NONE = "none"
 
@@ -117,7 +114,7 @@ def unit_in_log(name: str, names: Collection[str]) -> str | None:
     """
     unit = unit_in_name(name)
     stem, _, letter = bare_column(name).rpartition("_")
-    if unit is not None or letter != "m" or not LENGTHS.intersection(words_of(stem)):
+    if unit is not None or letter != "m" or not says(stem, "length"):
         return unit
     index = re.compile(re.escape(stem) + r"_[a-z]$", re.I)
     return None if any(index.match(bare_column(n)) for n in names if n != name) else "m"

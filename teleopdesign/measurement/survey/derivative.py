@@ -7,10 +7,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..column_names import is_another_quantity, is_difference, likeness
+from ..column_names import is_another_quantity, likeness
 from ..filtering import spectrum
 from ..first_guess import motion_columns
 from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of, rises
+from .words import says
 
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
@@ -151,7 +152,7 @@ def is_no_velocity(column: SurveyedColumn) -> bool:
     angle_or_length = is_unit_of(column.unit, "position") and not is_unit_of(
         column.unit, "velocity"
     )
-    another = is_another_quantity(column.name) or is_difference(column.name)
+    another = is_another_quantity(column.name) or says(column.name, "difference")
     return is_force(column) or angle_or_length or another
 
 

@@ -7,17 +7,15 @@ import math
 import numpy as np
 
 from ...base.units import measures, si_factor
-from ..column_names import words_of
 from .content import Survey, SurveyedColumn, sample_time_of
 from .derivative import NEAR_USUAL, USUAL_COUNTS, derivative_factor, unwrap_column, wrap_of
 from .remarks import counts_per_turn_in
+from .words import says
 
 #: counts per turn if nothing in the log determines them
 USUAL = 4096.0
-#: words in names of counters, and of angles, which may be whole degrees of many turns; and the
-#: range above which whole numbers are counts: of a counter by its name, and of any other name
-COUNTERS = frozenset(("enc", "encoder", "count", "counts", "counter", "ticks", "tick", "inc"))
-ANGLES = frozenset("angle winkel theta phi angulo angolo 角度 각도 угол".split())
+#: range above which whole numbers are counts: of a counter by its name, and of any other name;
+#: angles may be whole degrees of many turns
 MOST_ANGLE, MOST_DEGREES = 50, 1000
 
 
@@ -26,8 +24,8 @@ def is_counter(column: SurveyedColumn) -> bool:
     values = column.readings[np.isfinite(column.readings)]
     if not np.all(values == np.round(values)):
         return False
-    words = set(words_of(column.name))
-    most = MOST_ANGLE if COUNTERS & words else math.inf if ANGLES & words else MOST_DEGREES
+    most = math.inf if says(column.name, "angle") else MOST_DEGREES
+    most = MOST_ANGLE if says(column.name, "counter") else most
     return float(np.ptp(values)) > most
 
 

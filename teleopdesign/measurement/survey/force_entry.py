@@ -10,13 +10,12 @@ import numpy as np
 from ...base.errors import ExperimentError
 from ...base.toml import Table
 from ...base.units import is_unit, measures, unit_of
-from ..column_names import unit_in_name, why_no_unit, words_of
+from ..column_names import unit_in_name, why_no_unit
 from ..conversion import conversion_of
 from ..signed_numbers import SIGN_BIT
-from .acting import names_current, names_torque, names_voltage
-from .axis_kind import TORQUES
 from .content import Array, Choices, Survey
 from .remarks import torque_constant_in
+from .words import says
 
 #: N*m/A or m: constant of a motor, or lever arm of a force beside an angle, if nothing states it
 PLACEHOLDER = 1.0
@@ -60,13 +59,13 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
             "analog input does; the middle of the range of this input is zero force"
         )
     if unit is None and choices.torque_constant is not None and key == "actuator_force":
-        if not names_torque(name):
+        if not (says(name, "torque") and not says(name, "current")):
             unit = choices.torque_constant[1].rpartition("/")[2]
-    if unit is None and names_current(name):
+    if unit is None and says(name, "current"):
         unit = "A"
         why = f"A: the name {name!r} is that of a current"
         survey.guesses[f"channels.{key}.unit"] = why + _steps_of_driver(survey, name, "mA")
-    if unit is None and names_voltage(name):
+    if unit is None and says(name, "voltage"):
         unit = "V"
         why = f"V: the name {name!r} is that of a voltage"
         survey.guesses[f"channels.{key}.unit"] = why + _steps_of_driver(survey, name, "mV")
@@ -148,7 +147,7 @@ def _middle_of_input(readings: Array) -> float:
 
 def _unit_at_lever(name: str, unit: str | None) -> str | None:
     """Unit of a force beside an angle, such as N, by the column's unit or name; None: no force."""
-    if unit is None and not TORQUES.intersection(words_of(name)):
+    if unit is None and not says(name, "turning torque"):
         unit = unit_in_name(name, "force")
     return unit if unit and is_unit(unit) and measures(unit, "force") else None
 

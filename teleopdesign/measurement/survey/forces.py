@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.units import si_factor
-from ..column_names import is_difference, is_wanted, likeness
+from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
 from ..first_guess import (
     SURELY,
@@ -21,7 +21,7 @@ from ..first_guess import (
     motion_columns,
 )
 from ..law_of_readings import law_of_readings, spring_of_copy
-from .acting import current_that_acted, names_current, names_part, names_voltage
+from .acting import current_that_acted
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
 from .balance import hand_by_balance, scale_by_balance
 from .content import (
@@ -47,6 +47,7 @@ from .refusals import (
 )
 from .relations import possible_forces, relations_of
 from .scatter import state_scatter
+from .words import says, says_only
 
 #: part of a column that the motion may explain by chance; a column with less counts as a force only
 #: with the name or unit of a force
@@ -142,8 +143,8 @@ def _find_driving_force(
     elif likeness(force, "actuator_force") < SURE_NAME or not _is_named(free[force]):
         share = physics[force].explained
         if not _is_named(free[force]):
-            others = f"{join_names(free)}{taken_for_something_else(survey, velocity)}"
-            error = error_of_chance(survey, file, (force, share), others)
+            named = f"{join_names(free)}{taken_for_something_else(survey, velocity)}"
+            error = error_of_chance(survey, file, (force, share), named)
             if share < CHANCE or not tells_forces(survey):
                 raise error
             if follows_place(survey, force):
@@ -158,7 +159,7 @@ def _find_driving_force(
 
 def _is_named(column: SurveyedColumn) -> bool:
     """Whether unit or name are those of a force; "motor" is the name of what has one."""
-    named = likeness(column.name, "actuator_force") > 0 and not names_part(column.name)
+    named = likeness(column.name, "actuator_force") > 0 and not says_only(column.name, "part")
     return named or is_unit_of(column.unit, "force")
 
 
@@ -219,8 +220,10 @@ def _score_force(column: SurveyedColumn, guess: FirstGuess) -> float:
     # the load that a servo on a bus reports is that of its motor
     score -= 0.7 * (likeness(column.name, "interaction_force") >= SURE_NAME and not column.code)
     score -= 0.7 * (likeness(column.name, "velocity") >= SURE_NAME)  # "commanded_velocity"
-    score -= 0.7 * is_difference(column.name)  # "torque_error"
-    score -= 0.2 * names_voltage(column.name)  # beside a current, which is in proportion to torque
+    score -= 0.7 * says(column.name, "difference")  # "torque_error"
+    score -= 0.2 * says(
+        column.name, "voltage"
+    )  # beside a current, which is in proportion to torque
     # the command is preferred to the value that a drive reports as reached
     score += 0.3 * is_wanted(column.name) + 0.5 * is_unit_of(column.unit, "force")
     return score - 0.6 * (likeness(column.name, "position") >= SURE_NAME)
@@ -230,7 +233,7 @@ def _is_for_constant(column: SurveyedColumn) -> bool:
     """Whether a column is a current or voltage, by unit or name: it needs a motor constant."""
     if column.unit is not None:
         return column.unit in ("A", "mA", "V")
-    return names_current(column.name)
+    return says(column.name, "current")
 
 
 def _find_hand(free: Mapping[str, SurveyedColumn], force: str, choices: Choices) -> str | None:

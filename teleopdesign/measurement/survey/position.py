@@ -11,7 +11,6 @@ import numpy as np
 from ...base.units import is_unit, measures, si_factor
 from ..column_names import (
     is_another_quantity,
-    is_difference,
     is_wanted,
     likeness,
     why_no_unit,
@@ -50,6 +49,7 @@ from .encoder_counts import guess_counts_per_turn, is_counter
 from .force_entry import describe_code
 from .refusals import error_without_position, has_only_speeds
 from .set_point import followed_columns, may_be_set_point, most_explained
+from .words import says
 
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
 BY_NAME = 0.1
@@ -77,7 +77,7 @@ def find_position(
     for name, column in moving.items():
         is_set_point = is_wanted(name) or name in followed.values()
         score = likeness(name, "position") - 0.8 * is_set_point + 0.4 * (name in followed)
-        score -= 1.2 * is_difference(name)  # below a column whose name says nothing
+        score -= 1.2 * says(name, "difference")  # below a column whose name says nothing
         kinds = kinds_of(column)
         score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
         score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from ...base.units import is_unit
-from ..column_names import is_another_quantity, is_difference, is_wanted, likeness, words_of
+from ..column_names import is_another_quantity, is_wanted, likeness, words_of
 from ..doors._log import Log
 from ..law_of_readings import is_copy
 from .axes import of_another_axis, same_but_axis
@@ -39,6 +39,7 @@ from .derivative import (
     wrap_of,
 )
 from .set_point import follows, has_numbers_of, is_sent_to_places, may_be_set_point
+from .words import says
 
 #: correlation from which one column is the derivative of another to its digits, as of a planned
 #: path: friction of 1 % of a force lowers it below
@@ -47,10 +48,6 @@ EXACT = 0.9999
 #: joints that move alike explain most of each other's velocities, and a spring's force is nearly a
 #: copy of its position
 CLEARLY_LESS = 0.5
-#: words in names of accelerations
-ACCELERATIONS = frozenset(
-    "acceleration accel acc beschleunigung acceleracion qdd ddq xdd ddx qddot ddtheta".split()
-)
 
 
 def relations_of(
@@ -97,7 +94,7 @@ def _relation(column: SurveyedColumn, position: str, x: Array, speed: Array | No
         len(w) > 1 and likeness(w, "velocity") >= SURE_NAME for w in words_of(name)
     ):
         return "a velocity by its name"
-    return "an acceleration by its name" if ACCELERATIONS.intersection(words_of(name)) else None
+    return "an acceleration by its name" if says(name, "acceleration") else None
 
 
 def possible_forces(survey: Survey, *used: str | None) -> dict[str, SurveyedColumn]:
@@ -206,7 +203,7 @@ def _explain_by_name(column: SurveyedColumn, survey: Survey) -> str | None:
         )
     if is_wanted(name) and "force" not in kinds:
         return "a desired value, not a measured one"
-    return "by its name a difference, such as the error of a controller" * is_difference(name)
+    return "by its name a difference, such as the error of a controller" * says(name, "difference")
 
 
 def _explain_no_force(column: SurveyedColumn, survey: Survey) -> str:

@@ -9,17 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..column_names import is_wanted, words_of
+from ..column_names import is_wanted
 from ..encoder import CHANGES_OF_FORCE, reading_noise, update_period
 from ..filtering import Array
-from .acting import names_voltage
 from .content import Survey
+from .words import says
 
-#: words in names of what a controller puts out, beside those of `is_wanted`
-OUTPUTS = frozenset(
-    "u control ctrl controller output out input action pwm duty set "
-    "commanded commands request requested".split()
-)
 #: scatter over the standard deviation of the force below which none is stated: a noise floor of
 #: less than a thousandth of the force decides nothing
 LEAST = 1e-3
@@ -36,12 +31,7 @@ def state_scatter(survey: Survey, name: str) -> None:
     force scatters nearly as much as it varies.
     """
     entry, position = survey.channels["actuator_force"], survey.channels["position"]
-    is_command = (
-        is_wanted(name)
-        or names_voltage(name)
-        or entry["unit"] in ("V", "mV")
-        or not OUTPUTS.isdisjoint(words_of(name))
-    )
+    is_command = is_wanted(name) or entry["unit"] in ("V", "mV") or says(name, "voltage", "output")
     is_estimated = entry.get("measured") or not position.keys() & {"resolution", "counts_per_turn"}
     if is_command or is_estimated:
         return
