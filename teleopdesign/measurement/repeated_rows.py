@@ -28,9 +28,6 @@ MOST = 0.2
 IN_STEP, OFF_STEP = 0.95, 0.3
 #: fewest changes that show the period of a source
 READINGS = 50
-#: changes to either side of a constant stretch that show noise, and the part of them that must have
-#: the opposite sign of the change before: two thirds in white noise, almost none in a motion
-SHOWN, TURNS = 20, 0.4
 #: smallest change from sample to sample that counts as motion, in steps between values
 STEPS = 3.0
 #: samples to either side for the usual size of a change
@@ -87,9 +84,6 @@ def repeated_rows(
         a, b = int(first[k]), int(past[k])
         inside[k] = bool(stuck[a + 1 : b + 1].all())
         inside[k] |= any(_leaps(x, a, b, s) for x, s in zip(positions, steps, strict=True))
-        # a force on a body at rest may be constant and then step, but not in the middle of a change
-        inside[k] |= any(_leaps(f, a, b, 0.0) and _goes_on(f, a, b) for f in forces)
-        inside[k] |= any(_noise_vanishes(f, a, b) for f in noisy)
     for a, b in zip(first[inside].tolist(), past[inside].tolist(), strict=True):
         out[a + 1 : b + 1] = True
     return out
@@ -220,16 +214,3 @@ def _leaps(x: Array, first: int, past: int, step: float) -> bool:
     change = np.abs(np.diff(x[first - near : past + 2 + near]))
     before, leap, after = change[:near], change[-near - 1], change[-near:]
     return bool(leap > LEAP * max(np.median(before), np.median(after), step))
-
-
-def _goes_on(y: Array, first: int, past: int) -> bool:
-    """Whether a reading changes in every row before and after a hold."""
-    near = int(LEAP)
-    sides = y[first - near : first + 1], y[past + 1 : past + 2 + near]
-    return all(bool(np.all(np.diff(side) != 0)) for side in sides)
-
-
-def _noise_vanishes(y: Array, first: int, past: int) -> bool:
-    """Whether a reading that never repeats by itself shows noise before and after a hold."""
-    sides = np.diff(y[max(first - SHOWN, 0) : first + 1]), np.diff(y[past : past + SHOWN + 1])
-    return all(len(side) == SHOWN and np.mean(side[1:] * side[:-1] < 0) >= TURNS for side in sides)

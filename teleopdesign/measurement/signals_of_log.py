@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .channel import Channel
 from .conversion import Conversion
-from .encoder import reading_step
+from .encoder import is_on_grid, reading_step
 from .log_clock import LogClock
 from .reading import ReadingStep, count_of
 from .resample import (
@@ -27,8 +27,6 @@ Array = NDArray[np.float64]
 
 #: a channel of whole numbers with at most so many different values is a state, and no measurement
 STATES = 16
-#: mean of exp(2 pi i x / step) from which readings x lie on steps: 1 on them, 0 anywhere
-ON_STEPS = 0.9
 #: part of the steps between stamps that are usual, and times the longest of these that a pause
 #: lasts: stamps of a bus come in bursts, and some are lost
 USUAL, PAUSE = 0.9, 10.0
@@ -193,7 +191,7 @@ def _restore_steps(out: Array, values: Array, channel: Channel, step: float) -> 
     """
     if out is values or channel.quantity != "position" or channel.resolution or step <= 0.0:
         return out
-    if np.abs(np.exp(2j * np.pi * (values - values[0]) / step).mean()) < ON_STEPS:
+    if not is_on_grid(values, step):
         return out
     stepped = values[0] + step * np.round((out - values[0]) / step)
     return np.where(np.isin(out, values), out, stepped)

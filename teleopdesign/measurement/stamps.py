@@ -13,10 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.units import si_factor
+from .record_clock import SHORTEST
 from .row_places import GOES_ON
 
 Array = NDArray[np.float64]
 
+#: s in a day
+DAY = 86_400.0
 #: step of a counter of 16, 24 or 32 bits at its wrap -> the reason in words
 COUNTERS = {2.0**bits: f"a counter of {bits} bits wraps" for bits in (16, 24, 32)}
 #: s by which a clock steps back -> the reason in words: an hour in autumn, a twelve-hour dial, a
@@ -24,11 +27,11 @@ COUNTERS = {2.0**bits: f"a counter of {bits} bits wraps" for bits in (16, 24, 32
 CLOCKS = {
     3600.0: "the clock goes back an hour",
     43_200.0: "the time of day begins anew after twelve hours",
-    86_400.0: "the time of day begins anew at midnight",
+    DAY: "the time of day begins anew at midnight",
     604_800.0: "the week begins anew",
 }
 #: s of a part of a clock that is read by itself -> its name
-PARTS = {1.0: "second", 60.0: "minute", 3600.0: "hour", 86_400.0: "day"}
+PARTS = {1.0: "second", 60.0: "minute", 3600.0: "hour", DAY: "day"}
 #: part of that time which the rows that it displaces may last, and the steps beside them: only rows
 #: at its turn are displaced. Higher: a pause before a clock was set back passes for one
 TURN = 0.25
@@ -38,11 +41,8 @@ _SECONDS = (1.0, 1e3, 1e6, 1e9)
 LONGEST_STEP = 20.0
 #: fewest usual steps in the period of a wrap: with fewer, the column counts the rows of blocks
 FEWEST_STEPS = 500.0
-#: s in a day
-DAY = 86_400.0
 #: days between two rows: 0.2 s, as in seconds
 LONGEST_DAYS = 0.2 / DAY
-_SHORTEST = 1.0  # s: shortest duration of a record
 #: rows a second that no log of a machine has; a scope may have 1 MHz
 FASTEST = 1.001e6
 
@@ -141,7 +141,7 @@ def unit_of_steps(stamps: Array) -> tuple[str, str]:
     if step == 0.0:  # most rows share a stamp
         step = float(np.ptp(finite)) / max(len(finite) - 1, 1)
     # a spreadsheet counts days; read in seconds, such a log would be too short for a record
-    if step < LONGEST_DAYS and _SHORTEST / DAY < float(np.ptp(finite)) < _SHORTEST:
+    if step < LONGEST_DAYS and SHORTEST / DAY < float(np.ptp(finite)) < SHORTEST:
         return "day", f"day: only in days are steps of {step:.4g} usual for a log"
     scales = ((0.2, "s"), (200.0, "ms"), (2e5, "us"), (math.inf, "ns"))
     unit = next(name for largest, name in scales if step < largest or largest == math.inf)
@@ -159,7 +159,7 @@ def unit_in_place_of(stated: str, stamps: Array) -> tuple[str, str] | None:
     steps = np.abs(np.diff(stamps[np.isfinite(stamps)]))
     usual = float(np.median(steps)) if len(steps) else 0.0
     factor = si_factor(stated, quantity="time")
-    if usual == 0.0 or usual * factor * FASTEST > 1.0 or np.sum(steps) * factor > _SHORTEST:
+    if usual == 0.0 or usual * factor * FASTEST > 1.0 or np.sum(steps) * factor > SHORTEST:
         return None
     unit, _ = unit_of_steps(stamps)
     rate = f"{1.0 / (usual * factor):.3g} rows a second"

@@ -192,18 +192,6 @@ def test_a_stand_at_an_end_of_a_record_tells_nothing(rows, is_lost):
     assert repeated_rows([x, 2 * x], [x]).any() == is_lost
 
 
-@pytest.mark.parametrize(
-    ("first", "is_lost"), [(300, True), (20, True), (19, False), (965, True), (968, False)]
-)
-def test_noise_that_stops_is_of_lost_rows_where_it_is_shown_on_both_sides(first, is_lost):
-    """Of a body that rests under a constant command, and a sensor of its force."""
-    force = np.random.default_rng(0).normal(size=1000)
-    force[first : first + 13] = force[first]
-    still = np.zeros(1000)
-    lost = np.flatnonzero(repeated_rows([still, still, force], [still], [force]))
-    assert lost.tolist() == (list(range(first + 1, first + 13)) if is_lost else [])
-
-
 @pytest.mark.parametrize(("times", "is_lost"), [(1, False), (2, True), (20, True)])
 def test_rows_that_agree_by_chance_are_lost_only_where_there_are_more_than_chance_makes(
     times, is_lost

@@ -12,11 +12,11 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 
 from ...base.errors import ExperimentError, quote
+from ..record_clock import FEWEST
 from ._cell_shapes import LineShape, units_behind_numbers, vectors_in_cells
 from ._cells import is_empty, is_number, seconds_of
 from ._dialect import COMMENTS, cells_of, separator_of
 from ._header import bare_unit, is_unit_cell
-from .shapes._table import FEWEST
 
 #: part of the lines that have a shape: the first ones after a start may be messages
 MOST_OF_THEM = 0.8

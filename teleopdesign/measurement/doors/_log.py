@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 MOST_ROWS = 50_000_000
 #: most bytes of a packed file after unpacking: enough for MOST_ROWS rows of a few columns
 MOST_BYTES = 4_000_000_000
+#: most numbers of one message or list that become columns: images and point clouds are no log
+MOST_FIELDS = 200
 #: most columns of a log, and most characters of a name: far above those of any logger. The time for
 #: a name may grow with the square of its length
 MOST_COLUMNS, LONGEST_NAME = 10_000, 1000

@@ -17,10 +17,8 @@ from typing import Any
 import numpy as np
 
 from ...base.errors import LONGEST, ExperimentError, quote
-from ._log import Array, Log, join_names, optional, refuse_damage, refuse_size
+from ._log import MOST_FIELDS, Array, Log, join_names, optional, refuse_damage, refuse_size
 
-#: most numbers of one message that become columns: images and point clouds are no log
-MOST_FIELDS = 200
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
 STAMP = "stamp"
 _WRITTEN = "written"

@@ -20,9 +20,7 @@ from ..column_names import likeness, unit_in_name
 from ..numbers_in_cells import numbers_of
 from ..stamps import unit_of_steps, unwrap_stamps
 from ._log import Array, Log, join_names
-
-#: all tables must overlap in time for at least this part of the shortest one
-SHARED = 0.5
+from .shapes._table import SHARED
 
 
 def open_folder(

@@ -17,15 +17,14 @@ import numpy as np
 
 from ...base.errors import ExperimentError, quote
 from ._dialect import open_bytes
-from ._log import MOST_BYTES, Log, refuse_size
+from ._log import MOST_BYTES, MOST_FIELDS, Log, refuse_size
+from ._stray_lines import FEW_STRAYS, MOST_STRAYS
 from .shapes._table import MOST_ROWS
 
-#: deepest nesting of records that is read, and most numbers of one list that become columns
-DEPTH, MOST_FIELDS = 6, 200
+#: deepest nesting of records that is read
+DEPTH = 6
 #: column that numbers the lists of records with the same fields
 TRIAL = "trial"
-#: most lines that are no records, as a number and as a part of all lines, that are left out
-FEW_STRAYS, MOST_STRAYS = 10, 0.01
 
 
 def open_json(path: Path, file: str) -> Log:

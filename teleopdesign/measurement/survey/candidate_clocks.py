@@ -10,16 +10,15 @@ import numpy as np
 from ...base.units import measures, si_factor
 from ..column_names import is_wanted, likeness, words_of
 from ..doors._log import Log
+from ..doors.shapes._table import AS_EVEN_AS_A_CLOCK
 from .content import Array, Choices
 from .derivative import DERIVATIVE, derivative_factor, has_both_signs, unwrap_column, wrap_of
 
 #: times as uneven as another column that a first column without a name may rise. Two: the stamps of
 #: a logger spread by a third of a step at most, the angle of a motor at ripple by its whole step
 FAR_LESS_EVEN = 2.0
-#: part of its usual step by which all steps of a clock beside a count of rows may differ, but for a
-#: twentieth at either end: a machine that speeds up or turns back differs by more, and so does a
-#: ripple of its speed
-AS_EVEN_AS_A_CLOCK, AT_EITHER_END = 0.02, 0.05
+#: part of the steps at either end that may differ by more than those of a clock
+AT_EITHER_END = 0.05
 #: fewest columns of a log whose count of rows leaves a clock, a position and a force
 FEWEST_BESIDE_A_COUNT = 4
 #: rate that is assumed where nothing tells it, Hz: that of most controllers

@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 from ....base.errors import ExperimentError
 from ....base.units import si_factor
 from ...numbers_in_cells import holds_dates, numbers_of
-from ...record_clock import DATE
+from ...record_clock import DATE, FEWEST
 from ...stamps import unit_of_steps, unwrap_stamps
 from .._cells import is_column_of_texts
 from .._log import Array, Log, join_names
-from ._table import FEWEST, CellTable, LongSignal, LongTable, as_text
+from ._table import SHARED, CellTable, LongSignal, LongTable, as_text
 from .clock_before_signals import clock_before_signals
 from .columns import columns
 from .machines import machines_by_time, machines_in_turn
@@ -30,8 +30,6 @@ from .reading_in_each_row import reading_in_each_row
 from .separate_clocks import separate_clocks
 from .two_part_time import two_part_time
 
-#: part of the shortest signal's time that signals share: else their clocks count apart
-SHARED = 0.5
 #: how regular rows without a clock are held to be: as regular as a clock with half of its steps
 WITHOUT_A_CLOCK = 0.5
 TableShape = Callable[[CellTable], LongTable | None]

@@ -17,11 +17,7 @@ import numpy as np
 from ....base.units import measures
 from ...column_names import likeness, unit_of_text
 from .._log import Array, bare_column, join_names
-from ._table import CellTable, LongSignal, LongTable, rises
-
-#: part of its usual step by which each step of a clock without a name of one may differ: the
-#: coordinates of a body that is seen by a camera also rise for a while, but not so evenly
-AS_EVEN_AS_A_CLOCK = 0.02
+from ._table import AS_EVEN_AS_A_CLOCK, CellTable, LongSignal, LongTable, rises
 
 
 def clock_before_signals(table: CellTable) -> LongTable | None:

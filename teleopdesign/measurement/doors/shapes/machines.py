@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...column_names import words_of
-from ...row_places import are_out_of_order
+from ...row_places import GOES_ON, are_out_of_order
 from .._log import Array, join_names
 from ._table import FEWEST_ROWS, CellTable, LongSignal, LongTable, as_text, time_of
 
@@ -29,9 +29,9 @@ MOST_MACHINES = 64
 #: part of its changes from row to row that a signal keeps within one machine, and part of the rows
 #: that belong to another machine than the row before: the direction of one machine lasts for rows
 SMOOTHER, EACH_ROW = 0.5, 0.7
-#: longest step within one machine, in usual steps, and returns to an earlier part from which a
-#: table is read so: a clock that is set back once or twice may come to rest there by chance
-GOES_ON, FEWEST_RETURNS = 5.0, 3
+#: returns to an earlier part from which a table is read so: a clock that is set back once or twice
+#: may come to rest there by chance
+FEWEST_RETURNS = 3
 
 
 def machines_in_turn(table: CellTable) -> LongTable | None:
