@@ -11,7 +11,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping
 
-from ._loop import PLAIN, loop_source
+from .program import PLAIN, loop_source
 
 #: name of the kernel
 KERNEL = "simulate_cases"

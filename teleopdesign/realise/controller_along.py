@@ -17,9 +17,8 @@ from ..base.errors import ModelError
 from ..controllers import SIGNALS, ControlLaw, Controller, Stage, parameter_symbol
 from ..measurement.filtering import Array
 from .compiled import compile_source
-from .delays import delay_in_samples
+from .delays import LateSignals, delay_in_samples, without_delays
 from .exponentials import PHI, head
-from .late_signals import LateSignals, without_delays
 from .laws import assignments, indent
 from .simulated import without_no_delay
 
