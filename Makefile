@@ -105,7 +105,7 @@ lowest:  ## tests with every dependency at the lowest version that pyproject.tom
 	@echo "== Tests with the lowest declared versions"
 	@$(PYTHON) -m venv --clear build/lowest
 	@build/lowest/bin/python -m pip --disable-pip-version-check --no-input install --quiet \
-		--constraint release/lowest.txt --editable ".[app,cluster,io,learn,lmi,proof,ros,studies]" \
+		--constraint release/lowest.txt --editable ".[app,cluster,io,learn,lmi,ros,studies]" \
 		hypothesis polars pytest
 	@build/lowest/bin/python -m pytest $(LOWEST_TESTS) $(PYTEST_ARGS)
 

@@ -17,7 +17,6 @@ MODULES = {
     "myst-parser": "myst_parser",
     "numba-cuda": "numba_cuda",
     "scikit-learn": "sklearn",
-    "z3-solver": "z3",
 }
 #: tools that are run, not imported
 TOOLS = {"import-linter", "mypy", "pytest-xdist", "ruff", "scipy-stubs"}

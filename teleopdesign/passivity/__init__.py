@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from .claims.claim import region as region
     from .claims.counterexample_files import read_record as read_record
     from .claims.counterexample_files import write_record as write_record
-    from .claims.second_opinion import SecondOpinion as SecondOpinion
-    from .claims.second_opinion import second_opinion as second_opinion
     from .diagram_claims import DiagramClaims as DiagramClaims
     from .diagram_claims import Search as Search
     from .diagram_claims import diagram_claims as diagram_claims
