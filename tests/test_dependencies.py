@@ -20,8 +20,8 @@ MODULES = {
 }
 #: tools that are run, not imported
 TOOLS = {"import-linter", "mypy", "pytest-xdist", "ruff", "scipy-stubs"}
-#: what another library is asked for by a text: themes and readers of sphinx, a solver of cvxpy
-NAMED = {"clarabel", "furo", "myst-parser", "sphinx"}
+#: what another library is asked for by a text: themes and readers of sphinx
+NAMED = {"furo", "myst-parser", "sphinx"}
 
 
 def names(requirements):

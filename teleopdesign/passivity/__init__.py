@@ -38,9 +38,6 @@ if TYPE_CHECKING:
     from .linear.impedance import Impedance as Impedance
     from .linear.impedance import impedance as impedance
     from .linear.judge import positive_real as positive_real
-    from .linear.kyp import Kyp as Kyp
-    from .linear.kyp import kyp as kyp
-    from .linear.kyp import storage_function as storage_function
     from .linear_diagrams import hand_port as hand_port
     from .margin_map import MarginMap as MarginMap
     from .margin_map import margin_map as margin_map
