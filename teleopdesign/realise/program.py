@@ -19,9 +19,8 @@ from ..controllers import ControlLaw, Controller
 from ..diagrams import Attached, Control, Diagram, Kinematics, Moving
 from ..effects import Effect
 from ._codegen import Generator
-from .compiled import compiled_module
+from .compiled import PHI, WEIGHTS, compiled_module
 from .equations import Equations, Layout, build_equations
-from .exponentials import PHI, WEIGHTS
 from .private_names import PrivateNames, private_names
 
 
