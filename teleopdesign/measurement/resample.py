@@ -20,9 +20,6 @@ Rule = Literal["held", "position", "line"]
 #: encoder steps between two rows up to which interpolated readings are rounded to whole steps. In
 #: faster motion the rounding of a reading is small against the motion between two rows
 STEPS = 2.5
-#: fewest pairs of rows for this test; part of the pairs between the same two changes that must
-#: agree; and step of the search for the phase, in samples
-_FEWEST_PAIRS, _ALIKE, _PHASE = 20, 0.95, 0.005
 #: rows that are removed and filled again to measure the error of filling
 TRIALS = 2000
 
@@ -67,55 +64,6 @@ def interpolate_by_rule(
     if rule == "position":
         return _position(values, at, grid, step, slower_clock)
     return np.interp(grid, at, values)
-
-
-def command_phase(values: Array, clock: RecordClock) -> float | None:
-    """Phase of the even clock on which a command changes, in samples; None: it follows the rows.
-
-    A log may read the command of a controller at other instants. Then two rows between the same two
-    changes have the same value, and some commands are in no row. The phase is the one for which
-    rows are equal exactly where they lie between the same two changes.
-
-    values: (m,) of the clock's rows, whose stamps are true
-    """
-    at = clock.places + (clock.stamps - clock.time[clock.places]) / clock.sample_time
-    pairs = np.concatenate(
-        [np.arange(rows.start, rows.stop - 1) for rows in clock.of_rows], dtype=np.intp
-    )
-    pairs = pairs[np.diff(clock.places)[pairs] == 1]
-    equal = values[pairs] == values[pairs + 1]
-    if equal.sum() < _FEWEST_PAIRS:
-        return None
-    best: tuple[float, float] | None = None
-    for phase in np.arange(-0.5, 0.5, _PHASE):
-        cell = np.floor(at - phase)
-        same = cell[pairs] == cell[pairs + 1]
-        if same.sum() < _FEWEST_PAIRS or same.all():
-            continue
-        within, across = float(equal[same].mean()), float(equal[~same].mean())
-        if (
-            within > _ALIKE
-            and across < 0.5 * within
-            and (best is None or within - across > best[0])
-        ):
-            best = (within - across, float(phase))
-    return None if best is None else best[1]
-
-
-def commands_on_clock(values: Array, clock: RecordClock, phase: float) -> tuple[Array, float]:
-    """A command that changes on an even clock, on the record's grid (n,), and the share in no row.
-
-    values: (m,) of the clock's rows;  phase: of the command's clock (`command_phase`)
-    """
-    at = clock.places + (clock.stamps - clock.time[clock.places]) / clock.sample_time
-    out = np.empty(len(clock.time))
-    missing = 0
-    for rows, samples in zip(clock.of_rows, clock.segments, strict=True):
-        cells, first = np.unique(np.floor(at[rows] - phase), return_index=True)
-        missing += int(cells[-1] - cells[0]) + 1 - len(cells)
-        grid = np.arange(samples.start, samples.stop, dtype=np.float64)
-        out[samples] = _average_held(*_fill_held(values[rows][first], cells + phase), grid)
-    return out, missing / len(clock.time)
 
 
 def _fill_held(values: Array, at: Array) -> tuple[Array, Array]:

@@ -14,8 +14,6 @@ from .log_clock import LogClock
 from .reading import ReadingStep, count_of
 from .resample import (
     Rule,
-    command_phase,
-    commands_on_clock,
     filling_error,
     interpolate_by_rule,
     resample_on_grid,
@@ -48,15 +46,7 @@ def signals_of_log(
             signals[key], more = _resample_by_stamps(columns, key, channel, conversion, clock, file)
             steps += more
             continue
-        values, phase = readings[key], None
-        if clock.stamped and channel.quantity == "actuator_force" and not conversion.delay:
-            phase = command_phase(values, clock.clock)
-        if phase is None:
-            signals[key] = _resample_channel(values, channel, conversion, clock)
-            continue
-        name = key.removeprefix("device.")
-        signals[key], missing = commands_on_clock(values, clock.clock, phase)
-        steps.append(_describe_signal_clock(values, clock, phase, missing, file, name))
+        signals[key] = _resample_channel(readings[key], channel, conversion, clock)
     if clock.clock.lost:
         steps.append(_describe_lost_rows(readings, channels, clock, file))
     return signals, steps
@@ -134,24 +124,6 @@ def _fill_spikes(
         numbers=(("count", float(count)), ("row", float(np.argmax(off)) + 1.0), ("size", worst)),
     )
     return filled, [done]
-
-
-def _describe_signal_clock(
-    values: Array, clock: LogClock, phase: float, missing: float, file: str, name: str
-) -> ReadingStep:
-    """Reading step for a command that changes on an even clock while rows are read at others."""
-    wrong = filling_error(values, clock.clock, "held", step=0.0)
-    size = float(np.sqrt(missing)) * wrong / max(float(np.sqrt(np.mean(values**2))), 1e-300)
-    return ReadingStep(
-        file,
-        f"{name} changes on an even clock, rows are read at others",
-        f"each row gives the command between two changes; {100 * missing:.2g} % of the commands "
-        "are in no row and are interpolated linearly",
-        f"adds at most {100 * size:.2g} % of the force",
-        size,
-        "sample clock",
-        (("phase", phase * clock.clock.sample_time), ("missing", missing), ("force_error", size)),
-    )
 
 
 def rule_of(channel: Channel, values: Array) -> Rule:

@@ -1,7 +1,5 @@
 """What fills lost rows, and by how much it errs: exactly, where that is known by hand."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import assume, given
@@ -13,8 +11,6 @@ from teleopdesign.measurement.conversion import Conversion
 from teleopdesign.measurement.record import RecordEntry, record_of
 from teleopdesign.measurement.record_clock import RecordClock
 from teleopdesign.measurement.resample import (
-    command_phase,
-    commands_on_clock,
     filling_error,
     interpolate_by_rule,
 )
@@ -92,21 +88,6 @@ def test_a_command_acts_in_a_sample_with_its_mean_and_before_its_first_row_as_in
     times = grid[:, None] + (np.arange(8) + 0.5) / 8.0
     which = np.maximum(np.searchsorted(at, times, side="right") - 1, 0)
     assert made == pytest.approx(values[which].mean(axis=1), abs=1e-12)
-
-
-@pytest.mark.parametrize("phase", [-0.3, 0.2, 0.35])
-def test_the_instant_at_which_a_command_changes_between_rows_is_read_off(phase):
-    """Rows scatter; two between the same two changes say the same."""
-    random = np.random.default_rng(3)
-    places = np.arange(1500)
-    at = places + random.uniform(-0.45, 0.45, 1500)
-    clock = replace(clock_of(places), stamps=H * at)
-    held = random.normal(size=1502)
-    values = held[np.floor(at - phase).astype(int) + 1]
-    assert command_phase(values, clock) == pytest.approx(phase, abs=0.03)
-    assert command_phase(random.normal(size=1500), clock) is None
-    assert command_phase(np.zeros(1500), clock) is None
-    assert command_phase(held[:1500], clock_of(places)) is None
 
 
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
@@ -193,18 +174,6 @@ def test_rows_two_of_which_are_five_steps_apart_are_still_filled_by_steps():
     assert filling_error(counts, clock_of(np.arange(80)), "position", step=0.9) == pytest.approx(
         2 / 3
     )
-
-
-@pytest.mark.parametrize("missed", [0, 1, 7])
-def test_commands_that_are_in_no_row_are_counted(missed):
-    """The clock of the command runs from row to row; some of its cells lie between two rows."""
-    at = np.delete(np.arange(400.0), 10 + 40 * np.arange(missed))
-    clock = replace(clock_of(np.arange(len(at))), stamps=H * at, time=H * np.arange(len(at)))
-    clock = replace(
-        clock, places=at.astype(int), time=H * np.arange(400.0), segments=(slice(0, 400),)
-    )
-    commands, share = commands_on_clock(np.sin(at), clock, -0.25)
-    assert share == pytest.approx(missed / 400) and len(commands) == 400
 
 
 @pytest.mark.parametrize("resolution", [None, 0.5])

@@ -103,20 +103,6 @@ def test_a_few_rows_that_came_very_late_do_not_take_the_even_clock_away(seed, wo
     assert np.array_equal(record.signals["device.position"], motion(t))
 
 
-def test_a_command_that_changes_between_rows_is_read_by_the_clock_of_the_command():
-    generator = np.random.default_rng(5)
-    t = np.arange(4000) / RATE
-    stamps = t + 0.05 / RATE * np.clip(generator.standard_normal(4000), -3, 3)
-    held = command(t)[np.clip(np.searchsorted(t, stamps, side="right") - 1, 0, None)]
-    q = 1e-4 * np.round(motion(stamps) / 1e-4)
-    record = record_of(stamps, q, held)
-    n = len(record.time)
-    left = record.signals["device.actuator_force"][5:-5] - command(t)[: n - 5][5 : n - 5]
-    # the line through commands that no row holds errs by a quarter of their bend; read as they
-    # stand, half of the rows would be one command late: 4e-3
-    assert np.sqrt(np.mean(left**2)) < 1e-3
-
-
 def test_a_pause_parts_the_record_and_dates_count_from_the_first_row():
     t = np.r_[np.arange(800), np.arange(1300, 2100)] / RATE
     record = record_of(1.7e9 + t, motion(t), command(t))
