@@ -23,7 +23,7 @@ from ..diagnose import Diagnosis
 from ..diagnose import find_missing as find_missing_in_body
 from ..diagrams import Attached, Diagram, Moving
 from ..effects import EFFECTS, Effect
-from ..measurement.channel import Layout, channels_from
+from ..measurement.channel import LogLayout, channels_from
 from ..measurement.description import BodyDescription
 from ..measurement.experiment import Experiment
 from ..measurement.record import RecordEntry, record_of
@@ -108,7 +108,7 @@ def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
         content["time"] = experiment.channels["time"].content
     table = next(iter(experiment.channels.values()))
     channels = channels_from(Table(content, table.file, "channels"), described)
-    layout = Layout(channels, described, experiment.sample_rate)
+    layout = LogLayout(channels, described, experiment.sample_rate)
     # the rest position of a hand is free in each record
     rest = frozenset({"position_zero"}) if terms.held else frozenset()
     records = tuple(

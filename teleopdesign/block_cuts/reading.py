@@ -12,7 +12,7 @@ from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.toml import Table, read_toml
 from ..base.units import to_si
 from ..diagrams import Diagram, read_diagram
-from ..measurement.channel import Channel, Layout, channel_from, frequency_from
+from ..measurement.channel import Channel, LogLayout, channel_from, frequency_from
 from ..measurement.experiment import Experiment, folder_of_experiment, record_entries
 from ..measurement.experiment import load_experiment as load_body_experiment
 from ..measurement.from_arrays import log_of
@@ -52,7 +52,7 @@ def load_experiment(folder: str | Path) -> Experiment | DiagramExperiment:
         columns = read_columns(place / file, name, wanted)
         if span is not None:
             bodies = body_of_axis(made.axis(made.recorded[0]))
-            layout = Layout(made.channel, bodies, made.sample_rate)
+            layout = LogLayout(made.channel, bodies, made.sample_rate)
             columns = cut_to(columns, span, layout, name)
             file = f"{file} {span[0]:g}-{span[1]:g} s"
         logs.append(RecordedLog(file, use, offset_names, columns))

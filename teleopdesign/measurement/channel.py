@@ -62,7 +62,7 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class Layout:
+class LogLayout:
     """What the columns of an experiment's logs are.
 
     channels: "device.position" and the like, "time", "segment"
@@ -94,10 +94,10 @@ class Layout:
         return values[time.column] * factor_of(time, self.bodies, "channels.time")
 
 
-def layout_from(experiment: Table, bodies: Mapping[str, BodyDescription]) -> Layout:
+def layout_from(experiment: Table, bodies: Mapping[str, BodyDescription]) -> LogLayout:
     """Read [channels] and the sample rate of an experiment; raises ExperimentError: see there."""
     table = experiment.table("channels")
-    return Layout(channels_from(table, bodies), bodies, sample_rate_from(experiment, table))
+    return LogLayout(channels_from(table, bodies), bodies, sample_rate_from(experiment, table))
 
 
 def channels_from(table: Table, bodies: Mapping[str, BodyDescription]) -> dict[str, Channel]:

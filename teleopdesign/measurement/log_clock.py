@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError, quote
-from .channel import Channel, Layout
+from .channel import Channel, LogLayout
 from .reading import ReadingStep, count_of
 from .record_clock import DATE, RecordClock, clock_of, counted_clock, segments_of
 from .repeated_rows import repeated_rows, rows_between_readings
@@ -39,7 +39,7 @@ class LogClock:
 
 
 def clock_of_log(
-    columns: LogColumns, layout: Layout, name: str, *, file: str
+    columns: LogColumns, layout: LogLayout, name: str, *, file: str
 ) -> tuple[LogClock, LogColumns, list[ReadingStep]]:
     """The clock of a log, its columns, and the steps that led to it.
 

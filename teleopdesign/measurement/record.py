@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
 from ..base.shown import html_table
-from .channel import Layout, conversion_to_si
+from .channel import LogLayout, conversion_to_si
 from .log_clock import clock_of_log
 from .reading import ReadingStep
 from .signals_of_log import signals_of_log
@@ -85,7 +85,7 @@ class RecordEntry(NamedTuple):
     span: tuple[float, ...] | None = None
 
 
-def read_record(folder: Path, entry: RecordEntry, layout: Layout) -> Record:
+def read_record(folder: Path, entry: RecordEntry, layout: LogLayout) -> Record:
     """Read one record file of an experiment's folder.
 
     raises ExperimentError: see `read_columns` and `clock_of`
@@ -102,7 +102,7 @@ def read_record(folder: Path, entry: RecordEntry, layout: Layout) -> Record:
 def cut_to(
     columns: LogColumns,
     span: Sequence[float],
-    layout: Layout,
+    layout: LogLayout,
     where: str,
 ) -> LogColumns:
     """The rows of a log between two instants.
@@ -129,7 +129,7 @@ def cut_to(
     return LogColumns(values, columns.stamps, columns.notes)
 
 
-def record_of(columns: LogColumns, name: str, entry: RecordEntry, layout: Layout) -> Record:
+def record_of(columns: LogColumns, name: str, entry: RecordEntry, layout: LogLayout) -> Record:
     """The record from the columns of one log, which are cut to its span.
 
     name: of the log in messages

@@ -6,7 +6,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import teleopdesign as td
-from teleopdesign.measurement.channel import Channel, Layout
+from teleopdesign.measurement.channel import Channel, LogLayout
 from teleopdesign.measurement.conversion import Conversion
 from teleopdesign.measurement.record import RecordEntry, record_of
 from teleopdesign.measurement.record_clock import RecordClock
@@ -157,7 +157,7 @@ def test_a_topic_with_stamps_beside_the_record_is_put_at_its_time_less_its_delay
         for what, name in whats.items()
     }  # fmt: skip
     channels["time"] = Channel("time", None, "t", "s", None, None)
-    record = record_of(columns, "log", RecordEntry("log", "fit"), Layout(channels, {}))
+    record = record_of(columns, "log", RecordEntry("log", "fit"), LogLayout(channels, {}))
     inner = slice(10, -10)
     off = record.signals["device.interaction_force"] - tone(t)
     assert np.abs(off[inner]).max() < (2 * np.pi * 0.7 / rate) ** 2 / 8 * 1.01

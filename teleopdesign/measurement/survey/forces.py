@@ -42,7 +42,7 @@ from .refusals import (
     error_of_chance,
     error_of_place,
     error_without_force,
-    taken_for_something_else,
+    explain_other_roles,
     tells_forces,
 )
 from .relations import possible_forces, relations_of
@@ -143,7 +143,7 @@ def _find_driving_force(
     elif likeness(force, "actuator_force") < SURE_NAME or not _is_named(free[force]):
         share = physics[force].explained
         if not _is_named(free[force]):
-            named = f"{join_names(free)}{taken_for_something_else(survey, velocity)}"
+            named = f"{join_names(free)}{explain_other_roles(survey, velocity)}"
             error = error_of_chance(survey, file, (force, share), named)
             if share < CHANCE or not tells_forces(survey):
                 raise error

@@ -87,7 +87,7 @@ def error_without_force(survey: Survey, file: str, velocity: str | None) -> Expe
     position = survey.channels["position"]["column"]
     return ExperimentError(
         f"{file}: found no column that could be a force beside {position!r}, "
-        f"found {join_names(survey.columns)}{taken_for_something_else(survey, velocity)}"
+        f"found {join_names(survey.columns)}{explain_other_roles(survey, velocity)}"
         f"{_constant_columns(survey)}{reasons(survey.unread)}"
     )
 
@@ -119,16 +119,16 @@ def error_of_place(survey: Survey, file: str, name: str) -> ExperimentError:
     )
 
 
-def taken_for_something_else(survey: Survey, velocity: str | None) -> str:
+def explain_other_roles(survey: Survey, velocity: str | None) -> str:
     """Which columns without a unit, taken for something else, may be the force, for a message."""
-    taken = {n: why for n, why in survey.relations.items() if survey.columns[n].unit is None}
+    others = {n: why for n, why in survey.relations.items() if survey.columns[n].unit is None}
     if velocity is not None and not is_velocity(survey.columns[velocity]):
         position = survey.channels["position"]["column"]
-        taken = {velocity: f"a velocity: the derivative of {position!r}", **taken}
-    if not taken:
+        others = {velocity: f"a velocity: the derivative of {position!r}", **others}
+    if not others:
         return ""
-    listed = "".join(f"; {n!r} is taken for {why}" for n, why in [*taken.items()][:3])
-    return f"{listed}; --force {next(iter(taken))!r} overrules this"
+    listed = "".join(f"; {n!r} is taken for {why}" for n, why in [*others.items()][:3])
+    return f"{listed}; --force {next(iter(others))!r} overrules this"
 
 
 def _constant_columns(survey: Survey) -> str:

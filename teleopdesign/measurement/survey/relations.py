@@ -135,8 +135,8 @@ def _motions_elsewhere(survey: Survey, x: Array, h: float) -> Iterator[tuple[str
             continue
         beside = abs(derivative_factor(x, values, h)[1])
         # the velocity of this body has a derivative, too: a force of inertia
-        own = derivative_factor(x, other, h)[1] > DERIVATIVE
-        if own or 1.0 - agree > CLEARLY_LESS * (1.0 - beside):
+        of_this_body = derivative_factor(x, other, h)[1] > DERIVATIVE
+        if of_this_body or 1.0 - agree > CLEARLY_LESS * (1.0 - beside):
             continue
         if not follows_direction(other, values, h) and has_both_signs(other, values, h):
             places[place] = name
