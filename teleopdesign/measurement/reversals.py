@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from .encoder import reading_noise
 from .filtering import Array
+from .motion import play
 
 #: part of its travel by which a body comes back at most where it runs one way: noise of readings
 #: and overshoot at an end. More: a record with one short return counts as one way
@@ -22,12 +23,8 @@ def runs_one_way(position: Array, step: float) -> bool:
 
     position: (n,), without leaps of whole turns;  step: of its readings
     """
-    play = PLAY * max(step, reading_noise(position) if len(position) > 4 else 0.0)
-    followed = np.empty(len(position))
-    at = float(position[0])
-    for k, x in enumerate(position):  # as behind a gap: what moves within it moves nothing
-        at = min(max(at, x - play), x + play)
-        followed[k] = at
+    noise = reading_noise(position) if len(position) > 4 else 0.0
+    followed = play(position, 2.0 * PLAY * max(step, noise))  # what moves within it moves nothing
     moves = np.diff(followed)
     forth, back = float(moves[moves > 0].sum()), float(-moves[moves < 0].sum())
     return min(forth, back) <= BACK * float(np.ptp(position))

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from measurement.columns_by_hand import Q, T, U, look
 
 from teleopdesign.measurement.survey.acting import (
     current_that_acted,
@@ -149,3 +150,14 @@ def test_only_a_measured_current_stands_for_a_command():
 def test_a_name_suggests_a_current_or_a_torque_and_never_both(name, current, torque):
     assert says(name, "current") is current
     assert (says(name, "torque") and not says(name, "current")) is torque
+
+
+def test_where_position_force_and_hand_are_stated_no_other_column_is_tried():
+    columns = {"t_s": T, "a": Q, "b": U, "c": np.roll(Q, 3), "d": np.cos(T)}
+    stated = {"position": "a", "actuator_force": "b", "interaction_force": "none"}
+    survey = look(columns, **stated)
+    assert not survey.explained and not survey.relations
+    assert set(survey.unused) == {"c", "d"}
+    assert not [key for key in survey.guesses if key.endswith(".column")]
+    other = look(columns, position="a", actuator_force="b")
+    assert other.explained or other.relations
