@@ -40,6 +40,7 @@ from .report import write_page
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis, SimulationComparison
+    from ..measurement import Experiment
     from ..studies.folders import DiagnosedFolder, FolderSearch
 
 EXAMPLES = """
@@ -76,6 +77,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         "device; in an arm, each joint has such a loop",
     )
     add_output(parser, "--report", "write a report of the whole diagnosis", ".html")
+    parser.add_argument(
+        "--verbose",
+        action="store_true",
+        help="also print how the log was read, what was refused and why, and the whole model",
+    )
     add_search(parser)
     parser.add_argument(
         "--output",
@@ -94,7 +100,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the ladder; write the requested files.
+    """Print the verdict and the errors behind it; write the requested files.
 
     For several folders, returns 0 if all were diagnosed, whatever the verdicts, and 2 if one was
     not.
@@ -112,12 +118,8 @@ def run(options: argparse.Namespace) -> int:
     if not isinstance(whole, Experiment):
         return diagnose_diagram(whole, options)
     experiment = whole
-    print(experiment)
-    print()
     diagnosis = diagnose_experiment(experiment, options)
-    print_diagnosis(diagnosis)
-    if not diagnosis.joints:  # of an arm, each effect states its parameters above
-        print(f"\n{diagnosis.model}")
+    _print(diagnosis, experiment, verbose=options.verbose)
     simulation = _simulation(diagnosis, options)
     if options.json is not None:
         write_answer(diagnosis, options.json, simulation=simulation)
@@ -130,9 +132,24 @@ def run(options: argparse.Namespace) -> int:
         write_page(diagnosis, options.report)
     say_written(options.report, options.json, options.predictions, options.figure)
     source = shell_word(options.json or folder)
+    if not options.verbose and options.report is None:
+        print("how the log was read, reasons and the whole model: --verbose, or --report F.html")
     for line in _suggest_commands(diagnosis, source):
         print(line)
     return 0
+
+
+def _print(diagnosis: Diagnosis, experiment: Experiment, *, verbose: bool) -> None:
+    """Print the first screen; verbose: how the log was read, every reason and the model instead."""
+    from ..show.diagnose.brief import brief_text
+
+    if not verbose:
+        print_diagnosis(brief_text(diagnosis))
+        return
+    print(f"{experiment}\n")
+    print_diagnosis(str(diagnosis))
+    if not diagnosis.joints:  # of an arm, each effect states its parameters above
+        print(f"\n{diagnosis.model}")
 
 
 def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> SimulationComparison | None:
@@ -170,7 +187,7 @@ def _suggest_commands(diagnosis: Diagnosis, source: str) -> list[str]:
                 lines[:0] = [f.sentence for f in wrong_band]
     if not diagnosis.joints:
         lines.append(f"to design a compensation: teleopdesign design {source} --output design")
-    return ["", *lines] if lines else []
+    return lines
 
 
 #: the table within the output folder
