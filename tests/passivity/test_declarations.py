@@ -342,9 +342,15 @@ SWITCHES = {
     "a source": dict(source="python-control"),
     "a name": dict(name="dahl"),
 }
+#: of these each search for a motion takes seconds, and others are like them
+FURTHER = {"shift", "shift, linear", "a shape", "a source", "a transfer function"}
 
 
-@pytest.mark.parametrize("more", SWITCHES.values(), ids=SWITCHES)
+@pytest.mark.parametrize(
+    "more",
+    [pytest.param(more, id=name, marks=[pytest.mark.slow] * (name in FURTHER))
+     for name, more in SWITCHES.items()],
+)  # fmt: skip
 def test_nothing_that_a_law_says_of_itself_switches_a_check_off(more):
     """Its force grows without end, whatever else it declares; and a search releases energy."""
     diagram = haptic_interface(with_friction(), cancellation=of_level(anti_damping, **more))

@@ -55,17 +55,15 @@ def statements(diagram):
     return [str(one.claim.verdict) for one in diagram_claims(diagram).claims]
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("role", ROLES)
 @pytest.mark.parametrize(("damping", "status"), [(1.0, "proved"), (-3.0, "refuted")])
-def test_a_wall_where_no_port_is_remains_a_part_whatever_its_name_and_role(
-    name, role, damping, status
-):
-    diagram = inside(name, role, damping)
-    assert holders(diagram) == {}
-    (one,) = diagram_claims(diagram).claims[:1]
-    assert one.claim.status == status
-    assert statements(diagram) == statements(inside("wall", "part", damping))
+def test_a_wall_where_no_port_is_remains_a_part_whatever_its_name_and_role(damping, status):
+    expected = statements(inside("wall", "part", damping))
+    for name, role in (("Z_H", "hand"), ("Z_E", "environment")):
+        diagram = inside(name, role, damping)
+        assert holders(diagram) == {}
+        claims = diagram_claims(diagram).claims
+        assert claims[0].claim.status == status
+        assert [str(one.claim.verdict) for one in claims] == expected
 
 
 def at_port(name, role, held=None, *, axis="x"):

@@ -91,7 +91,7 @@ def dahl_pair(rng):
     return claim.status, gain(rng, dahl(f_d, f_d, sigma_d), resisted, f_d, lengths)
 
 
-@attacked(8, 30)
+@attacked(4, 30)
 def test_no_motion_beats_a_dahl_compensator_that_is_proved_passive(seed, number):
     counted(number, dahl_pair, np.random.default_rng(seed), least_ratio=1.0)
 
@@ -122,7 +122,7 @@ def velocity_pair(rng):
     return claim.status, ratio
 
 
-@attacked(8, 30)
+@attacked(4, 30)
 def test_no_motion_beats_a_law_of_velocity_that_is_proved_passive(seed, number):
     counted(number, velocity_pair, np.random.default_rng(seed), least_ratio=1.0)
 
@@ -155,7 +155,7 @@ def sampled_velocity_pair(rng):
     return claim.status, climbed(rng, share, start, rounds=25)[0]
 
 
-@attacked(8, 30)
+@attacked(4, 30)
 def test_no_samples_beat_a_law_of_velocity_that_is_proved_in_a_computer(seed, number):
     counted(number, sampled_velocity_pair, np.random.default_rng(seed), least_ratio=0.05)
 
@@ -202,7 +202,7 @@ def bounded(rng):
     return claim.status, ratio
 
 
-@attacked(20, 80)
+@attacked(8, 80)
 def test_no_motion_beats_a_bounded_compensator_that_is_proved_passive(seed, number):
     counted(number, bounded, np.random.default_rng(seed))
 
@@ -247,7 +247,7 @@ def joint(rng):
     return claim.status, climbed(rng, share, start, rounds=30)[0]
 
 
-@attacked(8, 30)
+@attacked(4, 30)
 def test_no_two_hands_beat_a_compliant_joint_that_is_proved_passive(seed, number):
     counted(number, joint, np.random.default_rng(seed), least_ratio=0.5)
 

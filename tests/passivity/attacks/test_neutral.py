@@ -87,7 +87,7 @@ def late_feedback(rng):
     return diagram, np.polyadd(z_m, z_h), g * z_h, time
 
 
-@attacked(6, 60)
+@attacked(3, 60)
 def test_no_margin_overlooks_a_chain_of_modes_far_out(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for k in range(number):
