@@ -3,7 +3,7 @@
 import ast
 import sys
 
-from syntax_trees import PACKAGE, syntax_trees
+from syntax_trees import PACKAGE, import_statements, syntax_trees
 
 CHECKER = PACKAGE / "passivity" / "checker"
 #: they write certificates, and check those of a file
@@ -12,11 +12,11 @@ READERS = {"passivity/claims/certificate.py", "commands/passivity.py"}
 
 def imported(tree):
     """Level and dotted name of each import of a module."""
-    for node in ast.walk(tree):
+    for node in import_statements(tree):
         if isinstance(node, ast.ImportFrom):
             for alias in node.names:
                 yield node.level, f"{node.module or ''}.{alias.name}"
-        elif isinstance(node, ast.Import):
+        else:
             yield from ((0, alias.name) for alias in node.names)
 
 
