@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 import teleopdesign as td
-from teleopdesign.base.machine import can_copy
 
 
 def interface():
@@ -102,11 +101,6 @@ def drawn(number):
     """A number that depends on the process, and on how many it has drawn before."""
     time.sleep(0.004)
     return float(np.random.random())  # noqa: NPY002
-
-
-def can_be_copied(x):
-    """Whether the process that computes it may be copied."""
-    return float(can_copy())
 
 
 #: what only a process that set it, and its copies, have

@@ -94,6 +94,7 @@ def test_copies_end_with_a_process_that_is_killed(tmp_path):
         assert time.monotonic() - begin < 30
 
 
+@pytest.mark.slow
 @copied
 def test_a_copy_holds_no_lock_of_a_file(tmp_path, monkeypatch):
     """A copy that outlives its study does not keep the study's file in use."""
@@ -138,6 +139,7 @@ def test_only_a_process_without_other_threads_is_copied(begin, monkeypatch):
     assert list(dataset["value"].values) == [expected] * 3
 
 
+@pytest.mark.slow
 @copied
 def test_copies_draw_different_numbers_without_a_seed():
     axes = {"number": np.arange(40.0)}
@@ -145,12 +147,7 @@ def test_copies_draw_different_numbers_without_a_seed():
     assert len(set(drawn)) == 40
 
 
-@copied
-def test_a_worker_of_a_study_is_not_copied():
-    dataset = td.study(models.can_be_copied, {"x": [1, 2]}, measures=models.value, workers=2)
-    assert list(dataset["value"].values) == [0.0, 0.0]
-
-
+@pytest.mark.slow
 @copied
 def test_a_model_that_cannot_be_sent_needs_no_sending_to_a_copy():
     lock = threading.Lock()
