@@ -12,8 +12,6 @@ from passivity.small_certificates import sealed, storage
 
 import teleopdesign as td
 from teleopdesign.passivity.checker import Refused, check, main
-from teleopdesign.passivity.claims.certificate import Certificate
-from teleopdesign.passivity.claims.second_opinion import second_opinion
 
 
 def is_proved(content):
@@ -92,16 +90,6 @@ def test_a_term_of_weight_zero_changes_no_proof_and_one_below_zero_is_none():
     assert not is_proved(weighed("-1/2"))
 
 
-@pytest.mark.parametrize("share", ["0", "1/4", "1"])
-def test_a_second_opinion_assumes_no_more_than_the_certificate_says(share):
-    """Where a damper is only known not to be negative, half of the supply's claim does not hold."""
-    pytest.importorskip("z3")
-    less = storage(supply=f"p*v + (b - {share})*v**2")
-    opinion = second_opinion(Certificate(less))
-    assert opinion.verdict == ("confirmed" if share == "0" else "refuted")
-    assert bool(opinion.counterexample) == bool(opinion.open) == (share != "0")
-
-
 def test_the_command_says_by_its_status_whether_all_files_prove_something(tmp_path, capsys):
     good, bad = tmp_path / "good.json", tmp_path / "bad.json"
     good.write_text(json.dumps(storage()))
@@ -115,8 +103,8 @@ def test_the_command_says_by_its_status_whether_all_files_prove_something(tmp_pa
 
 
 CHECKER = Path(td.__file__).parent / "passivity" / "checker"
-#: they write certificates, read them for a second opinion, and check those of a file
-READERS = {"claims/certificate.py", "claims/second_opinion.py", "commands/passivity.py"}
+#: they write certificates, and check those of a file
+READERS = {"claims/certificate.py", "commands/passivity.py"}
 IMPORTS = re.compile(r"^ *from ([\w.]+) import (?:\([^)]*\)|.*)|^ *import .*", re.M)
 
 

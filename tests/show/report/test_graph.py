@@ -10,7 +10,7 @@ from show.report.html_page import HtmlPage
 
 from teleopdesign.base.finding import Series
 from teleopdesign.show.figures.graph import extremes, thin_series
-from teleopdesign.show.report.picture import picture
+from teleopdesign.show.report.figures import picture
 
 X = np.linspace(0.0, 1.0, 50)
 
