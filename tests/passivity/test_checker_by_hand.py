@@ -113,8 +113,8 @@ def test_the_checker_imports_itself_and_the_standard_library_alone():
     modules = re.compile(r"^ *(?:from|import) ([\w.]+)", re.M)
     for path in CHECKER.glob("*.py"):
         for name in modules.findall(path.read_text()):
-            own = name.startswith(".") and not name.startswith("..")
-            assert own or name.partition(".")[0] in sys.stdlib_module_names, (path, name)
+            is_beside = name.startswith(".") and not name.startswith("..")
+            assert is_beside or name.partition(".")[0] in sys.stdlib_module_names, (path, name)
 
 
 def test_no_prover_imports_the_checker():
