@@ -167,7 +167,7 @@ BOUNDED = [law.name for law in laws_that_declare("bound")]
 
 
 @pytest.mark.parametrize("name", BOUNDED)
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(positions=st.lists(st.floats(-0.1, 0.1), min_size=2, max_size=40))
 def test_no_sequence_of_positions_drives_it_beyond_its_level(name, positions):
     """P38: passivity beside ideal Coulomb friction needs this bound and nothing else."""

@@ -33,7 +33,7 @@ def slope_of_decay(time, values, which, change):
     return (sides[1] - sides[0]) / (2 * change)
 
 
-@settings(max_examples=12)
+@settings(max_examples=6)
 @given(
     inertia=st.floats(0.05, 1.0),
     damping=st.floats(0.2, 5.0),
