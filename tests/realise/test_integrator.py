@@ -2,7 +2,6 @@
 
 from types import SimpleNamespace
 
-import mpmath
 import numpy as np
 import pytest
 from devices import body
@@ -23,30 +22,6 @@ def free_mass():
 
 
 mass = free_mass()
-
-
-@pytest.mark.parametrize("z", [-30.0, -1.0, -0.999, -1e-3, 0.0, 1e-9, 0.7, 0.999, 1.0, 2.5])
-def test_phi_is_the_exponential_less_its_first_terms(z):
-    """phi_k = (phi_(k-1) - 1/(k-1)!) / z, at fifty digits."""
-    with mpmath.workdps(50):
-        x = mpmath.mpf(z)
-        expected = [mpmath.nsum(lambda j, k=k: x**j / mpmath.factorial(j + k), [0, 150])
-                    for k in range(4)]  # fmt: skip
-    # the first term that the series leaves out is z^13/16!: 5e-14
-    assert mass.phi(z) == pytest.approx([float(e) for e in expected], rel=4e-13)
-
-
-@pytest.mark.parametrize("z", [-30.0, -2.0, -0.3, 0.0, 0.5])
-def test_the_weights_of_a_step_integrate_rates_that_are_parabolas(z):
-    """Of y' = z y + g(t) over one step, where g is a parabola; the middle is asked twice."""
-    half, _, whole, first, middle, last = mass.weights(z, abs(z) < 2.0)
-    assert half == pytest.approx(np.exp(z / 2), rel=1e-14)
-    assert whole == pytest.approx(np.exp(z), rel=1e-14)
-    with mpmath.workdps(30):
-        for power in range(3):
-            expected = mpmath.quad(lambda t, p=power: mpmath.exp(z * (1 - t)) * t**p, [0, 1])
-            integral = first * 0.0**power + 2.0 * middle * 0.5**power + last
-            assert integral == pytest.approx(float(expected), rel=1e-12)
 
 
 def advance(force, command, *, samples=20, inner=5, period=1e-3, lag=0, reductions=()):

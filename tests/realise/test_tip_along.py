@@ -42,7 +42,8 @@ def integrated(*, gap, swing, damping_ratio, slowing):
 
 
 @pytest.mark.parametrize(
-    ("gap", "slowing"), [(0.0, 0.5), (0.004, 0.0), (0.004, 0.6)], ids=["spring", "gap", "both"]
+    ("gap", "slowing"),
+    [(0.004, 0.6), *(pytest.param(*x, marks=pytest.mark.slow) for x in [(0.0, 0.5), (0.004, 0.0)])],
 )
 def test_a_tip_takes_what_its_effects_say(gap, slowing):
     course = {"gap": gap, "swing": 60.0, "damping_ratio": 0.3, "slowing": slowing}
@@ -70,45 +71,3 @@ def test_a_stiff_tip_without_friction_moves_with_the_body_and_a_wide_gap_leaves_
     assert np.linalg.norm((stiff - acceleration)[inner]) < 0.05 * np.linalg.norm(acceleration)
     held = {**course, "slowing": 1e3}
     assert not tip_along(POSITION, VELOCITY, DT, gap=1.0, **held).any()
-
-
-@pytest.mark.parametrize("rows", [1e-3, 8e-3])
-def test_a_tip_that_was_pulled_away_swings_at_its_frequency_and_dies_out(rows):
-    """A step of the body: f = -q^2 e^(-z q t) cos(..) about its new place, whatever the rows."""
-    q, z, n = 50.0, 0.05, int(1.2 / rows)
-    position = np.ones(n)
-    position[0] = 0.0
-    course = {"gap": 0.0, "swing": q, "damping_ratio": z, "slowing": 0.0}
-    force = tip_along(position, np.zeros(n), rows, **course)
-    t, w = rows * (np.arange(n) + 0.5), q * np.sqrt(1 - z**2)
-    both = np.exp(-z * q * t)[:, None] * np.column_stack([np.cos(w * t), np.sin(w * t)])
-    inside = slice(2, n - 1)
-    fitted = both @ np.linalg.lstsq(both[inside], force[inside], rcond=None)[0]
-    assert np.linalg.norm((force - fitted)[inside]) < 0.12 * np.linalg.norm(force)
-    assert np.abs(force[2:]).max() > 0.7 * q**2
-    assert force[-1] == force[-2]
-
-
-def test_friction_stops_a_tip_within_the_way_that_its_energy_allows():
-    """Thrown into a wide gap at speed v it comes to rest after v^2 / 2 d, and stays there."""
-    n, speed, slowing = 400, 0.5, 2.0
-    for way in (1.0, -1.0):
-        velocity = np.zeros(n)
-        velocity[0] = way * speed
-        course = {"swing": 30.0, "damping_ratio": 0.1, "slowing": slowing}
-        # the gap is such that the tip just does not reach its other side
-        wide = 2.04 * speed**2 / (2 * slowing)
-        assert not tip_along(np.zeros(n), velocity, DT, gap=wide, **course).any()
-        force = tip_along(np.zeros(n), velocity, DT, gap=0.9 * wide, **course)
-        assert force.any() and np.all(way * force <= 0)
-
-
-def test_a_gap_is_as_wide_on_both_sides():
-    """A slow body drags a tip that friction holds: it pulls only when half of the gap is gone."""
-    t = np.arange(0.0, 1.0, DT)
-    course = {"swing": 60.0, "damping_ratio": 0.3, "slowing": 5.0}
-    for way in (1.0, -1.0):
-        force = tip_along(way * 0.01 * t, 0.0 * t, DT, gap=0.008, **course)
-        assert not force[t < 0.39].any() and np.all(way * force[(t > 0.41) & (t < 0.5)] > 0)
-        # the tip goes when the stretch beyond the gap makes 5 m/s^2, 1.4 mm later
-        assert way * force[np.searchsorted(t, 0.4 + 0.13)] == pytest.approx(4.7, abs=0.3)

@@ -12,7 +12,6 @@ from passivity.attacks.friction import bristle, drawn, largest
 
 from teleopdesign.passivity import (
     any_environment,
-    bounded_compensation,
     dahl_compensation,
     free_motion,
     largest_one_off_energy,
@@ -193,20 +192,6 @@ def test_no_motion_takes_energy_out_of_lugre_friction_that_is_proved_passive(see
     counted(number, lugre, np.random.default_rng(seed), least_ratio=0.0)
 
 
-def bounded(rng):
-    """Any force within the bound: along the motion, in each leg."""
-    f_c = 10.0 ** rng.uniform(-6, 6)
-    f_d = near(rng, f_c)
-    claim = bounded_compensation(coulomb_level=f_c, bound=f_d)
-    ratio = gain(rng, coulomb(f_d, f_d), coulomb(f_c, f_c), f_d, [1.0], rounds=2)
-    return claim.status, ratio
-
-
-@attacked(8, 80)
-def test_no_motion_beats_a_bounded_compensator_that_is_proved_passive(seed, number):
-    counted(number, bounded, np.random.default_rng(seed))
-
-
 def joint(rng):
     """Motor and link moved from outside; T of each leg from the motor's speed."""
     force, length, time = 10.0 ** rng.uniform(-6, 6, 3)
@@ -325,7 +310,7 @@ def tremble(record, pieces=1):
     return out
 
 
-@attacked(6, 25)
+@attacked(4, 25)
 def test_the_motion_that_refutes_a_compensator_in_a_computer_gives_out_energy(seed, number):
     rng = np.random.default_rng(seed)
     confirmed = 0
@@ -348,7 +333,7 @@ def test_the_motion_that_refutes_a_compensator_in_a_computer_gives_out_energy(se
     assert confirmed >= number / 6
 
 
-@attacked(6, 25)
+@attacked(4, 25)
 def test_closed_forms_of_cycles_are_those_of_motions_that_are_travelled(seed, number):
     rng = np.random.default_rng(seed)
     for _ in range(number):

@@ -203,7 +203,7 @@ def looped(rng, discrete):
     return diagram, (np.abs(modes).max() - 1) / h if discrete else modes.real.max(), poles, share
 
 
-@attacked(3, 60)
+@attacked(4, 60)
 def test_a_loop_with_a_hidden_mode_that_grows_has_no_margin(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for k in range(number):
