@@ -56,12 +56,12 @@ def bar_what_explains_nothing(
     if moved.fit.check_error >= state.fit.check_error:
         return None
     last = replace(new[-1], fit=moved.fit)
-    prepared, criteria = search.prepared, search.criteria
+    prepared = search.prepared
     drawn = noise_floor(moved.fit.model, prepared, search.generator())
     barred = (
-        stands_in_for_readings(state.fit, state.floor, last, drawn, criteria=criteria)
-        or stands_in_for_values(state.fit, last, prepared, state.floor, criteria=criteria)
-        or stands_in_for_moments(state.fit, last, prepared, criteria=criteria)
+        stands_in_for_readings(state.fit, state.floor, last, drawn)
+        or stands_in_for_values(state.fit, last, prepared, state.floor)
+        or stands_in_for_moments(state.fit, last, prepared)
     )
     if barred is None:
         return None
@@ -89,6 +89,6 @@ def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | No
             return moved
     if state.step > search.plan.most_effects or state.set_aside:
         return None
-    if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):
+    if is_a_tone(state.fit, state.tone, state.floor):
         return None
     return add_two(search, state) or add_transmission(search, state)

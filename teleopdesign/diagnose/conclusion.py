@@ -52,7 +52,7 @@ def conclude(
     rungs: of the state, with the reading error removed from the last fit; None: it is removed here
     beside: of each stretch, the motions of an arm's other joints, from which trees learn too
     """
-    prepared, floor, criteria = search.prepared, state.floor, search.criteria
+    prepared, floor = search.prepared, state.floor
     estimated = state.fit
     rungs = with_last_corrected(search, state) if rungs is None else rungs
     set_aside = (*state.barred, *state.set_aside)
@@ -68,7 +68,7 @@ def conclude(
     repeats = repeatability(last.model, whole, beside=beside)
     end = LadderEnd(
         search=search,
-        verdict=verdict(rungs, floor, criteria=criteria),
+        verdict=verdict(rungs, floor),
         beliefs=_beliefs(rungs, prepared),
         rungs=rungs,
         last=state.ranking,
@@ -84,7 +84,7 @@ def conclude(
     )
     if end.silence:
         return replace(end, verdict="undecided")
-    named = probable(end, criteria=criteria)
+    named = probable(end)
     end = replace(end, rungs=tuple(_leave_unnamed(r, named) for r in rungs))
     if end.verdict == "effects_missing" and not named:
         return replace(end, verdict="undecided")

@@ -15,7 +15,6 @@ from ..model import Model
 from .adequacy import is_noise, limit_noise_floor
 from .candidates import Candidate
 from .clock import with_late_hand, with_late_starts, with_paying_shift
-from .criteria import CRITERIA, Criteria
 from .decision import is_supported, worth_pursuing
 from .fit import Fit
 from .noise_floor import NoiseFloor, noise_floor
@@ -43,7 +42,6 @@ class LadderSearch:
     prepared: Prepared
     stated: Model
     seed: int = 0
-    criteria: Criteria = CRITERIA
     plan: SearchPlan = PLAN
     progress: Callable[[str], None] = lambda _: None
 
@@ -76,7 +74,6 @@ class LadderSearch:
             stated=self.stated if misled else None,
             worth=worth,
             widely=widely,
-            criteria=self.criteria,
             progress=lambda line: self.progress(line.within(f"step {step}")),
         )
 
@@ -196,12 +193,12 @@ def look(
     Where a low-pass of the hand's force sensor explains more than every effect and every external
     tone, the rung is fitted with this low-pass, and all candidates are ranked again.
     """
-    prepared, criteria = search.prepared, search.criteria
+    prepared = search.prepared
     here = with_paying_shift(rungs[-1].fit, prepared)
     rungs = (*rungs[:-1], replace(rungs[-1], fit=here))
     drawn = noise_floor(here.model, prepared, search.generator())
-    worth = worth_pursuing(here, drawn, criteria=criteria)
-    more = not is_noise(here.check_error, drawn, criteria=criteria)
+    worth = worth_pursuing(here, drawn)
+    more = not is_noise(here.check_error, drawn)
     widely = more and search.plan.draws > 0
     ranking = search.rank(here, step=len(rungs), worth=worth, widely=widely, misled=more)
     weakening = () if before is None else before.weakening
@@ -212,10 +209,10 @@ def look(
         r
         for r in ranking.ranked
         if r.candidate.key not in gone
-        and is_supported(here, r, floor, criteria=criteria)
+        and is_supported(here, r, floor)
         and (tone.is_beaten_by(r.fit) or depends_on_time(r.candidate.effect))
     )
-    late = with_late_hand(here, supported, floor, prepared, criteria=criteria)
+    late = with_late_hand(here, supported, floor, prepared)
     if late is not None and tone.is_beaten_by(late):
         # a late log is no effect: all effects are ranked again with it
         return look(search, (*rungs[:-1], replace(rungs[-1], fit=late)), before)

@@ -219,8 +219,7 @@ def conclude_parts(
         if rung.added is None or rung.follows is None:
             continue
         at = rung.added.at
-        relevant = joints[at].search.criteria.relevant
-        coupling = undetermined_coupling(rung, last, prepared, relevant=relevant)
+        coupling = undetermined_coupling(rung, last, prepared)
         if coupling is not None:
             more = (*ends[at].undetermined, coupling)
             ends[at] = replace(ends[at], undetermined=more)

@@ -18,7 +18,7 @@ import numpy as np
 
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate
-from .criteria import CRITERIA, Criteria
+from .criteria import CRITERIA
 from .decision import displaces, helps_but_is_barred
 from .evidence import chance
 from .free_functions import Belief
@@ -55,20 +55,20 @@ class CandidateEvidence:
     from_noise: bool = False
     at_most: float = 1.0
 
-    def probability(self, *, criteria: Criteria = CRITERIA) -> float:
+    def probability(self) -> float:
         """Probability that the effect is missing, 0 to 1."""
         real = self.share * (1.0 - chance(self.ranked.score))
         if not np.isfinite(real):  # a model that runs away has no error: nothing speaks for it
             return 0.0
         if not (self.accepted or self.as_good):
-            return criteria.true_of_others * real * self.explained
+            return CRITERIA.true_of_others * real * self.explained
         trusted = 1.0
-        if self.left > criteria.adequate:
+        if self.left > CRITERIA.adequate:
             # more than noise is left: is the form of the effect right?
-            trusted = 0.0 if self.belief is None else self.belief.share**criteria.believing
+            trusted = 0.0 if self.belief is None else self.belief.share**CRITERIA.believing
         if self.from_noise:  # a true effect explains nearly all force above the noise
             trusted *= self.explained
-        return float(np.clip(criteria.true_of_accepted * real * trusted, 0.0, self.at_most))
+        return float(np.clip(CRITERIA.true_of_accepted * real * trusted, 0.0, self.at_most))
 
 
 def evidence_of(end: LadderEnd) -> list[CandidateEvidence]:
@@ -129,12 +129,12 @@ def _evidence_alone(end: LadderEnd) -> list[CandidateEvidence]:
     return evidence
 
 
-def probable(end: LadderEnd, *, criteria: Criteria = CRITERIA) -> tuple[Candidate, ...]:
+def probable(end: LadderEnd) -> tuple[Candidate, ...]:
     """The accepted effects that are at least as likely as not, in the order added."""
     likely = {
         one.ranked.candidate.key
         for one in evidence_of(end)
-        if one.accepted and one.probability(criteria=criteria) >= criteria.named
+        if one.accepted and one.probability() >= CRITERIA.named
     }
     return select_independent(end, likely)
 

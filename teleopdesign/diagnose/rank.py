@@ -15,7 +15,7 @@ from ..model import Model
 from .candidate_fits import fit_each
 from .candidates import Candidate, bodies_with_measured_force, candidates
 from .cores import map_on_cores, one_thread_of_algebra
-from .criteria import CRITERIA, Criteria
+from .criteria import CRITERIA
 from .decision import find_superfluous_effect, lowers_check_squares, refusal
 from .draws import search_among_draws
 from .evidence import check_score, check_squares, whole_score
@@ -119,11 +119,10 @@ def _least_squares_that_count(
     An attempt does not count if it is refused, not identifiable or implausible, or leaves more on
     the check records.
     """
-    criteria = widths.criteria
     for candidate, fit in sorted(attempts, key=lambda attempt: fit_squares(attempt[1])):
         if (
-            not refusal(base, fit, criteria=criteria)
-            and is_identifiable(fit, base, criteria=criteria)
+            not refusal(base, fit)
+            and is_identifiable(fit, base)
             and check_squares(fit) < check_squares(base)
             and not _implausible(base, candidate, fit, widths.prepared)
             and not widths.explain(fit, candidate)
@@ -142,7 +141,6 @@ def rank_candidates(
     stated: Model | None = None,
     worth: float | None = None,
     widely: bool = False,
-    criteria: Criteria = CRITERIA,
     progress: Callable[[ProgressLine], None] | None = None,
 ) -> Ranking:
     """Add every candidate in turn to a fitted model, and rank the fits.
@@ -156,7 +154,7 @@ def rank_candidates(
     widely: where no candidate explains the records, draw further starts of gaps
     progress: called before each candidate
     """
-    worth = criteria.worth if worth is None else worth
+    worth = CRITERIA.worth if worth is None else worth
     possible = candidates(
         base.model,
         [s.motion for s in prepared.stretches],
@@ -173,7 +171,7 @@ def rank_candidates(
     fits = [_absent_if_it_runs_away(cf, base) for cf in fits]
     fits = [_from_kin(cf, fits, prepared) for cf in fits]
     worthless = (1.0 - worth) * fit_squares(base)
-    widths = OpenWidths(prepared, criteria)
+    widths = OpenWidths(prepared)
     fits = _contenders_refined(fits, base, worthless, prepared, stated=stated, widths=widths)
     fits = [_absent_if_it_runs_away(cf, base) for cf in fits]
     results = sorted((_ranked_best(base, cf, widths) for cf in fits), key=rank_key)
@@ -191,7 +189,6 @@ def make_ranked(
     *,
     prepared: Prepared,
     instead_of: Candidate | None = None,
-    criteria: Criteria = CRITERIA,
     widths: OpenWidths | None = None,
 ) -> Ranked:
     """A candidate that was added to a base, as the first of a ranking.
@@ -201,7 +198,7 @@ def make_ranked(
         check
     """
     implausible = _implausible(base, candidate, fit, prepared)
-    gains = lowers_check_squares(base, fit, criteria=criteria)
+    gains = lowers_check_squares(base, fit)
     if widths is not None and gains and not implausible:
         implausible = widths.explain(fit, candidate)
     return Ranked(
@@ -209,8 +206,8 @@ def make_ranked(
         fit=fit,
         score=check_score(base, fit),
         behind=0.0,
-        is_identifiable=is_identifiable(fit, base, criteria=criteria),
-        refused=refusal(base, fit, criteria=criteria),
+        is_identifiable=is_identifiable(fit, base),
+        refused=refusal(base, fit),
         implausible=implausible,
         instead_of=instead_of,
     )
@@ -259,12 +256,12 @@ def _find_discredited_effect(
 def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], widths: OpenWidths) -> Ranked:
     """The candidate added to the base, or in place of an effect that it makes superfluous."""
     candidate, fit = fitted
-    prepared, criteria = widths.prepared, widths.criteria
-    beside = make_ranked(base, candidate, fit, prepared=prepared, criteria=criteria, widths=widths)
-    gains = lowers_check_squares(base, fit, criteria=criteria)
+    prepared = widths.prepared
+    beside = make_ranked(base, candidate, fit, prepared=prepared, widths=widths)
+    gains = lowers_check_squares(base, fit)
     if candidate.key in fit.model.absent or beside.refused or not gains:
         return beside
-    superfluous = find_superfluous_effect(base, fit, candidate, criteria=criteria)
+    superfluous = find_superfluous_effect(base, fit, candidate)
     if superfluous is None and beside.implausible:
         superfluous = _find_discredited_effect(base, fit, candidate, prepared)
     if superfluous is None:
@@ -275,14 +272,8 @@ def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], widths: OpenWidths) -
     except ModelError:  # another effect needs it
         return beside
     alone = estimate(less, prepared)
-    if check_squares(alone) > (1.0 + criteria.relevant) * check_squares(fit):
+    if check_squares(alone) > (1.0 + CRITERIA.relevant) * check_squares(fit):
         return beside
     return make_ranked(
-        base,
-        candidate,
-        alone,
-        prepared=prepared,
-        instead_of=superfluous,
-        criteria=criteria,
-        widths=widths,
+        base, candidate, alone, prepared=prepared, instead_of=superfluous, widths=widths
     )

@@ -18,6 +18,7 @@ from ..base.errors import ModelError
 from .adequacy import is_adequate
 from .candidates import Candidate, comes_too_early
 from .cores import map_on_cores
+from .criteria import CRITERIA
 from .decision import is_better, is_supported, objection
 from .evidence import check_squares
 from .fit import Fit, estimate
@@ -40,7 +41,7 @@ def add_transmission(search: LadderSearch, state: LadderState) -> LadderState | 
     except those that the two could imitate.
     returns: None where no such pair is supported
     """
-    if is_adequate(state.fit, state.floor, criteria=search.criteria) or not search.plan.tip_starts:
+    if is_adequate(state.fit, state.floor) or not search.plan.tip_starts:
         return None
     staying = _rungs_to_stay(search, state)
     for rungs in (staying, state.rungs) if len(staying) < state.step else (state.rungs,):
@@ -142,12 +143,7 @@ def _fit_pair(
         return None
     if ranked_alone is not None:
         alone = min((alone, ranked_alone), key=check_squares)
-    rank = partial(
-        make_ranked,
-        prepared=prepared,
-        criteria=search.criteria,
-        widths=OpenWidths(prepared, search.criteria),
-    )
+    rank = partial(make_ranked, prepared=prepared, widths=OpenWidths(prepared))
     # alone, a transmission explains little and may have no gap: it is judged together with friction
     first = replace(rank(base, transmission, both), fit=alone)
     return (
@@ -163,17 +159,17 @@ def _is_supported(
 
     Effects that were set aside are not supported again.
     """
-    criteria, floor, both = search.criteria, state.floor, pair[-1].fit
+    floor, both = state.floor, pair[-1].fit
     added = {rung.added.key for rung in pair if rung.added is not None}
     if added & {one.candidate.key for one in state.set_aside}:
         return False
     first, second = (rung.ranking.ranked[0] for rung in pair if rung.ranking is not None)
     return (
-        not objection(base, replace(first, fit=both), floor, criteria=criteria)
+        not objection(base, replace(first, fit=both), floor)
         and first.is_identifiable
-        and is_supported(pair[0].fit, second, floor, criteria=criteria)
-        and is_better(base, both, floor, criteria=criteria)
-        and is_better(state.fit, both, floor, criteria=criteria)
-        and explained_share(state.fit, both, floor) >= criteria.mostly
+        and is_supported(pair[0].fit, second, floor)
+        and is_better(base, both, floor)
+        and is_better(state.fit, both, floor)
+        and explained_share(state.fit, both, floor) >= CRITERIA.mostly
         and best_tone(base, search.prepared).is_beaten_by(both)
     )

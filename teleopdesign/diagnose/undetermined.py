@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from ..base.errors import ModelError
 from ..measurement.prepare import Prepared
 from .candidates import Candidate, list_look_alikes
-from .criteria import CRITERIA, Criteria
+from .criteria import CRITERIA
 from .evidence import whole_score
 from .fit import Fit, estimate
 from .open_parameters import OPEN
@@ -43,9 +43,7 @@ def find_undetermined(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Undete
     return tuple(sentences)
 
 
-def alike_on_records(
-    fit: Fit, candidate: Candidate, prepared: Prepared, *, criteria: Criteria = CRITERIA
-) -> str:
+def alike_on_records(fit: Fit, candidate: Candidate, prepared: Prepared) -> str:
     """A sentence where the records hardly distinguish an effect from its look-alike; else "".
 
     For example gravity, and a spring with its rest position (`spring` and `bias`): over much of a
@@ -64,7 +62,7 @@ def alike_on_records(
         except ModelError:  # another effect needs it
             return ""
         instead = estimate(model, prepared)
-        if whole_score(instead, fit) >= criteria.close:
+        if whole_score(instead, fit) >= CRITERIA.close:
             continue
         return (
             f"these records hardly distinguish it from {' and '.join(f'`{n}`' for n in names)}, "

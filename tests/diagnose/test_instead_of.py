@@ -19,7 +19,6 @@ from teleopdesign import Body, Model, find_missing, load_experiment
 from teleopdesign.base.errors import ModelError
 from teleopdesign.diagnose.answer import answer, load_answer, write_answer
 from teleopdesign.diagnose.candidates import Candidate, candidates
-from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.decision import find_superfluous_effect
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.rung import Rung, restore_replaced
@@ -194,7 +193,7 @@ def ranked_beside_discredited(search, monkeypatch, name):
     added = base.model.with_effect("presliding", at="device")
     records = diagnosis.prepared
     fit = estimate_from_starts(added, records, base)
-    return rank._ranked_best(base, (candidate, fit), OpenWidths(records, CRITERIA))
+    return rank._ranked_best(base, (candidate, fit), OpenWidths(records))
 
 
 def test_what_loses_its_name_beside_a_candidate_gives_way_to_it(search, monkeypatch):
