@@ -124,7 +124,7 @@ def _with_shift(fit: Fit, place: str, shift: Value, prepared: Prepared) -> Fit:
 def _stands_for_a_delay(fit: Fit, place: str, prepared: Prepared) -> bool:
     """Whether a dead time in place of a shift at its bound surely leaves less on check records."""
     late = _with_dead_time(fit.model, place, prepared)
-    return late is not None and check_score(fit, estimate(late, prepared)) > CRITERIA.sure
+    return late is not None and check_score(fit, estimate(late, prepared)) > CRITERIA.significance
 
 
 def _with_dead_time(model: Model, place: str, prepared: Prepared) -> Model | None:

@@ -17,7 +17,7 @@ from .ranking import REFUSALS, Ranked
 
 def lowers_check_squares(base: Fit, other: Fit) -> bool:
     """Whether `other` leaves clearly fewer squares on the check records."""
-    return check_squares(other) < (1.0 - CRITERIA.relevant) * check_squares(base)
+    return check_squares(other) < (1.0 - CRITERIA.relative_improvement) * check_squares(base)
 
 
 def refusal(base: Fit, other: Fit) -> str:
@@ -28,10 +28,10 @@ def refusal(base: Fit, other: Fit) -> str:
     already = base.at_command.blind if base.at_command.blind > CRITERIA.blind else 0.0
     if other.at_command.blind - already > CRITERIA.blind:
         return "blind"
-    if other.at_command.weak and not base.at_command.weak:
-        return "weak"
     less = lowers_check_squares(base, other)
-    return "hides" if less and not gain_at_command(base, other) > CRITERIA.relevant else ""
+    return (
+        "hides" if less and not gain_at_command(base, other) > CRITERIA.relative_improvement else ""
+    )
 
 
 def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
@@ -48,8 +48,8 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
     def is_enough(gain: float, score: float) -> bool:
         """Whether a gain of this share of the squares, at this score, is more than chance."""
         return (
-            score > CRITERIA.sure
-            and gain > CRITERIA.relevant
+            score > CRITERIA.significance
+            and gain > CRITERIA.relative_improvement
             and gain > CRITERIA.of_floor * (floor.value / base.check_error) ** 2
         )
 
@@ -95,7 +95,7 @@ def helps_but_is_barred(base: Fit, ranked: Ranked, floor: NoiseFloor) -> str:
 
     returns: "" where no rule does, or the candidate does not lower the error enough
     """
-    less = ranked.fit.check_error**2 < (1.0 - CRITERIA.relevant) * base.check_error**2
+    less = ranked.fit.check_error**2 < (1.0 - CRITERIA.relative_improvement) * base.check_error**2
     if not (less or lowers_check_squares(base, ranked.fit)):
         return ""
     return objection(base, ranked, floor)
@@ -109,25 +109,6 @@ def list_displaced_parameters(base: Fit, fit: Fit, *, least: float = 1.0) -> lis
     """
     driven = set(fit.at_bound) - set(base.at_bound)
     return sorted(n for n in driven if n in base.model.parameters and _is_there(base, n, least))
-
-
-def displaces(base: Fit, fit: Fit, *, least: float) -> bool:
-    """Whether a fit drives an effect of the base to its absence.
-
-    An effect of several elements is there as long as one of them is.
-
-    least: as in `list_displaced_parameters`
-    """
-    for name in list_displaced_parameters(base, fit, least=least):
-        place, *of_effect = name.split(".")
-        if len(of_effect) == 1:  # of the body itself
-            return True
-        effect = of_effect[0]
-        strengths = base.model.body(place).effect(effect).absent
-        ended = {f"{place}.{effect}.{n}" for n in strengths} <= set(fit.at_bound)
-        if len(strengths) == 1 or ended:
-            return True
-    return False
 
 
 def _is_there(base: Fit, name: str, least: float) -> bool:
@@ -165,7 +146,7 @@ def find_superfluous_effect(base: Fit, fit: Fit, candidate: Candidate) -> Candid
         ):
             ended.append(effect)
         elif all(
-            CRITERIA.surely * base.model.parameters[n].stderr < base.model.from_absence(n)
+            CRITERIA.significance * base.model.parameters[n].stderr < base.model.from_absence(n)
             and fit.model.parameters[n].stderr >= fit.model.from_absence(n)
             for n in strengths
         ):
@@ -174,7 +155,7 @@ def find_superfluous_effect(base: Fit, fit: Fit, candidate: Candidate) -> Candid
     if len(superfluous) != 1:
         return None
     start = f"{candidate.at}.{superfluous[0].name}."
-    sure = list_displaced_parameters(base, fit, least=CRITERIA.close)
+    sure = list_displaced_parameters(base, fit, least=CRITERIA.indistinguishable)
     left = [n for n in sure if not n.startswith(start)]
     return None if left else Candidate(superfluous[0], candidate.at)
 

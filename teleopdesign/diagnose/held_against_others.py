@@ -80,7 +80,7 @@ def refusal(joint: PartSearch, before: PartsFit, after: PartsFit) -> str:
         noise_floor(fit.fits[name].model, records, joint.search.generator()).drawn ** 2
         for fit in (before, after)
     )
-    kept = 1.0 - CRITERIA.relevant
+    kept = 1.0 - CRITERIA.relative_improvement
     if there >= kept * sensors:
         return ""
     left, leaves = (fit.check_errors[name] ** 2 for fit in (before, after))

@@ -1,16 +1,25 @@
-"""Whether records determine the parameters that an effect adds to a model."""
+"""Whether records determine the parameters that an effect adds to a model.
+
+For a width, such as that of a backlash, a standard error does not tell it: the moments at which a
+tip crosses its gap depend on the whole motion before, so the sum of squares has several minima over
+the width. There the parameter is fixed at other values, and the other parameters are fitted again.
+"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..base.sentences import with_standard_error
 from ..base.units import unit_after_number
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
 from .criteria import CRITERIA
-from .evidence import check_squares
-from .fit import Fit, fit_squares
+from .effort import EFFORTS
+from .evidence import check_squares, whole_score
+from .fit import Fit, estimate, fit_squares
 from .products import product_of
 
 
@@ -59,8 +68,8 @@ def _errors_from_absence(model: Model, name: str) -> float:
     One where the parameter is neither essential nor a strength: other parameters show the effect.
     """
     if model.declared(name).search.essential:
-        return CRITERIA.surely
-    return CRITERIA.strong if is_strength(model, name) else 1.0
+        return CRITERIA.significance
+    return CRITERIA.interval if is_strength(model, name) else 1.0
 
 
 def explains_most(before: Fit, after: Fit) -> bool:
@@ -95,7 +104,7 @@ def list_known_in_product(fit: Fit, effect: str) -> frozenset[str]:
     if product is None:
         return frozenset()
     powers = zip(product.names, product.powers, strict=True)
-    return frozenset(n for n, p in powers if CRITERIA.close * product.known < abs(p))
+    return frozenset(n for n, p in powers if CRITERIA.indistinguishable * product.known < abs(p))
 
 
 def doubt(fit: Fit, candidate: Candidate, *, most: Fit | None = None) -> str:
@@ -121,8 +130,51 @@ def doubt(fit: Fit, candidate: Candidate, *, most: Fit | None = None) -> str:
         value = fit.model.parameters[full]
         if is_there and not declared.search.essential:
             continue
-        if not CRITERIA.strong * value.stderr < fit.model.from_absence(full):
+        if not CRITERIA.interval * value.stderr < fit.model.from_absence(full):
             unit = unit_after_number(fit.model.unit(full))
             best = with_standard_error(value.value, value.stderr)
             return f"{name} = {best}{unit}: within the sensor errors the effect may be absent"
     return ""
+
+
+def explain_open_width(fit: Fit, candidate: Candidate, prepared: Prepared) -> str:
+    """A sentence on another value of an essential parameter that fits as well; "": none does.
+
+    The parameter is held at a part and at a multiple of its value (`Criteria.times`). The other
+    parameters are fitted again from their values.
+    """
+    for name, declared in candidate.effect.parameters.items():
+        full = f"{candidate.at}.{candidate.effect.name}.{name}"
+        if not declared.search.essential or full not in fit.free:
+            continue
+        best = fit.model.parameters[full]
+        for other in (best.value / CRITERIA.times, best.value * CRITERIA.times):
+            if not declared.lower <= other <= declared.upper:
+                continue
+            held = fit.model.with_values({full: replace(best, value=other, fixed=True)})
+            again = estimate(held, prepared, effort=EFFORTS.rough)
+            if whole_score(again, fit) < CRITERIA.indistinguishable:
+                unit = unit_after_number(fit.model.unit(full))
+                return (
+                    f"{name} = {other:.3g}{unit} fits as well as {best.value:.3g}{unit}: these "
+                    "records do not determine it"
+                )
+    return ""
+
+
+@dataclass(frozen=True)
+class OpenWidths:
+    """The sentences of `explain_open_width` on the fits of one ranking; each is computed once."""
+
+    prepared: Prepared
+    #: by the fit's identity, which holds while the fit stands beside it
+    known: dict[int, tuple[Fit, str]] = field(default_factory=dict)
+
+    def explain(self, fit: Fit, candidate: Candidate) -> str:
+        """The sentence on a fit; "" where the records determine its essential parameters."""
+        if not any(p.search.essential for p in candidate.effect.parameters.values()):
+            return ""
+        if id(fit) not in self.known:
+            sentence = explain_open_width(fit, candidate, self.prepared)
+            self.known[id(fit)] = (fit, sentence)
+        return self.known[id(fit)][1]

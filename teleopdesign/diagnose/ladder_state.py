@@ -58,20 +58,16 @@ class LadderSearch:
         body: str | None = None,
         worth: float | None = None,
         widely: bool = False,
-        misled: bool = True,
     ) -> Ranking:
         """`rank_candidates` on top of a fit.
 
         step: number of the rung that is searched
-        misled: whether a missing effect may have led the fit's values astray: candidates then start
-            from the user's values too
         """
         return rank_candidates(
             base,
             self.prepared,
             among=among,
             body=body,
-            stated=self.stated if misled else None,
             worth=worth,
             widely=widely,
             progress=lambda line: self.progress(line.within(f"step {step}")),
@@ -88,9 +84,8 @@ class LadderState:
     floor: noise floor of the last rung, at most the error that the records themselves leave
     ranking: all candidates beside the last rung;  tone: the best external tone in its residual
     supported: candidates that the records support, in the order of the ranking
-    set_aside: accepted effects that the final errors do not support: none is added again
-    barred: supported effects that explain nothing: other values of the model do as much, or the
-        effect only weakens errors of the readings. None is added again
+    set_aside: effects that are not added again: the final errors did not support them, other values
+        of the model explain as much, or they only weaken errors of the readings
     visited: effects of all earlier models: no move leads to such a set again
     """
 
@@ -100,7 +95,6 @@ class LadderState:
     tone: Tone
     supported: tuple[Ranked, ...]
     set_aside: tuple[SetAside, ...] = ()
-    barred: tuple[SetAside, ...] = ()
     visited: frozenset[frozenset[tuple[str, str]]] = frozenset()
 
     @property
@@ -111,13 +105,12 @@ class LadderState:
     @property
     def gone(self) -> frozenset[tuple[str, str]]:
         """Effects, with their places, that are not added again."""
-        return frozenset(one.candidate.key for one in (*self.set_aside, *self.barred))
+        return frozenset(one.candidate.key for one in self.set_aside)
 
     @property
     def weakening(self) -> frozenset[tuple[str, str]]:
         """Effects, with their places, that were removed because they only weaken reading errors."""
-        removed = (*self.set_aside, *self.barred)
-        return frozenset(one.candidate.key for one in removed if one.of_readings)
+        return frozenset(one.candidate.key for one in self.set_aside if one.of_readings)
 
     def with_floor_limited(self) -> LadderState:
         """The state with the noise floor that its candidates allow, without `weakening`."""
@@ -200,7 +193,7 @@ def look(
     worth = worth_pursuing(here, drawn)
     more = not is_noise(here.check_error, drawn)
     widely = more and search.plan.draws > 0
-    ranking = search.rank(here, step=len(rungs), worth=worth, widely=widely, misled=more)
+    ranking = search.rank(here, step=len(rungs), worth=worth, widely=widely)
     weakening = () if before is None else before.weakening
     floor = limit_noise_floor(drawn, here, ranking, weakening)
     tone = best_tone(here, prepared)

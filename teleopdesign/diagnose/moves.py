@@ -222,7 +222,7 @@ def _in_place(
     supported: the effect, its alternatives and these, as far as the records support them
     """
     for r in supported.ranked:
-        if r.candidate in preferred and whole_score(r.fit, state.fit) < CRITERIA.close:
+        if r.candidate in preferred and whole_score(r.fit, state.fit) < CRITERIA.indistinguishable:
             return Rung(r.candidate, r.fit, supported)
     equal = [r for r in supported.ranked if r.candidate not in preferred]
     equal = select_equals(equal)

@@ -35,8 +35,9 @@ def select_equals(supported: Sequence[Ranked]) -> list[Ranked]:
 
 def _is_equal(one: Ranked, best: Ranked) -> bool:
     """Whether the records cannot distinguish a candidate from the best one."""
-    near = abs(one.fit.check_error - best.fit.check_error) < CRITERIA.near * best.fit.check_error
-    return near and whole_score(one.fit, best.fit) < CRITERIA.close
+    least = best.fit.check_error**2
+    differ = abs(one.fit.check_error**2 - least) >= CRITERIA.relative_improvement * least
+    return not differ and whole_score(one.fit, best.fit) < CRITERIA.indistinguishable
 
 
 def select_simplest(supported: Sequence[Ranked]) -> Ranked:

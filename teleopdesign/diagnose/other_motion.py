@@ -103,7 +103,7 @@ def undetermined_coupling(
     models[added.at] = models[added.at].without_effect(added.effect.name, at=added.at)
     models[other] = models[other].with_effect(added.effect, at=other)
     turned = estimate_parts(models, with_other_motions(prepared, {other: added.at}))
-    if turned.check_error**2 > (1.0 + CRITERIA.relevant) * last.check_error**2:
+    if turned.check_error**2 > (1.0 + CRITERIA.relative_improvement) * last.check_error**2:
         return None
     there = Candidate(added.effect, other)
     return Undetermined(

@@ -19,7 +19,7 @@ import numpy as np
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate
 from .criteria import CRITERIA
-from .decision import displaces, helps_but_is_barred
+from .decision import helps_but_is_barred
 from .evidence import chance
 from .free_functions import Belief
 from .ladder_end import LadderEnd
@@ -159,8 +159,7 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     """Share of each candidate among those that the ranking cannot distinguish; they sum to one.
 
     The accepted effect shares with those as good, and with a rarer look-alike at its weight. A
-    candidate that drives an effect of the base to its absence has no share, nor has one that was
-    not accepted and drives any parameter to a bound.
+    candidate that was not accepted and drives a parameter to a bound has no share.
     returns: all zero where no candidate has a share
     """
     accepted = rung is not None and rung.added is not None
@@ -176,9 +175,7 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     for r in ranking.ranked:
         driven = set(r.fit.at_bound) - bound
         # an accepted effect may have a parameter at its bound, because it was supported with it
-        least = CRITERIA.close
-        gone = displaces(ranking.base, r.fit, least=least) if accepted else bool(driven)
-        serious = r.counts and r.candidate.key in alike | rarer and not gone
+        serious = r.counts and r.candidate.key in alike | rarer and (accepted or not driven)
         weight = CRITERIA.rarer if r.candidate.key in rarer else 1.0
         weights[r.candidate.key] = (
             weight * math.exp(-0.5 * max(r.behind - first, 0.0) ** 2) if serious else 0.0

@@ -28,10 +28,6 @@ from .noise_floor import NoiseFloor, say_floors
 from .rung import Rung
 from .statements import SetAside
 
-#: blocks of the check records in fewer of which an effect may follow errors of the readings. Lower:
-#: a lag is named on a motor that sticks and slips; higher: a weak spring is not
-MOMENTS = 10
-
 
 def estimable_on_all(prepared: Prepared) -> Prepared | None:
     """All records as fit records, with the check records for comparison; None: no check records.
@@ -88,12 +84,6 @@ def stands_in_for_readings(
     left, leaves = base.check_error / before.drawn, rung.fit.check_error / after.drawn
     if not is_of_readings(left):
         return None
-    if leaves < CRITERIA.weakened and acts_at_few_moments(base, rung.fit):
-        reason = (
-            f"leaves {leaves:.2g} noise floors, less than the readings alone would leave, and acts "
-            f"at few moments: it only follows their errors ({left:.2g} floors are left without it)"
-        )
-        return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)
     if after.drawn < CRITERIA.weakened * before.drawn:
         explains = leaves <= CRITERIA.weakened * left
     else:
@@ -125,16 +115,6 @@ def stands_in_for_moments(base: Fit, rung: Rung, prepared: Prepared) -> SetAside
         "without a check record so few may agree by chance, or share an error of their time"
     )
     return SetAside(rung.added, rung.fit.check_error, reason)
-
-
-def acts_at_few_moments(base: Fit, fit: Fit) -> bool:
-    """Whether fewer than `MOMENTS` blocks of the check records hold what an effect explains.
-
-    15 to 23 of 30 for a weak spring, 4 and 7 for a lag and a delay that followed errors of
-    readings. In shorter records it is small whatever acts: there the doubt counts against the
-    effect.
-    """
-    return acting_moments(base, fit) < MOMENTS
 
 
 def acting_moments(base: Fit, fit: Fit) -> float:
