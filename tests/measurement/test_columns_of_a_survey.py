@@ -152,7 +152,7 @@ def test_a_name_suggests_a_current_or_a_torque_and_never_both(name, current, tor
     assert (says(name, "torque") and not says(name, "current")) is torque
 
 
-def test_where_position_force_and_hand_are_stated_no_other_column_is_tried():
+def test_with_position_force_and_hand_stated_there_is_no_guess():
     columns = {"t_s": T, "a": Q, "b": U, "c": np.roll(Q, 3), "d": np.cos(T)}
     stated = {"position": "a", "actuator_force": "b", "interaction_force": "none"}
     survey = look(columns, **stated)
