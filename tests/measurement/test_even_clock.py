@@ -11,7 +11,7 @@ from teleopdesign.measurement.record_clock import clock_of, segments_of
 
 
 @given(
-    lengths=st.lists(st.integers(20, 300), min_size=1, max_size=4),
+    lengths=st.lists(st.integers(70, 300), min_size=1, max_size=4),
     period=st.floats(4e-3, 0.05),
     seed=st.integers(0, 1000),
 )
