@@ -79,6 +79,8 @@ class Body:
                     f"body: {name} = {value:g}{unit_after_number(self.unit(name))} is outside "
                     f"{parameter.lower:g} .. {parameter.upper:g}"
                 )
+            if parameter.search.held:
+                parameters[name] = replace(parameters[name], fixed=True)
         object.__setattr__(self, "parameters", Frozen(parameters))
 
     def declared(self) -> list[tuple[str, Parameter]]:
