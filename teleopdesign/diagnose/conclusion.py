@@ -64,8 +64,9 @@ def conclude(
             rungs, estimated = steady, steady[-1].fit
     last, whole = rungs[-1].fit, search.whole
     search.progress("what could be learned")
-    trees = learnable(last.model, whole, beside=beside, seed=search.seed)
-    repeats = repeatability(last.model, whole, beside=beside)
+    timed = not whole.is_curve
+    trees = learnable(last.model, whole, beside=beside, seed=search.seed) if timed else None
+    repeats = repeatability(last.model, whole, beside=beside) if timed else None
     end = LadderEnd(
         search=search,
         verdict=verdict(rungs, floor, criteria=criteria),
@@ -75,7 +76,7 @@ def conclude(
         estimated=estimated,
         floor=floor,
         learnable=trees,
-        near_reversals=error_near_reversals(last.model, whole),
+        near_reversals=error_near_reversals(last.model, whole) if timed else None,
         repeats=repeats,
         undetermined=find_undetermined(rungs, whole),
         set_aside=_select_left_out(set_aside, rungs),

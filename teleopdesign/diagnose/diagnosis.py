@@ -88,6 +88,7 @@ class Diagnosis(Shown, ByValue):
     links: name -> base parameter of the links of an arm
     friction_cells: body -> least friction that model and residual show together, by cells of its
         travel; an older answer, and an arm's joint, have none
+    kind: "friction curve": the records have no time, and the bandwidth is NaN; "": others
     simulation: comparison of the final model by simulation, as plain data
     recording: of the experiment; no part of the content
     """
@@ -127,6 +128,7 @@ class Diagnosis(Shown, ByValue):
     friction_cells: Annotated[Mapping[str, tuple[FrictionCell, ...]], OMIT] = field(
         default_factory=dict
     )
+    kind: Annotated[str, OMIT] = ""
     simulation: Annotated[Any, OMIT] = None
     recording: Annotated[DiagnosedRecording, NEVER] = field(
         default=DiagnosedRecording(), compare=False, repr=False
@@ -184,10 +186,11 @@ class Diagnosis(Shown, ByValue):
     def parameters(self) -> dict[str, EstimatedValue]:
         """Parameters of the final model without those of added effects; base parameters of links.
 
-        The inertia of an arm's joint is left out: it includes that of the links.
+        The inertia of an arm's joint is left out: it includes that of the links. So is that of a
+        friction curve, which tells none.
         """
         added = {f"{r.added.at}.{r.added.effect.name}" for r in self.rungs if r.added is not None}
-        ours = {f"{joint}.inertia" for joint in self.joints}
+        ours = {f"{joint}.inertia" for joint in (self.model.bodies if self.kind else self.joints)}
         rows = {
             name: estimate_of(self.model, name)
             for name in self.model.parameters

@@ -16,9 +16,10 @@ from .arm_description import ArmDescription, arm_from
 from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sample_rate_from
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
 from .doors.bag import is_bag
+from .friction_curve import CURVE, bodies_and_channels, curve_record
 from .reading import ReadingStep, reading_table
-from .record import SEPARATE, Record, read_record
-from .tables import is_log, tables_in
+from .record import SEPARATE, Record, read_record, wanted_columns
+from .tables import is_log, read_columns, tables_in
 
 _FILE = "experiment.toml"
 
@@ -32,6 +33,7 @@ class Experiment(ByValue):
     channels: "device.position" and the like, "time", "segment"
     bandwidth: Hz; model and measurement are compared below it; None: chosen from the records
     arm: the links that couple the bodies, where these are the joints of an arm; else None
+    kind: "friction curve": points of speed and force, without time; "": records over time
     guesses: entries that `teleopdesign new` guessed and nobody confirmed: key -> reason
     """
 
@@ -44,6 +46,12 @@ class Experiment(ByValue):
     records: tuple[Record, ...]
     guesses: Mapping[str, str] = field(default_factory=dict)
     arm: ArmDescription | None = None
+    kind: str = ""
+
+    @property
+    def is_curve(self) -> bool:
+        """Whether the records are points of a friction curve, without time."""
+        return self.kind == CURVE
 
     @property
     def fit_records(self) -> tuple[Record, ...]:
@@ -123,6 +131,8 @@ def load_experiment(folder: str | Path) -> Experiment:
             f"{experiment.where('diagram')}: found a whole diagram, expected [model]: it is "
             "compared by `teleopdesign diagnose` and td.find_missing"
         )
+    if "kind" in experiment.content:
+        return _load_curve(experiment, folder)
     experiment.allow(
         ("title", "model", "channels", "comparison", "records", "sample_rate", "guessed")
     )
@@ -153,6 +163,26 @@ def load_experiment(folder: str | Path) -> Experiment:
     guesses = {key: guessed.text(key) for key in guessed.content}
     return Experiment(
         folder, title, bodies, environment, channels, bandwidth, records, guesses, arm
+    )
+
+
+def _load_curve(experiment: Table, folder: Path) -> Experiment:
+    """A friction curve: an experiment whose records are points of speed and force."""
+    _choice(experiment, "kind", (CURVE,))
+    experiment.allow(("kind", "title", "model", "channels", "records", "guessed"))
+    bodies, channels = bodies_and_channels(experiment)
+    records = []
+    for file, use, offset_names, span in record_entries(experiment, folder):
+        name = f"{folder.name}/{file}"
+        if span is not None:
+            raise ExperimentError(f"{experiment.where('records')}: span: a {CURVE} has no time")
+        columns = read_columns(folder / file, name, wanted_columns(channels))
+        records.append(curve_record(columns, file, use, channels, bodies, offset_names))
+    guessed = experiment.table("guessed")
+    guesses = {key: guessed.text(key) for key in guessed.content}
+    title = experiment.text("title", folder.name)
+    return Experiment(
+        folder, title, bodies, None, channels, None, tuple(records), guesses, kind=CURVE
     )
 
 

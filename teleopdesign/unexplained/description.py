@@ -54,6 +54,7 @@ class BodyResidual:
     at_rest: part of the residual's squares on rows where no motion is certain
     dependences: dependences of the residual, largest first
     tests: of every dependence, best first;  views: name -> graph of the residual
+    whiteness: None for a friction curve, whose points have no time
     """
 
     body: str
@@ -64,7 +65,7 @@ class BodyResidual:
     at_rest: float
     dependences: tuple[DescribedDependence, ...]
     tests: tuple[Dependence, ...]
-    whiteness: Whiteness
+    whiteness: Whiteness | None
     views: Mapping[str, Graph]
 
     @property
@@ -96,7 +97,7 @@ def describe_body(
     squares = float(np.sum((weight * rows.residual**2)[used]))
     resting = float(np.sum((weight * rows.residual**2)[used & (rows.root == 0)]))
     chosen, tests = dependences(rows, floor**2 * whole)
-    whiteness = whiteness_of(rows)
+    whiteness = None if rows.is_curve else whiteness_of(rows)
     descriptions = _describe_dependences(rows, chosen)
     after = descriptions[-1].dependence.squares if descriptions else squares
     return BodyResidual(

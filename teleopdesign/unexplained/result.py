@@ -127,7 +127,9 @@ def _body(part: BodyResidual) -> dict[str, Any]:
             }
             for t in part.tests
         ],
-        "whiteness": {
+        "whiteness": None
+        if part.whiteness is None
+        else {
             "probability_of_chance": part.whiteness.probability,
             "half_between_hertz": list(part.whiteness.band),
         },

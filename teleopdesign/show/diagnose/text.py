@@ -70,7 +70,8 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         f"  ({diagnosis.floor.source})"
     )
     source = f" ({diagnosis.bandwidth_source})" if diagnosis.bandwidth_source else ""
-    lines.append(f"compared up to {diagnosis.bandwidth:.3g} Hz{source}")
+    band = "" if diagnosis.kind else f" up to {diagnosis.bandwidth:.3g} Hz"
+    lines.append(f"compared{band}{source}")
     if diagnosis.left > CRITERIA.countable:
         lines.append(
             f"{'':<42}the floor contains no noise of the force: state `noise` at the channel"

@@ -144,7 +144,9 @@ def page_of(
             for name, one in diagnosis.links.items()
         ),
         added=() if body is None else added_effects(body, rows),
-        views=() if body is None else body_views(body, tuple(line.name for line in ladder)),
+        views=()
+        if body is None or body.kind
+        else body_views(body, tuple(line.name for line in ladder)),
         parameters=rows,
         candidate_steps=() if body is None else candidate_steps(body),
         candidates=() if body is None else candidate_rows(body),
