@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ExperimentError, ModelError, did_you_mean
 from ..base.units import si_factor
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.sensors import sensors_of
@@ -47,6 +47,11 @@ def propose(
     progress: called with a line of text at each step;  seed: of the sensors' errors
     raises ModelError: limits of a body that is not in the experiment
     """
+    if diagnosis.kind:
+        raise ExperimentError(
+            "next: a friction curve has no time: points that are missing, such as slower runs, are "
+            "listed by `teleopdesign check`"
+        )
     say = progress or (lambda _: None)
     say("searching for effects that the records leave open")
     rivals = rivals_of(diagnosis)

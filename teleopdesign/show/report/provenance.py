@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import dataclass
 
 from ...base.units import unit_of
@@ -15,7 +16,10 @@ _BLOCK = 1 << 20
 
 @dataclass(frozen=True)
 class RecordRow:
-    """A record file and its content; duration in s, rate in Hz, digest: SHA-256 of its log."""
+    """A record file and its content; digest: SHA-256 of its log.
+
+    duration: s;  rate: Hz;  both NaN for points of a friction curve
+    """
 
     file: str
     use: str
@@ -46,8 +50,8 @@ def record_rows(experiment: Experiment) -> tuple[RecordRow, ...]:
             file=r.file,
             use=r.use,
             samples=len(r.time),
-            duration=r.duration,
-            rate=1.0 / r.sample_time,
+            duration=math.nan if r.is_curve else r.duration,
+            rate=math.nan if r.is_curve else 1.0 / r.sample_time,
             segments=len(r.segments),
             offset_names=tuple(sorted(n.replace("_", " ") for n in r.offset_names)),
             digest=_digest(experiment, r.file),
