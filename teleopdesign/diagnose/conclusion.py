@@ -28,6 +28,7 @@ from .identifiability import doubt, explains_most
 from .ladder_end import LadderEnd
 from .ladder_state import LadderSearch, LadderState
 from .learnable import error_near_reversals, learnable
+from .no_named_law import free_form
 from .order import select_other_helpers
 from .plausibility import implausible_effects
 from .probability import probable
@@ -85,6 +86,9 @@ def conclude(
     )
     if end.silence:
         return replace(end, verdict="undecided")
+    if end.more_is_missing:
+        search.progress("a force without a named law")
+        end = replace(end, free_form=free_form(rungs[-1].fit, floor, prepared))
     named = probable(end, criteria=criteria)
     end = replace(end, rungs=tuple(_leave_unnamed(r, named) for r in rungs))
     if end.verdict == "effects_missing" and not named:

@@ -25,6 +25,7 @@ from .candidates import Candidate
 from .fingerprint import Fingerprint
 from .learnable import Learnable, NearReversals
 from .model_data import model_of_body
+from .no_named_law import FreeForm
 from .noise_floor import NoiseFloor
 from .record_offsets import Offset
 from .record_shift import RecordShift
@@ -79,6 +80,8 @@ class Diagnosis(Shown, ByValue):
     estimated: the final model, not yet corrected for errors of the readings; None: as `fitted`
     open: questions that the records leave open; None: an older answer does not say
     not_accepted, nearest: candidates that leave less than the final model, and do not count
+    no_named_law: the final model with a curve through values, which surely leaves less and explains
+        nothing; None: there is none
     silence: why the records tell no effect, as the end of a verdict; "": they may tell one
     remarks: further sentences on the records
     left_out: parts of a full search that this one left out, in words
@@ -118,6 +121,7 @@ class Diagnosis(Shown, ByValue):
     open: tuple[OpenQuestion, ...] | None = None
     not_accepted: tuple[NotAccepted, ...] = ()
     nearest: Nearest | None = None
+    no_named_law: Annotated[FreeForm | None, OMIT] = None
     silence: str = ""
     remarks: tuple[str, ...] = ()
     left_out: Annotated[tuple[str, ...], OMIT] = ()

@@ -10,6 +10,7 @@ from ..measurement.bandwidth import slower_sensors
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared
 from ..measurement.reading import reading_data
+from ..model import Model
 from .answer import with_recording
 from .candidates import Candidate, is_static, list_look_alikes
 from .diagnosis import Diagnosis
@@ -69,8 +70,9 @@ def diagnosis_of(end: LadderEnd) -> Diagnosis:
         open=open_questions(end),
         not_accepted=not_accepted(end),
         nearest=nearest(end),
+        no_named_law=end.free_form,
         silence=end.silence,
-        remarks=() if experiment.is_curve else tuple(short_segment_lines(experiment)),
+        remarks=(*_without_law(model), *_of_segments(experiment)),
         left_out=(*search.plan.omissions(), *_needs_time(experiment)),
         considered=tuple(model.known),
         friction_cells={} if experiment.is_curve else all_friction_cells(model, whole),
@@ -85,6 +87,19 @@ def recording_of(experiment: Experiment, prepared: Prepared) -> DiagnosedRecordi
         experiment, prepared.bandwidth, None, {"": prepared}
     )
     return recording
+
+
+def _without_law(model: Model) -> tuple[str, ...]:
+    """A sentence on each curve of the model that has no named law."""
+    return tuple(
+        f"no named law: {name} at {place} follows a force through its values and explains none"
+        for name, place in model.effects
+        if model.body(place).effect(name).free
+    )
+
+
+def _of_segments(experiment: Experiment) -> tuple[str, ...]:
+    return () if experiment.is_curve else tuple(short_segment_lines(experiment))
 
 
 def _needs_time(experiment: Experiment) -> tuple[str, ...]:

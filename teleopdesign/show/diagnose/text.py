@@ -78,6 +78,7 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         )
     lines += [*_lines_of_rest(diagnosis), *_lines_not_accepted(diagnosis)]
     lines += [f"set aside: {one}" for one in diagnosis.set_aside]
+    lines += [str(diagnosis.no_named_law)] * (diagnosis.no_named_law is not None)
     lines += [f"left out: {words}" for words in diagnosis.left_out]
     if records_differ(diagnosis.after):
         lines.append(records_line(diagnosis))
