@@ -53,8 +53,8 @@ def free_form(fit: Fit, floor: NoiseFloor, prepared: Prepared) -> FreeForm | Non
     """
     if prepared.is_linked:
         return None
-    tried = {c: _with_curve(fit, c, prepared) for c in _curves(fit.model, prepared)}
-    better = {c: one for c, one in tried.items() if is_better(fit, one, floor)}
+    fits = {c: _with_curve(fit, c, prepared) for c in _curves(fit.model, prepared)}
+    better = {c: one for c, one in fits.items() if is_better(fit, one, floor)}
     if not better:
         return None
     best = min(better, key=lambda c: better[c].check_error)

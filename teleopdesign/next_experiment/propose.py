@@ -47,11 +47,7 @@ def propose(
     progress: called with a line of text at each step;  seed: of the sensors' errors
     raises ModelError: limits of a body that is not in the experiment
     """
-    if diagnosis.kind:
-        raise ExperimentError(
-            "next: a friction curve has no time: points that are missing, such as slower runs, are "
-            "listed by `teleopdesign check`"
-        )
+    _refuse_curve(diagnosis)
     say = progress or (lambda _: None)
     say("searching for effects that the records leave open")
     rivals = rivals_of(diagnosis)
@@ -93,6 +89,14 @@ def propose(
     )
     say("simulating changes of the set-up")
     return replace(proposal, remedies=_remedies(proposal, candidates, setting, seed))
+
+
+def _refuse_curve(diagnosis: Diagnosis) -> None:
+    if diagnosis.kind:
+        raise ExperimentError(
+            "next: a friction curve has no time: points that are missing, such as slower runs, are "
+            "listed by `teleopdesign check`"
+        )
 
 
 def _merge_limits(diagnosis: Diagnosis, stated: Mapping[str, Limits]) -> dict[str, Limits]:

@@ -198,7 +198,7 @@ def test_new_reads_a_table_of_speeds_and_torques(tmp_path, monkeypatch):
 def test_new_asks_for_the_axis_where_no_unit_tells_it(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     write_table(tmp_path / "motor.csv", "a,b")
-    told = ["new", "motor.csv", "--kind", "friction curve", "--velocity", "a", "--force", "b"]
-    assert main(told) == 2
+    command = ["new", "motor.csv", "--kind", "friction curve", "--velocity", "a", "--force", "b"]
+    assert main(command) == 2
     assert "--axis" in capsys.readouterr().err
-    assert main([*told, "--axis", "prismatic"]) == 0
+    assert main([*command, "--axis", "prismatic"]) == 0

@@ -10,9 +10,9 @@ from ...base.sentences import unit_at_axis
 from ...diagnose.comparison import Comparison, residual_data
 from ...diagnose.recording import DiagnosedRecording
 from ..registry import shows
-from .friction_curve import MEASURED, draw_friction_curve
-from .ladder import AFTER, BEFORE, draw_ladder
-from .style import house_style
+from .friction_curve import draw_friction_curve
+from .ladder import draw_ladder
+from .style import AFTER, BEFORE, MEASURED, house_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

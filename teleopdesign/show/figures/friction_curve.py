@@ -12,6 +12,7 @@ from ...base.sentences import unit_at_axis
 from ...base.units import unit_of
 from ...diagnose.curve_band import friction_at
 from ...measurement.filtering import Array
+from .style import MEASURED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from ...diagnose.fit import Fit
     from ...measurement.prepare import Prepared
 
-MEASURED = "0.55"
 #: points of a line in one direction
 POINTS = 300
 #: standard errors on both sides of a line

@@ -1,4 +1,4 @@
-"""The ladder of a diagnosis as bars, and the colours of its first and its last model."""
+"""The ladder of a diagnosis as bars."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .style import AFTER, BEFORE
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ...diagnose.diagnosis import Diagnosis
-
-BEFORE, AFTER = "#D55E00", "#0072B2"
 
 
 def draw_ladder(ax: Axes, diagnosis: Diagnosis, *, of: str) -> None:

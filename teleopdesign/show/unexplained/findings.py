@@ -16,7 +16,8 @@ from ...base.sentences import number, percent
 from ...diagnose.criteria import CRITERIA
 from ...unexplained.dependence import ALARM
 from ...unexplained.shapes import SHAPES
-from ..figures.diagnosis import AFTER, BACKWARD, FORWARD, MEASURED
+from ..figures.diagnosis import BACKWARD, FORWARD
+from ..figures.style import AFTER, MEASURED
 from ..registry import shows
 
 if TYPE_CHECKING:
