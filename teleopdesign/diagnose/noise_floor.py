@@ -83,7 +83,7 @@ def noise_floor(
     """
     stretches = prepared.of(use) or prepared.of("fit")
     if prepared.is_curve:
-        return _floor_of_points(prepared, stretches)
+        return _floor_of_points(model, prepared, stretches, generator)
     channels = prepared.experiment.channels
     stated = all(channels[f"{s.motion.body}.position"].resolution is not None for s in stretches)
     errors, before = [], residuals(model, stretches)
@@ -108,8 +108,16 @@ def noise_floor(
     return NoiseFloor(left, source, drawn=left, at_command=max(back, 1.0), jitters=jitters)
 
 
-def _floor_of_points(prepared: Prepared, stretches: Sequence[Stretch]) -> NoiseFloor:
-    """The floor of a friction curve: the noise of its force, stated or read from the points."""
+def _floor_of_points(
+    model: Model,
+    prepared: Prepared,
+    stretches: Sequence[Stretch],
+    generator: np.random.Generator,
+) -> NoiseFloor:
+    """The floor of a friction curve: the noise of its force, stated or read from the points.
+
+    A stated noise of the speed counts by the slope of the model's friction.
+    """
     noise = prepared.experiment.channels["device.actuator_force"].noise
     source = "stated noise of the force"
     if noise is None:
@@ -118,8 +126,21 @@ def _floor_of_points(prepared: Prepared, stretches: Sequence[Stretch]) -> NoiseF
             velocity, np.concatenate([s.motion.command for s in stretches])
         )
     rows = sum(len(s.keep) for s in stretches)
-    left = noise * float(np.sqrt(rows / sum(s.measured for s in stretches)))
+    of_speed = prepared.experiment.channels["device.velocity"].noise
+    squares = rows * noise**2
+    if of_speed is not None and "stated" in source:  # read from the points it is in the scatter
+        drawn = [_with_speeds_drawn(s, of_speed, generator) for s in stretches]
+        pairs = zip(residuals(model, drawn), residuals(model, stretches), strict=True)
+        squares += sum(float(np.sum((r - before) ** 2)) for (r, _), (before, _) in pairs)
+    left = float(np.sqrt(squares / sum(s.measured for s in stretches)))
     return NoiseFloor(left, source, drawn=left)
+
+
+def _with_speeds_drawn(stretch: Stretch, noise: float, generator: np.random.Generator) -> Stretch:
+    """The points of a friction curve with noise on their speeds; directions stay."""
+    velocity = stretch.motion.velocity
+    moved = velocity + noise * generator.standard_normal(len(velocity))
+    return replace(stretch, motion=replace(stretch.motion, velocity=moved))
 
 
 def _draw_reading(
