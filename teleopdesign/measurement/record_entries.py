@@ -64,6 +64,7 @@ def _overlap(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
 
 
 def choice_of(table: Table, key: str, choices: tuple[str, ...], default: str | None = None) -> str:
+    """The text under a key, one of these; raises ExperimentError: it is none."""
     value = table.text(key, default)
     if value not in choices:
         listed = " or ".join(quote(choice) for choice in choices)
