@@ -72,4 +72,4 @@ def _about_scatter(
     )
 
 
-CHECK = RecordingCheck(order=10, find=find_in_points, may_stop=True, kind=CURVE)
+CHECK = RecordingCheck(order=300, find=find_in_points, may_stop=True, kind=CURVE)
