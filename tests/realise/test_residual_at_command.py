@@ -1,7 +1,6 @@
 """A residual force as an error of the recorded command, led back through the actuation."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,9 +12,6 @@ from teleopdesign.effects import EFFECTS, Effect, Parameter
 from teleopdesign.measurement.motion import motion_of
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.residual_at_command import (
-    _transmit,
-    _Way,
-    blind_share,
     is_between,
     residual_at_command,
 )
@@ -125,23 +121,6 @@ def test_samples_beyond_a_limit_are_blind(side):
     np.testing.assert_array_equal(command_error.blind, side * motion.command > 3.0)
 
 
-@pytest.mark.parametrize("gain", [1.0, 0.4, -0.4, 3.0, 0.0])
-@pytest.mark.parametrize("varies", [False, True])
-def test_of_a_hands_force_the_part_that_a_way_transmits_reaches_the_body(gain, varies):
-    """No more than its usual part, and at most all: a resonance brings no force of its own."""
-    motion = one_way()
-    n = len(motion.time)
-    force = smooth_noise(np.random.default_rng(2), n, 2.0)
-    over = gain * (np.linspace(0.5, 1.5, n) if varies else np.ones(n))
-    way = _Way(over, np.full(len(motion.spectrum.frequency), complex(gain)), 0.0)
-    passed = _transmit(force, way, motion)
-    inside = slice(int(RATE), -int(RATE))
-    shape = np.minimum(over / gain, 1.0) if gain else np.ones(n)
-    # what amplifies is held at one, and its gain as well
-    expected = force if gain > 1.0 else force * gain * shape
-    np.testing.assert_allclose(passed[inside], expected[inside], atol=1e-6)
-
-
 def led_back(body, motion, residual):
     along = residual_along(body, motion)
     return residual_at_command(
@@ -169,25 +148,6 @@ def test_stages_in_series_are_led_back_one_by_one():
     assert not forces.blind.any()
 
 
-def test_a_delay_behind_a_limit_moves_no_blind_sample():
-    """A limit, then a delay of 0.2 s: blind is the command that was beyond the limit."""
-    motion = one_way()
-    body = Body(
-        "prismatic",
-        {
-            "inertia": Value(0.2),
-            "coulomb.level": Value(1.0),
-            "actuator_saturation.limit": Value(3.0),
-            "actuation_delay.delay": Value(0.2),
-        },
-        (EFFECTS["coulomb"], EFFECTS["actuator_saturation"], EFFECTS["actuation_delay"]),
-    )
-    command_error = residual_at_command(body, motion)
-    alone = residual_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion)
-    assert 0.2 < alone.blind.mean() < 0.8
-    np.testing.assert_array_equal(command_error.blind, alone.blind)
-
-
 def test_without_a_law_between_nothing_is_changed():
     motion = one_way()
     body = Body("prismatic", {"inertia": Value(0.2), "coulomb.level": Value(1.0)},
@@ -199,44 +159,6 @@ def test_without_a_law_between_nothing_is_changed():
     for name in PASSING:
         effect = {**EFFECTS, **CHEATS}[name]
         assert is_between(body_with(effect, PASSING[name])), name
-
-
-def test_friction_that_grows_with_the_acting_force_takes_its_part_of_each_error():
-    """Behind friction of mu times the force, 1 N of the residual is 1 / (1 - mu) N of command."""
-    motion = one_way()
-    for side in (1, -1):
-        motion = one_way(side)
-        body = body_with(EFFECTS["load_dependent_friction"], {"coefficient": 0.25})
-        wave = np.sin(2 * np.pi * motion.time)
-        forces = led_back(body, motion, wave)
-        inside = slice(int(RATE), -int(RATE))
-        np.testing.assert_allclose(forces.residual[inside], wave[inside] / 0.75, atol=0.01)
-
-
-def test_a_way_that_is_open_somewhere_passes_a_hands_force_whole_there():
-    motion = one_way()
-    n = len(motion.time)
-    force = smooth_noise(np.random.default_rng(2), n, 2.0)
-    gain = np.where(np.arange(n) < n // 2, 0.5, np.nan)
-    way = _Way(gain, np.ones(len(motion.spectrum.frequency), dtype=complex), 0.0)
-    passed = np.where(np.isnan(gain), 1.0, 0.5) * force
-    np.testing.assert_allclose(_transmit(force, way, motion), passed)
-
-
-def test_the_blind_share_counts_samples_that_slide_and_all_where_none_does():
-    def stretch(blind, direction):
-        return (
-            SimpleNamespace(blind=np.array(blind, dtype=bool)),
-            SimpleNamespace(direction=np.array(direction)),
-        )
-
-    first, second = stretch([1, 1, 0, 0], [1, 0, -1, 1]), stretch([1, 0], [0, 1])
-    errors, motions = zip(first, second, strict=True)
-    assert blind_share(errors, motions) == pytest.approx(1 / 4)
-    errors, motions = zip(stretch([1, 0, 0], [0, 0, 0]), strict=True)
-    assert blind_share(errors, motions) == pytest.approx(1 / 3)
-    errors, motions = zip(stretch([], []), strict=True)
-    assert blind_share(errors, motions) == 0.0
 
 
 @pytest.mark.parametrize("side", [1, -1])
