@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -147,12 +146,15 @@ def _improve(model: Model, names: Sequence[str], x: Array, squares: _Squares) ->
     """The model at the best values near a draw, by the simplex of Nelder and Mead (1965)."""
     from scipy.optimize import minimize  # takes half a second: imported only for a gap or a gear
 
+    def left(logarithms: Array) -> float:
+        return squares.of(_with_logarithms(model, names, logarithms))
+
     corners = np.vstack([x, x + PLAN.simplex * np.eye(len(x))])
-    options: Any = {"maxfev": PLAN.draw_evaluations, "initial_simplex": corners}
     best = minimize(
-        lambda y: squares.of(_with_logarithms(model, names, y)),
+        left,
         x,
         method="Nelder-Mead",
-        options=options,
+        bounds=None,
+        options={"maxfev": PLAN.draw_evaluations, "initial_simplex": corners},
     )
     return _with_logarithms(model, names, np.asarray(best.x))
