@@ -5,6 +5,7 @@
 
 Its forces, thresholds, candidates and probabilities are those of `diagnose`; nothing is computed
 here. Where the command is not recorded, the one that the computer's laws give takes its place.
+Forces between bodies are taken at half of the step that the command puts into them (`half_steps`).
 """
 
 from __future__ import annotations
@@ -12,8 +13,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
-
-import numpy as np
 
 from ..base.errors import ExperimentError, ModelError
 from ..base.toml import Table
@@ -29,9 +28,9 @@ from ..measurement.experiment import Experiment
 from ..measurement.record import record_of
 from ..measurement.tables import LogColumns
 from ..model import Model
-from .computer import ComputerPart, passes_of
 from .cuts import Cut
 from .diagram_experiment import DiagramExperiment, RecordedLog
+from .half_steps import at_half_step, command_of, share_of_step
 from .look_alikes import OF_A_HAND
 
 
@@ -112,7 +111,7 @@ def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
     rest = frozenset({"position_zero"}) if terms.held else frozenset()
     records = tuple(
         record_of(
-            _columns(experiment, cut, command, log),
+            _columns(experiment, name, log),
             f"{experiment.folder.name}/{log.file}",
             file=log.file,
             use=log.use,
@@ -187,16 +186,17 @@ def _value(body: Body, name: str) -> float:
     return body.parameters[name].value
 
 
-def _columns(experiment: DiagramExperiment, cut: Cut, command: str, log: RecordedLog) -> LogColumns:
-    """The columns of a log, with the command that the computer's laws give where none is there."""
-    if command in experiment.channels:
-        return log.columns
-    made = Cut(command, command, "computer", cut.blocks, cut.inputs)
-    part = ComputerPart(experiment.diagram, (made,), experiment.zero, experiment.computer)
-    passes = passes_of(experiment, log)
-    values, count = part.predict(passes)[command], len(experiment.seconds(log))
-    held = np.repeat(values, -(-count // len(values)))[:count]
-    return replace(log.columns, values={**log.columns.values, f"predicted {command}": held})
+def _columns(experiment: DiagramExperiment, moving: str, log: RecordedLog) -> LogColumns:
+    """The columns of a log, with forces at half of their steps and a predicted command."""
+    half = {
+        f"{name} at half of its step": at_half_step(experiment, name, log)
+        for name in experiment.recorded
+        if share_of_step(experiment, name) is not None
+    }
+    block = experiment.diagram.block(moving)
+    if isinstance(block, Moving) and block.command not in experiment.channels:
+        half[f"predicted {block.command}"] = command_of(experiment, block, log)
+    return replace(log.columns, values={**log.columns.values, **half})
 
 
 def _force(
@@ -207,5 +207,10 @@ def _force(
     if signal not in experiment.channels:
         raise ExperimentError(f"{experiment.title}: {signal} is not recorded")
     content = dict(experiment.channels[signal].content)
+    if share_of_step(experiment, signal) is not None:
+        channel, unit = experiment.channel[signal], unit_of("force", experiment.axis(signal))
+        sensor = {"resolution": channel.resolution, "noise": channel.noise}
+        content = {"column": f"{signal} at half of its step", "unit": unit}
+        content |= {key: value for key, value in sensor.items() if value is not None}
     content["sign"] = content.get("sign", 1) * (1 if weight > 0 else -1)
     return content | ({"measured": True} if measured else {})
