@@ -85,6 +85,8 @@ class ControlData:
             for c in part.cuts
         }
         self.shifts = (0,) if part.computer.one_pass else (0, -1, 1)
+        # low-passed residuals hold nothing above twice the bandwidth: every so many rows tell all
+        self.thin = max(1, int(1.0 / (4.0 * bandwidth * self.rows[0].period)))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, ControlData):
@@ -168,10 +170,12 @@ class ControlData:
             for value in effect.starts(self._samples(at), self.rows[0].period)
         ]
         sums = [self.squares(one) for one in starts]
-        fits = {}
-        for shift in self.shifts:
-            best = min(range(len(starts)), key=lambda i: sums[i][shift])
-            fits[shift] = self._refine(starts[best], shift)
+        best = {s: min(range(len(starts)), key=lambda i: sums[i][s]) for s in self.shifts}
+        shift = _least({s: sums[i][s] for s, i in best.items()})
+        fits = {shift: self._refine(starts[best[shift]], shift)}
+        # a delay and a shift trade whole rows: the shift is right where no other leaves less
+        while (shift := _least(self.squares(fits[shift].placed))) not in fits:
+            fits[shift] = self._refine(starts[best[shift]], shift)
         return fits[_least({shift: fit.squares for shift, fit in fits.items()})]
 
     def _refine(self, placed: Sequence[Placed], shift: int) -> ControlFit:
@@ -186,15 +190,17 @@ class ControlData:
 
         def left(x: Array) -> Array:
             one = self.residuals(self.predictions(placed_at(x)), shift, "fit")
-            return np.concatenate(list(one.values()))
+            return np.concatenate(list(one.values()))[:: self.thin]
 
         lower = np.array([p.effect.declared.lower for p in placed]) / unit
         start = np.maximum(np.array([p.value for p in placed]) / unit, lower + 1e-9)
         solved = least_squares(
             left, start, bounds=(lower, np.inf), diff_step=[1e-4] * len(start), xtol=1e-6
         )
-        errors = standard_errors(np.asarray(solved.jac), solved.fun, self.blocks["fit"]) * unit
-        return self.at(placed_at(solved.x), shift, errors)
+        errors = standard_errors(
+            np.asarray(solved.jac), solved.fun, self.blocks["fit"][:: self.thin]
+        )
+        return self.at(placed_at(solved.x), shift, errors * unit)
 
     def _unit(self, placed: Placed) -> float:
         """Scale of a value in a fit: its own size, or a hundredth of what the effect acts on."""
