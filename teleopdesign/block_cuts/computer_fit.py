@@ -21,7 +21,7 @@ from ..diagnose.solve import BLOCK
 from ..effects.of_blocks.controllers import ControlEffect
 from ..measurement.filtering import Array, spectrum
 from ..measurement.prepare import TRIM
-from .computer import ComputerPart, Passes, Placed, velocity_of
+from .computer import ComputerPart, Passes, Placed, free_parameters, velocity_of
 from .cuts import COMPUTER
 from .diagram_experiment import DiagramExperiment, RecordedLog
 
@@ -35,6 +35,7 @@ DRAWS = 8
 _MOST_DIGITS = 13
 #: squares over those of the signal below which two shifts leave the same: rounding
 TINY = 1e-16
+_BOUNDS = ("lower", "upper")
 
 
 @dataclass(frozen=True)
@@ -164,11 +165,17 @@ class ControlData:
         )
 
     def estimate(self, before: ControlFit, effect: ControlEffect, at: str) -> ControlFit:
-        """The best values of an effect and those before it, from its best start at each shift."""
-        starts = [
-            (*before.placed, Placed(effect, at, float(value)))
-            for value in effect.starts(self._samples(at), self.rows[0].period)
-        ]
+        """The best values of an effect and those before it."""
+        starts = effect.starts(self._samples(at), self.rows[0].period)
+        return self._best([(*before.placed, Placed(effect, at, float(v))) for v in starts])
+
+    def base(self) -> ControlFit:
+        """The laws as stated, their free parameters estimated."""
+        free = free_parameters(self.part.diagram, self.part.places)
+        return self._best([free]) if free else self.at(())
+
+    def _best(self, starts: Sequence[tuple[Placed, ...]]) -> ControlFit:
+        """The best fit from the best start at each shift."""
         sums = [self.squares(one) for one in starts]
         best = {s: min(range(len(starts)), key=lambda i: sums[i][s]) for s in self.shifts}
         shift = _least({s: sums[i][s] for s, i in best.items()})
@@ -192,10 +199,11 @@ class ControlData:
             one = self.residuals(self.predictions(placed_at(x)), shift, "fit")
             return np.concatenate(list(one.values()))[:: self.thin]
 
-        lower = np.array([p.effect.declared.lower for p in placed]) / unit
-        start = np.maximum(np.array([p.value for p in placed]) / unit, lower + 1e-9)
+        declared = [p.effect.declared for p in placed]
+        lower, upper = (np.array([getattr(d, b) for d in declared]) / unit for b in _BOUNDS)
+        start = np.clip(np.array([p.value for p in placed]) / unit, lower + 1e-9, upper - 1e-9)
         solved = least_squares(
-            left, start, bounds=(lower, np.inf), diff_step=[1e-4] * len(start), xtol=1e-6
+            left, start, bounds=(lower, upper), diff_step=[1e-4] * len(start), xtol=1e-6
         )
         errors = standard_errors(
             np.asarray(solved.jac), solved.fun, self.blocks["fit"][:: self.thin]

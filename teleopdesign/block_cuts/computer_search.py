@@ -91,7 +91,7 @@ def climb(
     data: ControlData, floors: dict[str, float], report: Callable[[str], None]
 ) -> ComputerLadder:
     """Add effects of the computer while the check rows support them."""
-    base = data.at(())
+    base = data.base()
     steps: list[ComputerStep] = []
     here = base
     while len(steps) <= _MOST:

@@ -192,6 +192,7 @@ class BlockDiagnosis(Shown, ByValue):
         candidates = [c for name, one in bodies.items() for c in self._share_candidates(name, one)]
         candidates += self._candidates_of_computer()
         parameters = {n: v for one in bodies.values() for n, v in one["model_parameters"].items()}
+        parameters |= self._parameters_of_laws()
         shifts = {n: v for one in bodies.values() for n, v in one["record_shift"].items()}
         return {
             "verdict": self.verdict,
@@ -230,6 +231,21 @@ class BlockDiagnosis(Shown, ByValue):
                 part = one["probability"] / (1 + len(same))
                 shared.append({**one, **_place(key), "probability": part})
         return shared
+
+    def _parameters_of_laws(self) -> dict[str, Any]:
+        """Free parameters of controllers at the end of the ladder."""
+        if self.computer is None:
+            return {}
+        last = self.computer.last
+        return {
+            f"{p.at}.{p.effect.parameter}": {
+                "value": p.value,
+                "stderr": stderr,
+                "unit": self.experiment.unit(p.effect, p.at),
+            }
+            for p, stderr in zip(last.placed, last.stderr, strict=True)
+            if p.effect.of_law
+        }
 
     def _shift_of_computer(self) -> dict[str, Any]:
         if self.computer is None or self.data is None or not self.computer.last.shift:
