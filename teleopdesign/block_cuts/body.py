@@ -22,7 +22,7 @@ from ..diagnose import Diagnosis
 from ..diagnose import find_missing as find_missing_in_body
 from ..diagrams import Attached, Diagram, Moving
 from ..effects import EFFECTS, Effect
-from ..measurement.channel import channels_from
+from ..measurement.channel import Channel, channels_from
 from ..measurement.description import BodyDescription
 from ..measurement.experiment import Experiment
 from ..measurement.record import record_of
@@ -107,8 +107,17 @@ def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
         content["time"] = experiment.channels["time"].content
     table = next(iter(experiment.channels.values()))
     channels = channels_from(Table(content, table.file, "channels"), described)
+    force, other = f"{name}.actuator_force", f"{name}.interaction_force"
+    one_pass = experiment.computer.one_pass
+    channels[force] = replace(channels[force], one_pass=one_pass)
+    # the error of a hand is relative to its cut, that of a body to what was recorded
+    if other in channels and command == cut.signal:
+        channels[other] = replace(channels[other], beside=True)
+    elif other in channels and command not in experiment.channels:
+        channels[force] = replace(channels[force], beside=True)
     # the rest position of a hand is free in each record
     rest = frozenset({"position_zero"}) if terms.held else frozenset()
+    _count_last_digits(experiment, terms, channels, name)
     records = tuple(
         record_of(
             _columns(experiment, name, log),
@@ -131,6 +140,20 @@ def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
         experiment.bandwidth,
         records,
     )
+
+
+def _count_last_digits(
+    experiment: DiagramExperiment, terms: ForcesOnBody, channels: dict[str, Channel], body: str
+) -> None:
+    """Steps of forces are at least the last digit of their columns, where a noise is stated."""
+    both = ("actuator_force", "interaction_force")
+    signals = dict(zip(both, (terms.command, *terms.others), strict=False))
+    for quantity, (signal, _) in signals.items():
+        one = channels[f"{body}.{quantity}"]
+        if signal in experiment.channels and one.noise is not None:
+            digit = max(experiment.digit(signal, log) for log in experiment.logs)
+            step = max(digit, one.resolution or 0.0)
+            channels[f"{body}.{quantity}"] = replace(one, resolution=step or None)
 
 
 def diagnose_body(

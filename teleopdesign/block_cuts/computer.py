@@ -13,7 +13,7 @@ import numpy as np
 
 from ..base.errors import ModelError
 from ..controllers import Controller
-from ..diagrams import Control, Diagram, Junction
+from ..diagrams import Control, Diagram, Junction, Moving
 from ..effects.of_blocks.controllers import CONTROL_EFFECTS, ORDER, ControlEffect
 from ..measurement.filtering import Array
 from ..realise.controller_along import controller_along
@@ -135,7 +135,7 @@ class ComputerPart:
     def signal(self, cut: Cut, rows: Passes, placed: Sequence[Placed] = ()) -> Array:
         """The signal of one cut, (n,)."""
         value = _Evaluation(self, rows, placed, cut.inputs).make(cut.signal)
-        if COMPUTER not in cut.blocks:
+        if not any(isinstance(b, Moving) and b.command == cut.signal for b in self.diagram.blocks):
             return value
         if self.computer.delay:
             value = CONTROL_EFFECTS["delay"].act(value, self.computer.delay, rows.period)

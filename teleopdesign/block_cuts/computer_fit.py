@@ -31,8 +31,6 @@ HELD_OUT = 1.0
 ROUNDING = 1e-12
 #: draws of the rounding: the floor is then known to a few percent
 DRAWS = 8
-#: decimals of a column; with more the rounding is none that counts
-_MOST_DIGITS = 13
 #: squares over those of the signal below which two shifts leave the same: rounding
 TINY = 1e-16
 _BOUNDS = ("lower", "upper")
@@ -278,7 +276,7 @@ def floors(data: ControlData, experiment: DiagramExperiment, seed: int = 0) -> d
         before, after = data.part.predict(rows), data.part.predict(again)
         for cut in data.part.cuts:
             s = cut.signal
-            step = max(_digit(experiment, log, s), experiment.channel[s].resolution or 0.0)
+            step = max(experiment.digit(s, log), experiment.channel[s].resolution or 0.0)
             for beside in random.uniform(0.0, step, DRAWS):
                 made = _round_to(after[s] + beside, step) - before[s] - beside
                 left = data.low(i, made)[data.masks[i]["check"]]
@@ -301,17 +299,5 @@ def _reading(
     if channel.resolution is not None and name in experiment.diagram.measured:
         return np.zeros(n)  # whole steps of a sensor, as the computer read them
     # a number of the computer, which was rounded for the log
-    step = max(_digit(experiment, log, name), channel.resolution or 0.0)
+    step = max(experiment.digit(name, log), channel.resolution or 0.0)
     return random.uniform(-0.5, 0.5, n) * step
-
-
-def _digit(experiment: DiagramExperiment, log: RecordedLog, name: str) -> float:
-    """The last digit of a column, SI; 0: as many digits as a number has."""
-    channel = experiment.channel[name]
-    values = np.concatenate([log.columns.values[c] for c in channel.columns])
-    signal = np.ptp(experiment.signal(name, log))
-    factor = signal / np.ptp(values) if np.ptp(values) else 0.0
-    for digits in range(_MOST_DIGITS):
-        if np.abs(np.round(values, digits) - values).max() < 1e-3 * 10.0**-digits:
-            return float(10.0**-digits * abs(factor))
-    return 0.0

@@ -7,7 +7,7 @@ whole joins their ladders, the largest fall of the error first.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -62,16 +62,14 @@ class BlockDiagnosis(Shown, ByValue):
     """Which block of a diagram differs from the recording, and by which effect.
 
     cuts: what is tested, and what is not
-    bodies: cut -> diagnosis of its body;  computer: ladder of the computer's cuts; None: none
-    wiring: cut -> error of a junction all of whose terms are recorded
-    data: of the computer's cuts
+    bodies: cut -> diagnosis of its body;  computer: ladder of the other cuts; None: none
+    data: of these cuts
     """
 
     experiment: DiagramExperiment
     cuts: Cuts
     bodies: Mapping[str, Diagnosis]
     computer: ComputerLadder | None
-    wiring: Mapping[str, float] = field(default_factory=dict)
     data: ControlData | None = None
 
     @cached_property
@@ -216,7 +214,6 @@ class BlockDiagnosis(Shown, ByValue):
             "untested": dict(self.cuts.untested),
             "to_separate": {c.name: list(c.separating) for c in self.cuts.tested if c.separating},
             "assumed": self.experiment.assumed,
-            "wiring": dict(self.wiring),
             "record_shift": shifts | self._shift_of_computer(),
             "bodies": bodies,
         }
