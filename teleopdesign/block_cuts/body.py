@@ -107,13 +107,13 @@ def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
         content["time"] = experiment.channels["time"].content
     table = next(iter(experiment.channels.values()))
     channels = channels_from(Table(content, table.file, "channels"), described)
-    force, other = f"{name}.actuator_force", f"{name}.interaction_force"
+    force, beside = f"{name}.actuator_force", f"{name}.interaction_force"
     one_pass = experiment.computer.one_pass
     channels[force] = replace(channels[force], one_pass=one_pass)
     # the error of a hand is relative to its cut, that of a body to what was recorded
-    if other in channels and command == cut.signal:
-        channels[other] = replace(channels[other], beside=True)
-    elif other in channels and command not in experiment.channels:
+    if beside in channels and command == cut.signal:
+        channels[beside] = replace(channels[beside], beside=True)
+    elif beside in channels and command not in experiment.channels:
         channels[force] = replace(channels[force], beside=True)
     # the rest position of a hand is free in each record
     rest = frozenset({"position_zero"}) if terms.held else frozenset()
@@ -168,7 +168,7 @@ def diagnose_body(
 
     known: effects by name;  options: those of `diagnose.find_missing`
     """
-    model = Model({cut.name: _joined_body(experiment.diagram, cut)}, known)
+    model = model_of_body(experiment.diagram, cut, known)
     if isinstance(experiment.diagram.block(cut.name), Attached):
         among = options.pop("among", None)
         names = known if among is None else among
@@ -180,6 +180,11 @@ def diagnose_body(
         **options,
     )
     return replace(diagnosis, left_out=())
+
+
+def model_of_body(diagram: Diagram, cut: Cut, known: Mapping[str, Effect] = EFFECTS) -> Model:
+    """The model of the body of a cut, as the diagram states it."""
+    return Model({cut.name: _joined_body(diagram, cut)}, known)
 
 
 def _bodies(diagram: Diagram, cut: Cut) -> list[Body]:

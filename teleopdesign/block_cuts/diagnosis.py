@@ -9,12 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.files import write_json
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
 from ..diagnose import Diagnosis
@@ -282,11 +280,6 @@ class BlockDiagnosis(Shown, ByValue):
     def plot_residuals(self) -> Figure:
         """What is left at the computer's cuts, over time and the variables of their blocks."""
         return figure_of(self, kind="panels")
-
-
-def write_answer(diagnosis: BlockDiagnosis, path: str | Path) -> None:
-    """Write the answer as JSON."""
-    write_json(path, diagnosis.answer())
 
 
 def _place(key: Key) -> dict[str, str]:

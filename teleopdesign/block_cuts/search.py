@@ -17,8 +17,8 @@ from ..model import Model
 from .body import diagnose_body
 from .computer import ComputerPart, passes_of
 from .computer_fit import ControlData, floors
-from .computer_search import ComputerLadder, climb
-from .cuts import Cut, Cuts
+from .computer_search import climb
+from .cuts import Cuts
 from .diagnosis import BlockDiagnosis
 from .diagram_experiment import DiagramExperiment
 
@@ -65,10 +65,10 @@ def find_missing(
         except (ModelError, ExperimentError) as error:
             cuts = _without_cut(cuts, cut.name, str(error))
     data, ladder = None, None
-    computed = (*cuts.of("computer"), *cuts.of("wiring"))
-    if computed:
+    if computed := (*cuts.of("computer"), *cuts.of("wiring")):
         try:
-            data, ladder = _of_computer(experiment, computed, bodies, report, seed)
+            data = data_of_computer(experiment, cuts, bodies)
+            ladder = climb(data, floors(data, experiment, seed), report)
         except ModelError as error:
             for cut in computed:
                 cuts = _without_cut(cuts, cut.name, str(error))
@@ -93,20 +93,20 @@ def _select(cuts: Cuts, at: Collection[str] | None) -> Cuts:
     return cuts
 
 
-def _of_computer(
-    experiment: DiagramExperiment,
-    cuts: tuple[Cut, ...],
-    bodies: dict[str, Diagnosis],
-    report: Callable[[str], None],
-    seed: int,
-) -> tuple[ControlData, ComputerLadder]:
-    part = ComputerPart(experiment.diagram, cuts, experiment.zero, experiment.computer)
+def data_of_computer(
+    experiment: DiagramExperiment, cuts: Cuts, bodies: Mapping[str, Diagnosis]
+) -> ControlData:
+    """The rows of the cuts of the computer and of sums, at the bandwidth of the bodies.
+
+    raises ModelError: rows are not passes of the computer, or a law cannot be predicted
+    """
+    computed = (*cuts.of("computer"), *cuts.of("wiring"))
+    part = ComputerPart(experiment.diagram, computed, experiment.zero, experiment.computer)
     rows = [passes_of(experiment, log) for log in experiment.logs]
     bandwidth = experiment.bandwidth or min(
         [d.bandwidth for d in bodies.values()] or [_BAND / rows[0].period]
     )
-    data = ControlData(part, rows, bandwidth)
-    return data, climb(data, floors(data, experiment, seed), report)
+    return ControlData(part, rows, bandwidth)
 
 
 def _without_cut(cuts: Cuts, name: str, why: str) -> Cuts:

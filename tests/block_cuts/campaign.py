@@ -25,7 +25,7 @@ TABLE = Path(__file__).with_suffix(".csv")
 FIELDS = ("level", "number", "planted", "right", "false", "verdict", "missing", "groups", "said")
 HIDDEN = [
     ("gain", "H", 1.06), ("delay", "H", 0.004), ("lag", "H", 0.004),
-    ("saturation", "H", 0.5), ("dead_zone", "H", 0.05), ("velocity_filter", "H", 0.006),
+    ("saturation", "H", 1.2), ("dead_zone", "H", 0.05), ("velocity_filter", "H", 0.006),
     ("gain", "C", 0.9), ("delay", "C", 0.003), ("velocity_filter", "C", 0.005),
     ("bias", "C", 0.02), ("gain", "K", 1.06), ("delay", "K", 0.004),
     ("gain", "computer", 1.04), ("delay", "computer", 0.003), ("lag", "computer", 0.003),
@@ -35,6 +35,9 @@ HIDDEN = [
     ("delay", "P", 0.003), ("gain", "P", 1.05), ("velocity_filter", "C_m", 0.005),
     ("lag", "C_s", 0.004),
 ]  # fmt: skip
+#: weak sizes that are no quarter: a limit below the largest output, and more than one row of delay,
+#: because a shift of a row belongs to the record
+WEAK = {("saturation", "H"): 0.75, ("delay", "computer"): 0.002}
 #: number of diagrams with nothing planted; each third one is a teleoperator
 ADEQUATE = 30
 #: edges of the bins of a calibration, as probabilities
@@ -49,8 +52,9 @@ def cases(level):
     made = []
     for effect, at, value in HIDDEN:
         absent = 1.0 if effect == "gain" else 0.0
-        # a limit acts less where it is higher
-        less = value / size if effect == "saturation" else absent + size * (value - absent)
+        less = absent + size * (value - absent)
+        if level == "weak":
+            less = WEAK.get((effect, at), less)
         made.append(({(effect, at): less}, at in ("P", "C_m", "C_s")))
     return made
 
@@ -84,8 +88,8 @@ def diagnose(level, number, hidden, of_two, place):
     return td.find_missing(experiment, at=at)
 
 
-def run(folder, level, first):
-    for number, (hidden, of_two) in list(enumerate(cases(level)))[first:]:
+def run(folder, level, first, last):
+    for number, (hidden, of_two) in list(enumerate(cases(level)))[first : last + 1]:
         diagnosis = diagnose(level, number, hidden, of_two, Path(folder) / level / f"{number:03}")
         said = [
             [c["effect"], c["at"], round(c["probability"], 4)]
@@ -133,6 +137,7 @@ if __name__ == "__main__":
     parser.add_argument("folder", nargs="?")
     parser.add_argument("--level", choices=("clear", "weak", "adequate"))
     parser.add_argument("--first", type=int, default=0, help="number of the first case")
+    parser.add_argument("--last", type=int, default=99, help="number of the last case")
     parser.add_argument("--table", action="store_true", help="print what the file says")
     options = parser.parse_args()
-    table() if options.table else run(options.folder, options.level, options.first)
+    table() if options.table else run(options.folder, options.level, options.first, options.last)

@@ -8,7 +8,7 @@ import pytest
 from block_cuts.interface_simulator import draw_interface, write_case
 
 import teleopdesign as td
-from teleopdesign.block_cuts.diagnosis import write_answer
+from teleopdesign.block_cuts import write_answer
 
 
 def diagnosis_of(folder, hidden, seed, **options):
