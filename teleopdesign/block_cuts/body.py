@@ -30,7 +30,7 @@ from ..measurement.tables import LogColumns
 from ..model import Model
 from .cuts import Cut
 from .diagram_experiment import DiagramExperiment, RecordedLog
-from .half_steps import at_half_step, command_of, share_of_step
+from .half_steps import command_of, force_at_half_step, share_of_step
 from .look_alikes import OF_A_HAND
 
 
@@ -217,7 +217,7 @@ def _value(body: Body, name: str) -> float:
 def _columns(experiment: DiagramExperiment, moving: str, log: RecordedLog) -> LogColumns:
     """The columns of a log, with forces at half of their steps and a predicted command."""
     half = {
-        f"{name} at half of its step": at_half_step(experiment, name, log)
+        f"{name} at half of its step": force_at_half_step(experiment, name, log)
         for name in experiment.recorded
         if share_of_step(experiment, name) is not None
     }

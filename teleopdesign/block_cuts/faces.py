@@ -48,7 +48,7 @@ def compare(
         one = compare_bodies(known, body, **options)
         assert isinstance(one, Comparison)
         made[cut.name] = one
-    if computed := _computed(model):
+    if computed := _names_of_computer(model):
         fit = data_of_computer(model, model.cuts, {}).at(())
         made |= dict.fromkeys(computed, fit)
     return made
@@ -75,7 +75,7 @@ def rank(
     made: dict[str, Ranking | ComputerStep] = {
         cut.name: rank_bodies(known, body) for cut, body, known in _bodies(model)
     }
-    if computed := _computed(model):
+    if computed := _names_of_computer(model):
         data = data_of_computer(model, model.cuts, {})
         made |= dict.fromkeys(computed, step_of(data, data.base(), floors(data, model)))
     return made
@@ -117,6 +117,6 @@ def _bodies(experiment: DiagramExperiment) -> Iterator[tuple[Cut, Experiment, Mo
         yield cut, body_experiment(experiment, cut), model_of_body(experiment.diagram, cut)
 
 
-def _computed(experiment: DiagramExperiment) -> tuple[str, ...]:
+def _names_of_computer(experiment: DiagramExperiment) -> tuple[str, ...]:
     cuts = experiment.cuts
     return tuple(c.name for c in (*cuts.of("computer"), *cuts.of("wiring")))

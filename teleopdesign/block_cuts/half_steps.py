@@ -38,7 +38,7 @@ def share_of_step(experiment: DiagramExperiment, signal: str) -> tuple[Moving, f
     return None
 
 
-def at_half_step(experiment: DiagramExperiment, signal: str, log: RecordedLog) -> Array:
+def force_at_half_step(experiment: DiagramExperiment, signal: str, log: RecordedLog) -> Array:
     """A force as recorded, with half of the command's step added where the body moves, SI, (n,)."""
     recorded = experiment.signal(signal, log)
     share = share_of_step(experiment, signal)

@@ -22,7 +22,17 @@ from block_cuts.teleoperator_simulator import draw_teleoperator, write_teleopera
 import teleopdesign as td
 
 TABLE = Path(__file__).with_suffix(".csv")
-FIELDS = ("level", "number", "planted", "right", "false", "verdict", "missing", "groups", "said")
+FIELDS = (
+    "level",
+    "number",
+    "planted",
+    "right",
+    "false",
+    "verdict",
+    "missing",
+    "groups",
+    "probabilities",
+)
 HIDDEN = [
     ("gain", "H", 1.06), ("delay", "H", 0.004), ("lag", "H", 0.004),
     ("saturation", "H", 1.2), ("dead_zone", "H", 0.05), ("velocity_filter", "H", 0.006),
@@ -91,7 +101,7 @@ def diagnose(level, number, hidden, of_two, place):
 def run(folder, level, first, last):
     for number, (hidden, of_two) in list(enumerate(cases(level)))[first : last + 1]:
         diagnosis = diagnose(level, number, hidden, of_two, Path(folder) / level / f"{number:03}")
-        said = [
+        probabilities = [
             [c["effect"], c["at"], round(c["probability"], 4)]
             for c in diagnosis.answer()["candidates"]
         ]
@@ -100,11 +110,13 @@ def run(folder, level, first, last):
             "right": judge(diagnosis, hidden),
             "false": [key for key in diagnosis.missing if key not in hidden],
             "verdict": diagnosis.verdict, "missing": diagnosis.missing,
-            "groups": diagnosis.groups, "said": said,
+            "groups": diagnosis.groups, "probabilities": probabilities,
         }  # fmt: skip
         with TABLE.open("a", newline="") as file:
-            csv.DictWriter(file, FIELDS).writerow({k: json.dumps(v) for k, v in row.items()})
-        print(*(f"{k} {v}" for k, v in row.items() if k != "said"), flush=True)
+            csv.DictWriter(file, FIELDS, lineterminator="\n").writerow(
+                {k: json.dumps(v) for k, v in row.items()}
+            )
+        print(*(f"{k} {v}" for k, v in row.items() if k != "probabilities"), flush=True)
 
 
 def table():
@@ -115,21 +127,23 @@ def table():
         here = [r for r in rows if r["level"] == level]
         right, false = sum(r["right"] for r in here), sum(bool(r["false"]) for r in here)
         print(f"{level}: {right} of {len(here)} right, {false} with a false name")
-    said = np.array(
+    probabilities = np.array(
         [
             (p, (effect, at) in [tuple(key) for key, _ in r["planted"]])
             for r in rows
-            for effect, at, p in r["said"]
+            for effect, at, p in r["probabilities"]
         ]
     )
     error = 0.0
     for low, high in zip(BINS[:-1], BINS[1:], strict=True):
-        here = said[(said[:, 0] >= low) & (said[:, 0] < high)]
+        here = probabilities[(probabilities[:, 0] >= low) & (probabilities[:, 0] < high)]
         if len(here):
             p, share = here.mean(axis=0)
-            error += len(here) / len(said) * abs(p - share)
-            print(f"said {low:.2f} to {high:.2f}: {len(here)}, mean {p:.3f}, true {share:.3f}")
-    print(f"expected calibration error {error:.4f} over {len(said)} candidates")
+            error += len(here) / len(probabilities) * abs(p - share)
+            print(
+                f"probability {low:.2f} to {high:.2f}: {len(here)}, mean {p:.3f}, true {share:.3f}"
+            )
+    print(f"expected calibration error {error:.4f} over {len(probabilities)} candidates")
 
 
 if __name__ == "__main__":

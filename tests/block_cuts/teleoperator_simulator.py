@@ -2,7 +2,7 @@
 
     U_m = -P (X_m - X_s) + C_m X_m          m_m a_m = U_m + F_m - friction - B v
     U_s =  P (X_m - X_s) + C_s X_s          m_s a_s = U_s - friction - B v      the slave is free
-    F_m = k (wanted - X_m) - b V_m - m_h a_m      a hand that follows its own wish
+    F_m = k (wanted - X_m) - b V_m - m_h a_m      a hand that follows its body wish
 
 P is a spring and a damper, C_m and C_s smoothed Coulomb cancellations. F_m is recorded, and what
 the hand wants is not, so that the hand is no block of the diagram.
@@ -100,8 +100,8 @@ def record(teleoperator, duration, random):
         coupling = outputs["P"](p["stiffness"] * error + p["coupling"] * rate)
         cancel = []
         for k, side in enumerate(SIDES):
-            known, own = velocities[f"C_{side}"](speed[k]), p[side]
-            law = own["c_level"] * known / (own["c_velocity"] + abs(known))
+            known, body = velocities[f"C_{side}"](speed[k]), p[side]
+            law = body["c_level"] * known / (body["c_velocity"] + abs(known))
             cancel.append(outputs[f"C_{side}"](law))
         command = np.array([-coupling, coupling]) + cancel
         out[:, i] = *reading, *command, force
@@ -123,13 +123,13 @@ def _accelerations(p, hidden, x, v, command, wanted):
     """Of master with hand, and of the slave, with dry friction as by Moreau."""
     made = np.zeros(2)
     for k, side in enumerate(SIDES):
-        own, mass, free = p[side], p[side]["m"], command[k] - p[side]["damping"] * v[k]
+        body, mass, free = p[side], p[side]["m"], command[k] - p[side]["damping"] * v[k]
         if side == "m":
             mass, free = mass + p["m_hand"], free + _hand(p, x[k], v[k], wanted)
         free -= hidden.get(("quadratic_drag", f"Z_{side}"), 0.0) * v[k] * abs(v[k])
         free -= hidden.get(("bias", f"Z_{side}"), 0.0)
         stopping = mass * v[k] / DT + free
-        made[k] = (free - min(max(stopping, -own["level"]), own["level"])) / mass
+        made[k] = (free - min(max(stopping, -body["level"]), body["level"])) / mass
     return made
 
 
@@ -148,8 +148,8 @@ def write_teleoperator(teleoperator, folder, random, durations=(11.0, 8.0)):
     p = teleoperator.values
     text = '[diagram]\nkind = "teleoperator"\n'
     for side in SIDES:
-        own = {n: p[side][n] * random.uniform(0.85, 1.15) for n in ("m", "level", "damping")}
-        text += BODY.format(side=side, **{**p[side], **own})
+        body = {n: p[side][n] * random.uniform(0.85, 1.15) for n in ("m", "level", "damping")}
+        text += BODY.format(side=side, **{**p[side], **body})
     (folder / "teleoperator.toml").write_text(text + COUPLING.format(**p))
     sensors = {n: getattr(teleoperator, n) for n in ("converter", "encoder", "noise")}
     records = "".join(

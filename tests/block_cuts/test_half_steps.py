@@ -7,7 +7,7 @@ from block_cuts.teleoperator_simulator import draw_teleoperator, write_teleopera
 from scipy.signal import butter, sosfiltfilt
 
 import teleopdesign as td
-from teleopdesign.block_cuts.half_steps import at_half_step, share_of_step
+from teleopdesign.block_cuts.half_steps import force_at_half_step, share_of_step
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def test_at_half_of_its_step_the_force_is_the_one_that_the_motion_asks_for(case)
     log = experiment.logs[0]
     position = experiment.signal("L", log)
     read = left_of(experiment.signal("R_M", log), position, values)
-    half = left_of(at_half_step(experiment, "R_M", log), position, values)
+    half = left_of(force_at_half_step(experiment, "R_M", log), position, values)
     # what is left is the noise of the sensor and its jumps where dry friction turns
     assert half < 0.75 * read
 
@@ -47,12 +47,12 @@ def test_a_share_is_that_of_the_inertias(case):
     assert moving.name == "Z_M" and share == pytest.approx(masses[1] / sum(masses))
 
 
-def test_a_sensor_that_the_computer_does_not_read_has_its_own_moments(case, tmp_path):
+def test_the_moments_of_a_sensor_that_the_computer_does_not_read_are_not_known(case, tmp_path):
     text = (case[0] / "experiment.toml").read_text()
     for file in case[0].iterdir():
         (tmp_path / file.name).write_bytes(file.read_bytes())
-    own = text.replace('column = "f_h",', 'column = "f_h", read_by_computer = false,')
-    (tmp_path / "experiment.toml").write_text(own)
+    unread = text.replace('column = "f_h",', 'column = "f_h", read_by_computer = false,')
+    (tmp_path / "experiment.toml").write_text(unread)
     assert share_of_step(td.load_experiment(tmp_path), "R_M") is None
 
 
