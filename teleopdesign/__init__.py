@@ -104,9 +104,13 @@ if TYPE_CHECKING:
     from .base.errors import TeleopDesignError as TeleopDesignError
     from .block_cuts import BlockDiagnosis as BlockDiagnosis
     from .block_cuts import DiagramExperiment as DiagramExperiment
+    from .block_cuts import compare as compare
+    from .block_cuts import describe as describe
     from .block_cuts import diagram_experiment as diagram_experiment
     from .block_cuts import find_missing as find_missing
+    from .block_cuts import load_answer as load_answer
     from .block_cuts import load_experiment as load_experiment
+    from .block_cuts import rank as rank
     from .blocks import Body as Body
     from .blocks import Value as Value
     from .blocks import hand as hand
@@ -125,10 +129,7 @@ if TYPE_CHECKING:
     from .diagnose import Comparison as Comparison
     from .diagnose import Diagnosis as Diagnosis
     from .diagnose import Ranking as Ranking
-    from .diagnose import compare as compare
     from .diagnose import fit as fit
-    from .diagnose import load_answer as load_answer
-    from .diagnose import rank as rank
     from .diagrams import ANY as ANY
     from .diagrams import Diagram as Diagram
     from .diagrams import haptic_interface as haptic_interface
@@ -176,7 +177,6 @@ if TYPE_CHECKING:
     from .tuning import limit as limit
     from .tuning import trade_off as trade_off
     from .tuning import tune as tune
-    from .unexplained import describe as describe
 
 # fmt: off
 #: group -> the public names that a user types

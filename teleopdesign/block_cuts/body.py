@@ -5,6 +5,7 @@
 
 Its forces, thresholds, candidates and probabilities are those of `diagnose`; nothing is computed
 here. Where the command is not recorded, the one that the computer's laws give takes its place.
+Forces between bodies are taken at half of the step that the command puts into them (`half_steps`).
 """
 
 from __future__ import annotations
@@ -12,8 +13,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
-
-import numpy as np
 
 from ..base.errors import ExperimentError, ModelError
 from ..base.toml import Table
@@ -23,15 +22,15 @@ from ..diagnose import Diagnosis
 from ..diagnose import find_missing as find_missing_in_body
 from ..diagrams import Attached, Diagram, Moving
 from ..effects import EFFECTS, Effect
-from ..measurement.channel import LogLayout, channels_from
+from ..measurement.channel import Channel, LogLayout, channels_from
 from ..measurement.description import BodyDescription
 from ..measurement.experiment import Experiment
 from ..measurement.record import RecordEntry, record_of
 from ..measurement.tables import LogColumns
 from ..model import Model
-from .computer import ComputerPart, passes_of
 from .cuts import Cut
 from .diagram_experiment import DiagramExperiment, RecordedLog
+from .half_steps import command_of, force_at_half_step, share_of_step
 from .look_alikes import OF_A_HAND
 
 
@@ -108,12 +107,21 @@ def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
         content["time"] = experiment.channels["time"].content
     table = next(iter(experiment.channels.values()))
     channels = channels_from(Table(content, table.file, "channels"), described)
-    layout = LogLayout(channels, described, experiment.sample_rate)
+    force, beside = f"{name}.actuator_force", f"{name}.interaction_force"
+    one_pass = experiment.computer.one_pass
+    channels[force] = replace(channels[force], one_pass=one_pass)
+    # the error of a hand is relative to its cut, that of a body to what was recorded
+    if beside in channels and command == cut.signal:
+        channels[beside] = replace(channels[beside], beside=True)
+    elif beside in channels and command not in experiment.channels:
+        channels[force] = replace(channels[force], beside=True)
     # the rest position of a hand is free in each record
     rest = frozenset({"position_zero"}) if terms.held else frozenset()
+    _count_last_digits(experiment, terms, channels, name)
+    layout = LogLayout(channels, described, experiment.sample_rate)
     records = tuple(
         record_of(
-            _columns(experiment, cut, command, log),
+            _columns(experiment, name, log),
             f"{experiment.folder.name}/{log.file}",
             RecordEntry(log.file, log.use, log.offset_names | rest),
             layout,
@@ -131,6 +139,20 @@ def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
     )
 
 
+def _count_last_digits(
+    experiment: DiagramExperiment, terms: ForcesOnBody, channels: dict[str, Channel], body: str
+) -> None:
+    """Steps of forces are at least the last digit of their columns, where a noise is stated."""
+    both = ("actuator_force", "interaction_force")
+    signals = dict(zip(both, (terms.command, *terms.others), strict=False))
+    for quantity, (signal, _) in signals.items():
+        one = channels[f"{body}.{quantity}"]
+        if signal in experiment.channels and one.noise is not None:
+            digit = max(experiment.digit(signal, log) for log in experiment.logs)
+            step = max(digit, one.resolution or 0.0)
+            channels[f"{body}.{quantity}"] = replace(one, resolution=step or None)
+
+
 def diagnose_body(
     experiment: DiagramExperiment,
     cut: Cut,
@@ -143,7 +165,7 @@ def diagnose_body(
 
     known: effects by name;  options: those of `diagnose.find_missing`
     """
-    model = Model({cut.name: _joined_body(experiment.diagram, cut)}, known)
+    model = model_of_body(experiment.diagram, cut, known)
     if isinstance(experiment.diagram.block(cut.name), Attached):
         among = options.pop("among", None)
         names = known if among is None else among
@@ -155,6 +177,11 @@ def diagnose_body(
         **options,
     )
     return replace(diagnosis, left_out=())
+
+
+def model_of_body(diagram: Diagram, cut: Cut, known: Mapping[str, Effect] = EFFECTS) -> Model:
+    """The model of the body of a cut, as the diagram states it."""
+    return Model({cut.name: _joined_body(diagram, cut)}, known)
 
 
 def _bodies(diagram: Diagram, cut: Cut) -> list[Body]:
@@ -184,16 +211,17 @@ def _value(body: Body, name: str) -> float:
     return body.parameters[name].value
 
 
-def _columns(experiment: DiagramExperiment, cut: Cut, command: str, log: RecordedLog) -> LogColumns:
-    """The columns of a log, with the command that the computer's laws give where none is there."""
-    if command in experiment.channels:
-        return log.columns
-    made = Cut(command, command, "computer", cut.blocks, cut.inputs)
-    part = ComputerPart(experiment.diagram, (made,), experiment.zero, experiment.computer)
-    passes = passes_of(experiment, log)
-    values, count = part.predict(passes)[command], len(experiment.seconds(log))
-    held = np.repeat(values, -(-count // len(values)))[:count]
-    return replace(log.columns, values={**log.columns.values, f"predicted {command}": held})
+def _columns(experiment: DiagramExperiment, moving: str, log: RecordedLog) -> LogColumns:
+    """The columns of a log, with forces at half of their steps and a predicted command."""
+    half = {
+        f"{name} at half of its step": force_at_half_step(experiment, name, log)
+        for name in experiment.recorded
+        if share_of_step(experiment, name) is not None
+    }
+    block = experiment.diagram.block(moving)
+    if isinstance(block, Moving) and block.command not in experiment.channels:
+        half[f"predicted {block.command}"] = command_of(experiment, block, log)
+    return replace(log.columns, values={**log.columns.values, **half})
 
 
 def _force(
@@ -204,5 +232,10 @@ def _force(
     if signal not in experiment.channels:
         raise ExperimentError(f"{experiment.title}: {signal} is not recorded")
     content = dict(experiment.channels[signal].content)
+    if share_of_step(experiment, signal) is not None:
+        channel, unit = experiment.channel[signal], unit_of("force", experiment.axis(signal))
+        sensor = {"resolution": channel.resolution, "noise": channel.noise}
+        content = {"column": f"{signal} at half of its step", "unit": unit}
+        content |= {key: value for key, value in sensor.items() if value is not None}
     content["sign"] = content.get("sign", 1) * (1 if weight > 0 else -1)
     return content | ({"measured": True} if measured else {})

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..base.errors import ModelError
 from ..controllers import Controller
-from ..diagrams import Control, Diagram, Junction
+from ..diagrams import Control, Diagram, Junction, Moving
 from ..effects.of_blocks.controllers import CONTROL_EFFECTS, ORDER, ControlEffect
 from ..measurement.filtering import Array
 from ..realise.controller_along import controller_along
@@ -36,6 +36,26 @@ class Placed:
     @property
     def key(self) -> tuple[str, str]:
         return self.effect.name, self.at
+
+
+def free_parameters(diagram: Diagram, blocks: Sequence[str]) -> tuple[Placed, ...]:
+    """Parameters of controllers that are not fixed, at their stated values."""
+    made = []
+    for block in (diagram.block(name) for name in blocks if diagram.has(name)):
+        law = block.controller if isinstance(block, Control) else None
+        for stage in law.stages if isinstance(law, Controller) else ():
+            for name in stage.free:
+                full, value = f"{stage.name}.{name}", float(stage.values[name])
+                free = ControlEffect(
+                    act=lambda samples, *_: samples,
+                    parameter=full,
+                    declared=stage.law.parameters[name],
+                    starts=lambda *_: np.array([]),
+                    of_law=True,
+                    name=full,
+                )
+                made.append(Placed(free, block.name, value))
+    return tuple(made)
 
 
 class UnevenRows(ModelError):
@@ -115,7 +135,7 @@ class ComputerPart:
     def signal(self, cut: Cut, rows: Passes, placed: Sequence[Placed] = ()) -> Array:
         """The signal of one cut, (n,)."""
         value = _Evaluation(self, rows, placed, cut.inputs).make(cut.signal)
-        if COMPUTER not in cut.blocks:
+        if not any(isinstance(b, Moving) and b.command == cut.signal for b in self.diagram.blocks):
             return value
         if self.computer.delay:
             value = CONTROL_EFFECTS["delay"].act(value, self.computer.delay, rows.period)
@@ -132,6 +152,7 @@ def apply(
 ) -> Array:
     """The samples with the effects at a place, in the order in which they act."""
     here = [p for p in placed if p.at == at and p.effect.on_velocity == on_velocity]
+    here = [p for p in here if not p.effect.of_law]
     for one in sorted(here, key=lambda p: ORDER.index(p.effect.name)):
         samples = one.effect.act(samples, one.value, period)
     return samples
@@ -174,8 +195,9 @@ class _Evaluation:
 
     def _control(self, block: Control) -> Array:
         source = self.value(block.input)
-        filters = [p for p in self.placed if p.at == block.name and p.effect.on_velocity]
-        same = not filters and not self.changed & {block.input, block.motion}
+        here = [p.effect for p in self.placed if p.at == block.name]
+        same = not any(e.on_velocity or e.of_law for e in here)
+        same = same and not self.changed & {block.input, block.motion}
         key = (self.rows.file, block.name)
         law = self.part.kept.get(key) if same else None
         if law is None:
@@ -203,8 +225,10 @@ class _Evaluation:
             velocity = np.asarray(lfilter([1.0 - keeps], [1.0, -keeps], travel))
         velocity = apply(velocity, block.name, self.placed, period, on_velocity=True)
         assert isinstance(block.controller, Controller)
+        here = [p for p in self.placed if p.at == block.name and p.effect.of_law]
+        law = block.controller.with_values({p.effect.parameter: p.value for p in here})
         return controller_along(
-            block.controller, input=source, velocity=velocity, travel_rate=travel, period=period
+            law, input=source, velocity=velocity, travel_rate=travel, period=period
         )
 
 

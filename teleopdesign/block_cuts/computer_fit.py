@@ -21,7 +21,7 @@ from ..diagnose.solve import BLOCK
 from ..effects.of_blocks.controllers import ControlEffect
 from ..measurement.filtering import Array, spectrum
 from ..measurement.prepare import TRIM
-from .computer import ComputerPart, Passes, Placed, velocity_of
+from .computer import ComputerPart, Passes, Placed, free_parameters, velocity_of
 from .cuts import COMPUTER
 from .diagram_experiment import DiagramExperiment, RecordedLog
 
@@ -31,10 +31,9 @@ HELD_OUT = 1.0
 ROUNDING = 1e-12
 #: draws of the rounding: the floor is then known to a few percent
 DRAWS = 8
-#: decimals of a column; with more the rounding is none that counts
-_MOST_DIGITS = 13
 #: squares over those of the signal below which two shifts leave the same: rounding
 TINY = 1e-16
+_BOUNDS = ("lower", "upper")
 
 
 @dataclass(frozen=True)
@@ -85,6 +84,8 @@ class ControlData:
             for c in part.cuts
         }
         self.shifts = (0,) if part.computer.one_pass else (0, -1, 1)
+        # low-passed residuals hold nothing above twice the bandwidth: every so many rows tell all
+        self.thin = max(1, int(1.0 / (4.0 * bandwidth * self.rows[0].period)))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, ControlData):
@@ -162,16 +163,24 @@ class ControlData:
         )
 
     def estimate(self, before: ControlFit, effect: ControlEffect, at: str) -> ControlFit:
-        """The best values of an effect and those before it, from its best start at each shift."""
-        starts = [
-            (*before.placed, Placed(effect, at, float(value)))
-            for value in effect.starts(self._samples(at), self.rows[0].period)
-        ]
+        """The best values of an effect and those before it."""
+        starts = effect.starts(self._samples(at), self.rows[0].period)
+        return self._best([(*before.placed, Placed(effect, at, float(v))) for v in starts])
+
+    def base(self) -> ControlFit:
+        """The laws as stated, their free parameters estimated."""
+        free = free_parameters(self.part.diagram, self.part.places)
+        return self._best([free]) if free else self.at(())
+
+    def _best(self, starts: Sequence[tuple[Placed, ...]]) -> ControlFit:
+        """The best fit from the best start at each shift."""
         sums = [self.squares(one) for one in starts]
-        fits = {}
-        for shift in self.shifts:
-            best = min(range(len(starts)), key=lambda i: sums[i][shift])
-            fits[shift] = self._refine(starts[best], shift)
+        best = {s: min(range(len(starts)), key=lambda i: sums[i][s]) for s in self.shifts}
+        shift = _least({s: sums[i][s] for s, i in best.items()})
+        fits = {shift: self._refine(starts[best[shift]], shift)}
+        # a delay and a shift trade whole rows: the shift is right where no other leaves less
+        while (shift := _least(self.squares(fits[shift].placed))) not in fits:
+            fits[shift] = self._refine(starts[best[shift]], shift)
         return fits[_least({shift: fit.squares for shift, fit in fits.items()})]
 
     def _refine(self, placed: Sequence[Placed], shift: int) -> ControlFit:
@@ -186,15 +195,18 @@ class ControlData:
 
         def left(x: Array) -> Array:
             one = self.residuals(self.predictions(placed_at(x)), shift, "fit")
-            return np.concatenate(list(one.values()))
+            return np.concatenate(list(one.values()))[:: self.thin]
 
-        lower = np.array([p.effect.declared.lower for p in placed]) / unit
-        start = np.maximum(np.array([p.value for p in placed]) / unit, lower + 1e-9)
+        declared = [p.effect.declared for p in placed]
+        lower, upper = (np.array([getattr(d, b) for d in declared]) / unit for b in _BOUNDS)
+        start = np.clip(np.array([p.value for p in placed]) / unit, lower + 1e-9, upper - 1e-9)
         solved = least_squares(
-            left, start, bounds=(lower, np.inf), diff_step=[1e-4] * len(start), xtol=1e-6
+            left, start, bounds=(lower, upper), diff_step=[1e-4] * len(start), xtol=1e-6
         )
-        errors = standard_errors(np.asarray(solved.jac), solved.fun, self.blocks["fit"]) * unit
-        return self.at(placed_at(solved.x), shift, errors)
+        errors = standard_errors(
+            np.asarray(solved.jac), solved.fun, self.blocks["fit"][:: self.thin]
+        )
+        return self.at(placed_at(solved.x), shift, errors * unit)
 
     def _unit(self, placed: Placed) -> float:
         """Scale of a value in a fit: its own size, or a hundredth of what the effect acts on."""
@@ -264,7 +276,7 @@ def floors(data: ControlData, experiment: DiagramExperiment, seed: int = 0) -> d
         before, after = data.part.predict(rows), data.part.predict(again)
         for cut in data.part.cuts:
             s = cut.signal
-            step = max(_digit(experiment, log, s), experiment.channel[s].resolution or 0.0)
+            step = max(experiment.digit(s, log), experiment.channel[s].resolution or 0.0)
             for beside in random.uniform(0.0, step, DRAWS):
                 made = _round_to(after[s] + beside, step) - before[s] - beside
                 left = data.low(i, made)[data.masks[i]["check"]]
@@ -287,17 +299,5 @@ def _reading(
     if channel.resolution is not None and name in experiment.diagram.measured:
         return np.zeros(n)  # whole steps of a sensor, as the computer read them
     # a number of the computer, which was rounded for the log
-    step = max(_digit(experiment, log, name), channel.resolution or 0.0)
+    step = max(experiment.digit(name, log), channel.resolution or 0.0)
     return random.uniform(-0.5, 0.5, n) * step
-
-
-def _digit(experiment: DiagramExperiment, log: RecordedLog, name: str) -> float:
-    """The last digit of a column, SI; 0: as many digits as a number has."""
-    channel = experiment.channel[name]
-    values = np.concatenate([log.columns.values[c] for c in channel.columns])
-    signal = np.ptp(experiment.signal(name, log))
-    factor = signal / np.ptp(values) if np.ptp(values) else 0.0
-    for digits in range(_MOST_DIGITS):
-        if np.abs(np.round(values, digits) - values).max() < 1e-3 * 10.0**-digits:
-            return float(10.0**-digits * abs(factor))
-    return 0.0

@@ -91,12 +91,12 @@ def climb(
     data: ControlData, floors: dict[str, float], report: Callable[[str], None]
 ) -> ComputerLadder:
     """Add effects of the computer while the check rows support them."""
-    base = data.at(())
+    base = data.base()
     steps: list[ComputerStep] = []
     here = base
     while len(steps) <= _MOST:
         report(f"effects of the computer, beside {len(here.placed)}")
-        step = _step(data, here, floors)
+        step = step_of(data, here, floors)
         steps.append(step)
         if step.accepted is None:
             break
@@ -107,7 +107,7 @@ def climb(
     return replace(ladder, steps=tuple(_with_probabilities(s, ladder) for s in steps))
 
 
-def _step(data: ControlData, here: ControlFit, floors: dict[str, float]) -> ComputerStep:
+def step_of(data: ControlData, here: ControlFit, floors: dict[str, float]) -> ComputerStep:
     """Fit every candidate, and accept the best one that the check rows support."""
     there = {p.key for p in here.placed}
     attempts = []

@@ -129,10 +129,10 @@ def _cut(diagram: Diagram, signal: str, made: _Traced, recorded: Collection[str]
     separating = tuple(s for s in diagram.signals if s in inside) if len(made.blocks) > 1 else ()
     names = tuple(b.name for b in diagram.blocks if b in made.blocks)
     if not bodies:
+        if not controls:
+            return Cut(signal, signal, "wiring", (), inputs)
         commands = {b.command for b in diagram.blocks if isinstance(b, Moving)}
         whole = (COMPUTER,) if signal in commands else ()
-        if not (controls or whole):
-            return Cut(signal, signal, "wiring", (), inputs)
         return Cut(signal, signal, "computer", (*names, *whole), inputs, separating)
     moving = [b for b in bodies if isinstance(b, Moving)]
     if any(isinstance(b, Linked) for b in bodies):

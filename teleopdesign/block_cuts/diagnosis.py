@@ -7,14 +7,12 @@ whole joins their ladders, the largest fall of the error first.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.files import write_json
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
 from ..diagnose import Diagnosis
@@ -62,16 +60,14 @@ class BlockDiagnosis(Shown, ByValue):
     """Which block of a diagram differs from the recording, and by which effect.
 
     cuts: what is tested, and what is not
-    bodies: cut -> diagnosis of its body;  computer: ladder of the computer's cuts; None: none
-    wiring: cut -> error of a junction all of whose terms are recorded
-    data: of the computer's cuts
+    bodies: cut -> diagnosis of its body;  computer: ladder of the other cuts; None: none
+    data: of these cuts
     """
 
     experiment: DiagramExperiment
     cuts: Cuts
     bodies: Mapping[str, Diagnosis]
     computer: ComputerLadder | None
-    wiring: Mapping[str, float] = field(default_factory=dict)
     data: ControlData | None = None
 
     @cached_property
@@ -192,6 +188,7 @@ class BlockDiagnosis(Shown, ByValue):
         candidates = [c for name, one in bodies.items() for c in self._share_candidates(name, one)]
         candidates += self._candidates_of_computer()
         parameters = {n: v for one in bodies.values() for n, v in one["model_parameters"].items()}
+        parameters |= self._parameters_of_laws()
         shifts = {n: v for one in bodies.values() for n, v in one["record_shift"].items()}
         return {
             "verdict": self.verdict,
@@ -215,7 +212,6 @@ class BlockDiagnosis(Shown, ByValue):
             "untested": dict(self.cuts.untested),
             "to_separate": {c.name: list(c.separating) for c in self.cuts.tested if c.separating},
             "assumed": self.experiment.assumed,
-            "wiring": dict(self.wiring),
             "record_shift": shifts | self._shift_of_computer(),
             "bodies": bodies,
         }
@@ -230,6 +226,21 @@ class BlockDiagnosis(Shown, ByValue):
                 part = one["probability"] / (1 + len(same))
                 shared.append({**one, **_place(key), "probability": part})
         return shared
+
+    def _parameters_of_laws(self) -> dict[str, Any]:
+        """Free parameters of controllers at the end of the ladder."""
+        if self.computer is None:
+            return {}
+        last = self.computer.last
+        return {
+            f"{p.at}.{p.effect.parameter}": {
+                "value": p.value,
+                "stderr": stderr,
+                "unit": self.experiment.unit(p.effect, p.at),
+            }
+            for p, stderr in zip(last.placed, last.stderr, strict=True)
+            if p.effect.of_law
+        }
 
     def _shift_of_computer(self) -> dict[str, Any]:
         if self.computer is None or self.data is None or not self.computer.last.shift:
@@ -269,11 +280,6 @@ class BlockDiagnosis(Shown, ByValue):
     def plot_residuals(self) -> Figure:
         """What is left at the computer's cuts, over time and the variables of their blocks."""
         return figure_of(self, kind="panels")
-
-
-def write_answer(diagnosis: BlockDiagnosis, path: str | Path) -> None:
-    """Write the answer as JSON."""
-    write_json(path, diagnosis.answer())
 
 
 def _place(key: Key) -> dict[str, str]:

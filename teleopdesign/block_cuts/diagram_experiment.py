@@ -21,6 +21,9 @@ from ..measurement.filtering import Array
 from ..measurement.tables import LogColumns
 from .cuts import Cuts, cuts_of
 
+#: decimals of a column; with more the rounding is none that counts
+_MOST_DIGITS = 13
+
 
 @dataclass(frozen=True)
 class StatedComputer:
@@ -102,6 +105,18 @@ class DiagramExperiment(ByValue):
         channel = self.channel[name]
         bodies = body_of_axis(self.axis(name))
         return conversion_to_si(channel, bodies, f"channels.{name}").signal(log.columns.values)
+
+    def digit(self, name: str, log: RecordedLog) -> float:
+        """The last digit of a signal's column, SI; 0: as many digits as a number has."""
+        values = np.concatenate([log.columns.values[c] for c in self.channel[name].columns])
+        values = values[np.isfinite(values)]
+        scale = np.ptp(values) if len(values) else 0.0
+        signal = self.signal(name, log)
+        factor = (np.nanmax(signal) - np.nanmin(signal)) / scale if scale else 0.0
+        for digits in range(_MOST_DIGITS):
+            if np.abs(np.round(values, digits) - values).max(initial=0.0) < 1e-3 * 10.0**-digits:
+                return float(10.0**-digits * abs(factor))
+        return 0.0
 
     def seconds(self, log: RecordedLog) -> Array:
         """Time of the rows, s, (n,)."""

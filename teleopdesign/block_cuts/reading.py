@@ -10,7 +10,7 @@ from typing import Any
 from ..base.arguments import check_types
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.toml import Table, read_toml
-from ..base.units import to_si
+from ..base.units import measures, to_si
 from ..diagrams import Diagram, read_diagram
 from ..measurement.channel import Channel, LogLayout, channel_from, frequency_from
 from ..measurement.experiment import Experiment, folder_of_experiment
@@ -69,6 +69,7 @@ def diagram_experiment(
     check: Any = None,
     outside: Sequence[str] = (),
     sample_period: float | None = None,
+    one_pass: bool = False,
     bandwidth: float | None = None,
     title: str = "data",
 ) -> DiagramExperiment:
@@ -77,9 +78,10 @@ def diagram_experiment(
     data, check: a DataFrame or a dict of arrays, to fit on and to report errors on
     channels: "time" and signals of the diagram -> a table as in [channels] of a file
     outside: signals from outside that are zero;  sample_period: of the computer, s;  bandwidth: Hz
+    one_pass: all columns of a row were written in one pass of the computer
     raises ExperimentError: no such signal or column, a unit that does not fit
     """
-    head: dict[str, Any] = {"outside": dict.fromkeys(outside, 0)}
+    head: dict[str, Any] = {"outside": dict.fromkeys(outside, 0), "one_pass": one_pass}
     if sample_period is not None:
         head["sample_period"] = {"value": sample_period, "unit": "s"}
     content: dict[str, Any] = {"title": title, "diagram": head, "channels": dict(channels)}
@@ -184,7 +186,8 @@ def _quantity(table: Table, key: str, quantity: str) -> float:
     entry = table.table(key)
     entry.allow(("value", "unit"))
     unit, where = entry.text("unit"), entry.where("unit")
-    return to_si(entry.number("value", above=0), unit, quantity=quantity, where=where)
+    axis = "revolute" if measures(unit, quantity, "revolute") else "prismatic"
+    return to_si(entry.number("value", above=0), unit, quantity=quantity, axis=axis, where=where)
 
 
 def _diagram_file(head: Table, folder: Path) -> Path:

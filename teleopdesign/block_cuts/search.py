@@ -6,21 +6,18 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from ..base.arguments import check_types
 from ..base.errors import ExperimentError, ModelError, unknown
 from ..diagnose import Diagnosis
 from ..diagnose import find_missing as find_missing_in_bodies
 from ..diagnose.search_plan import PLAN, SearchPlan
-from ..diagrams import Junction
 from ..effects import EFFECTS, Effect
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .body import diagnose_body
 from .computer import ComputerPart, passes_of
 from .computer_fit import ControlData, floors
-from .computer_search import ComputerLadder, climb
+from .computer_search import climb
 from .cuts import Cuts
 from .diagnosis import BlockDiagnosis
 from .diagram_experiment import DiagramExperiment
@@ -68,16 +65,17 @@ def find_missing(
         except (ModelError, ExperimentError) as error:
             cuts = _without_cut(cuts, cut.name, str(error))
     data, ladder = None, None
-    if cuts.of("computer"):
+    if computed := (*cuts.of("computer"), *cuts.of("wiring")):
         try:
-            data, ladder = _of_computer(experiment, cuts, bodies, report, seed)
+            data = data_of_computer(experiment, cuts, bodies)
+            ladder = climb(data, floors(data, experiment, seed), report)
         except ModelError as error:
-            for cut in cuts.of("computer"):
+            for cut in computed:
                 cuts = _without_cut(cuts, cut.name, str(error))
     if not (bodies or ladder):
         why = "; ".join(f"{block}: {text}" for block, text in cuts.untested.items())
         raise ExperimentError(f"{experiment.title}: no block can be tested: {why}")
-    return BlockDiagnosis(experiment, cuts, bodies, ladder, _wiring(experiment, cuts), data)
+    return BlockDiagnosis(experiment, cuts, bodies, ladder, data)
 
 
 def _select(cuts: Cuts, at: Collection[str] | None) -> Cuts:
@@ -95,22 +93,20 @@ def _select(cuts: Cuts, at: Collection[str] | None) -> Cuts:
     return cuts
 
 
-def _of_computer(
-    experiment: DiagramExperiment,
-    cuts: Cuts,
-    bodies: dict[str, Diagnosis],
-    report: Callable[[str], None],
-    seed: int,
-) -> tuple[ControlData, ComputerLadder]:
-    part = ComputerPart(
-        experiment.diagram, cuts.of("computer"), experiment.zero, experiment.computer
-    )
+def data_of_computer(
+    experiment: DiagramExperiment, cuts: Cuts, bodies: Mapping[str, Diagnosis]
+) -> ControlData:
+    """The rows of the cuts of the computer and of sums, at the bandwidth of the bodies.
+
+    raises ModelError: rows are not passes of the computer, or a law cannot be predicted
+    """
+    computed = (*cuts.of("computer"), *cuts.of("wiring"))
+    part = ComputerPart(experiment.diagram, computed, experiment.zero, experiment.computer)
     rows = [passes_of(experiment, log) for log in experiment.logs]
     bandwidth = experiment.bandwidth or min(
         [d.bandwidth for d in bodies.values()] or [_BAND / rows[0].period]
     )
-    data = ControlData(part, rows, bandwidth)
-    return data, climb(data, floors(data, experiment, seed), report)
+    return ControlData(part, rows, bandwidth)
 
 
 def _without_cut(cuts: Cuts, name: str, why: str) -> Cuts:
@@ -123,23 +119,3 @@ def _without_cut(cuts: Cuts, name: str, why: str) -> Cuts:
         tested=left,
         untested={**cuts.untested, **{b: why for b in cut.blocks if b not in done}},
     )
-
-
-def _wiring(experiment: DiagramExperiment, cuts: Cuts) -> dict[str, float]:
-    """Error of each junction all of whose terms are recorded, over all rows."""
-    errors = {}
-    for cut in cuts.of("wiring"):
-        junction = next(j for j in experiment.diagram.junctions if j.output == cut.signal)
-        assert isinstance(junction, Junction)
-        left = whole = 0.0
-        for log in experiment.logs:
-            recorded = experiment.signal(cut.signal, log)
-            terms = [
-                float(w) * experiment.signal(s, log)
-                for s, w in junction.terms.items()
-                if s in cut.inputs
-            ]
-            left += float(np.nansum((recorded - np.sum(terms, axis=0)) ** 2))
-            whole += float(np.nansum(recorded**2))
-        errors[cut.name] = float(np.sqrt(left / whole)) if whole else 0.0
-    return errors

@@ -75,7 +75,7 @@ def experiment_or_diagram(folder: Path) -> Experiment | DiagramExperiment:
 
 def folder_of(path: Path) -> Path:
     """The path itself if it is not an answer; else the folder of the answer's experiment."""
-    answer = _answer_in(path)
+    answer = answer_in(path)
     if answer is None:
         return path
     from ..diagnose.answer import folder_of_answer
@@ -89,7 +89,7 @@ def experiment_and_answer(options: argparse.Namespace) -> Experiment:
 
     raises ExperimentError: there is an answer in `options.answer` already
     """
-    answer = _answer_in(options.folder)
+    answer = answer_in(options.folder)
     if answer is not None:
         if options.answer is not None:
             raise ExperimentError(f"--answer: found beside {answer}, which is an answer itself")
@@ -97,7 +97,7 @@ def experiment_and_answer(options: argparse.Namespace) -> Experiment:
     return experiment_of(options.folder)
 
 
-def _answer_in(path: Path) -> Path | None:
+def answer_in(path: Path) -> Path | None:
     """A path that is an answer, or answer.json of a folder without experiment; else None."""
     if path.suffix == ".json" and path.is_file():
         return path
@@ -178,7 +178,7 @@ def model_of_source(options: argparse.Namespace) -> tuple[Model, Path]:
     """
     from ..diagnose import load_answer
 
-    alone = _answer_in(options.folder)
+    alone = answer_in(options.folder)
     if alone is not None and options.answer is None:
         diagnosis, source = load_answer(alone, effects_by_name(options)), alone
     else:

@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ModelError
-from ..base.files import write_beside
+from ..base.files import write_beside, write_json
 from ..base.toml import read_toml
-from ._diagnosis import candidate_effects, effects_by_name, print_diagnosis
+from ._diagnosis import (
+    answer_in,
+    candidate_effects,
+    effects_by_name,
+    experiment_or_diagram,
+    print_diagnosis,
+)
 from ._options import say_written
 from ._progress import Reporter
 
 if TYPE_CHECKING:
-    from ..block_cuts import DiagramExperiment
+    from ..block_cuts import BlockDiagnosis, DiagramExperiment
 
+#: options of other commands that ask for one body
+_OF_ONE_BODY = ("as_is", "effect_file", "simulate", "limit")
 #: options of `diagnose` that ask for what only an experiment of bodies has
 _OF_BODIES = ("predictions", "simulate", "loop")
 
@@ -25,7 +34,7 @@ def diagnose_diagram(experiment: DiagramExperiment, options: argparse.Namespace)
 
     raises ModelError: an option that only an experiment of bodies has
     """
-    from ..block_cuts.diagnosis import BlockDiagnosis, write_answer
+    from ..block_cuts import BlockDiagnosis, write_answer
     from ..block_cuts.search import find_missing
     from ..diagnose.search_plan import PLAN, QUICK
 
@@ -74,6 +83,74 @@ def check_diagram(experiment: DiagramExperiment, options: argparse.Namespace) ->
             passes_of(experiment, log)
         except UnevenRows as problem:
             print(f"warning: the computer is untested: {problem}")
+    return 0
+
+
+def diagnosed_diagram(options: argparse.Namespace) -> BlockDiagnosis | None:
+    """The diagnosis of a whole diagram: read from an answer, or computed now; None: of bodies.
+
+    raises ModelError: an option that asks for one body
+    """
+    from ..block_cuts import BlockDiagnosis, find_missing, load_answer
+    from ..block_cuts.saved import is_block_answer
+
+    answer = options.answer or answer_in(options.folder)
+    if answer is None and "diagram" not in _head(options.folder):
+        return None
+    if answer is not None and not is_block_answer(answer):
+        return None
+    for name in _OF_ONE_BODY:
+        if getattr(options, name, None):
+            option = name.replace("_", "-")
+            raise ModelError(f"--{option}: is for experiments of bodies, found a whole diagram")
+    known = effects_by_name(options)
+    if answer is not None:
+        options.answer = answer
+        diagnosis = load_answer(answer, known)
+    else:
+        reporter = Reporter()
+        experiment = experiment_or_diagram(options.folder)
+        diagnosis = find_missing(experiment, progress=reporter, known=known)
+        reporter.clear()
+    assert isinstance(diagnosis, BlockDiagnosis)
+    return diagnosis
+
+
+def _head(folder: Path) -> Mapping[str, Any]:
+    """The tables of the experiment in a folder; blank where there is none."""
+    path = folder / "experiment.toml" if folder.is_dir() else folder
+    return read_toml(path, path.name).content if path.suffix == ".toml" and path.is_file() else {}
+
+
+def describe_diagram(diagnosis: BlockDiagnosis, options: argparse.Namespace) -> int:
+    """Print the ladder, and what the residual of each body depends on."""
+    from ..unexplained import describe_residual
+
+    print_diagnosis(str(diagnosis))
+    described = {}
+    for name, body in diagnosis.bodies.items():
+        described[name] = describe_residual(body.model, body.prepared, body.floor)
+        print(f"\n{name}\n{described[name]}")
+    if options.json is not None:
+        write_json(options.json, {name: one.as_data() for name, one in described.items()})
+    return 0
+
+
+def print_next(diagnosis: BlockDiagnosis) -> int:
+    """Print the signals that tell the open effects apart, or test what is untested."""
+    from ..block_cuts import what_to_log
+
+    print_diagnosis(str(diagnosis))
+    if diagnosis.verdict == "model_adequate" and not diagnosis.cuts.untested:
+        print("\nNothing more is needed: every block is tested, and what is left is noise.")
+        return 0
+    plan = what_to_log(diagnosis.experiment.diagram)
+    places = {at for group in diagnosis.groups for _, at in group}
+    apart = [s for c in diagnosis.cuts.tested if places & set(c.blocks) for s in c.separating]
+    logged = [one.name for one in plan.signals if one.needed or one.name in apart]
+    wanted = [name for name in logged if name not in diagnosis.experiment.recorded]
+    print(f"\nrecord next: {', '.join(wanted) or 'the same signals, with a stronger motion'}")
+    print(f"\n{plan.code}")
     return 0
 
 

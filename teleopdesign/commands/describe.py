@@ -12,6 +12,7 @@ from ._arms import add_body
 from ._diagnosis import diagnosis_of_part, experiment_and_answer, stated_model
 from ._options import add_experiment, add_output
 from ._paths import shell_word
+from ._whole_diagram import describe_diagram, diagnosed_diagram
 
 if TYPE_CHECKING:
     from ..diagnose.noise_floor import NoiseFloor
@@ -52,6 +53,8 @@ def run(options: argparse.Namespace) -> int:
     """Print the sentences; write the requested files."""
     if options.effect_file is not None and not options.effect_file.stem.isidentifier():
         raise ModelError(f"{options.effect_file}: expected a name such as my_effect.py")
+    if (whole := diagnosed_diagram(options)) is not None:
+        return describe_diagram(whole, options)
     from ..unexplained import describe_residual
 
     model, prepared, floor, model_text = _model_to_describe(options)

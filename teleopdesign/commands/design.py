@@ -13,8 +13,10 @@ from ._arms import add_body, inertia_line, joint_of, place_at_pose
 from ._diagnosis import diagnosis_of, experiment_and_answer, print_diagnosis
 from ._options import add_experiment, add_output, check_output, make_folder, say, say_written
 from ._paths import shell_word
+from ._whole_diagram import diagnosed_diagram
 
 if TYPE_CHECKING:
+    from ..block_cuts import BlockDiagnosis
     from ..design import Assumptions, Design
     from ..diagnose import Diagnosis
     from ..measurement import Experiment
@@ -62,6 +64,8 @@ def run(options: argparse.Namespace) -> int:
     if options.output is not None:
         make_folder(options.output)
     assumptions = _assumptions(options)
+    if (whole := diagnosed_diagram(options)) is not None:
+        return _run_diagram(whole, assumptions, options)
     experiment = experiment_and_answer(options)
     places = _places(options, experiment)
     diagnosis = _diagnosis_to_design_for(experiment, options)
@@ -70,6 +74,21 @@ def run(options: argparse.Namespace) -> int:
         designs[place] = _design(diagnosis, place, assumptions)
         print("" if len(designs) == 1 else "\n", end="")
         print(designs[place])
+    _write(designs, options)
+    return 0
+
+
+def _run_diagram(
+    diagnosis: BlockDiagnosis, assumptions: Assumptions, options: argparse.Namespace
+) -> int:
+    """Design for a device of a whole diagram, with its computer and its hand."""
+    from ..design.of_diagram import device_of_diagram
+
+    if options.answer is None:
+        print_diagnosis(str(diagnosis))
+    place = device_of_diagram(diagnosis, options.body, None)[1]
+    designs = {place: _design(diagnosis, place, assumptions)}
+    print(designs[place])
     _write(designs, options)
     return 0
 
@@ -111,7 +130,7 @@ def _diagnosis_to_design_for(experiment: Experiment, options: argparse.Namespace
     return diagnosis.joints[joint].with_final_model(model)
 
 
-def _design(diagnosis: Diagnosis, place: str, assumptions: Assumptions) -> Design:
+def _design(diagnosis: Diagnosis | BlockDiagnosis, place: str, assumptions: Assumptions) -> Design:
     from ..design import design
 
     say(f"designing for {place}")

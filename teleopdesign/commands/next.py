@@ -18,7 +18,7 @@ from ._diagnosis import (
     print_diagnosis,
 )
 from ._options import add_experiment, add_output, say, value_from
-from ._whole_diagram import is_diagram, print_what_to_log
+from ._whole_diagram import diagnosed_diagram, is_diagram, print_next, print_what_to_log
 
 if TYPE_CHECKING:
     from ..measurement import Experiment
@@ -84,6 +84,8 @@ def run(options: argparse.Namespace) -> int:
         raise ExperimentError(f"--duration: found {options.duration:g}, expected more than 0 s")
     if is_diagram(options.folder):
         return print_what_to_log(options.folder)
+    if (whole := diagnosed_diagram(options)) is not None:
+        return print_next(whole)
     from ..next_experiment import propose, show_in_simulation, write_reference
 
     experiment = experiment_and_answer(options)

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 from ..base.errors import ModelError
 from ._diagnosis import diagnosis_of, experiment_and_answer
 from ._options import add_experiment, add_output, add_search, check_output, say
+from ._whole_diagram import diagnosed_diagram
 
 if TYPE_CHECKING:
     from ..base.finding import Finding
+    from ..block_cuts import BlockDiagnosis
     from ..diagnose import Diagnosis
 
 EXAMPLES = """
@@ -32,6 +34,8 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the page; with an answer, print that nothing is searched or estimated again."""
+    if (whole := diagnosed_diagram(options)) is not None:
+        return report_diagram(whole, options)
     experiment = experiment_and_answer(options)
     answer: Path | None = options.answer
     if options.output is not None:
@@ -47,6 +51,17 @@ def run(options: argparse.Namespace) -> int:
         )
     write_page(diagnosis, path)
     print(f"written: {path}")
+    return 0
+
+
+def report_diagram(diagnosis: BlockDiagnosis, options: argparse.Namespace) -> int:
+    """Write the page of a whole diagram."""
+    from ..show.block_cuts.report import write_block_report
+
+    answer: Path | None = options.answer
+    beside = Path("report.html") if answer is None else answer.with_suffix(".html")
+    write_block_report(diagnosis, options.output or beside)
+    print(f"written: {options.output or beside}")
     return 0
 
 

@@ -156,18 +156,20 @@ class Stage:
 
     name: used in the names of its parameters; that of its law, numbered if a controller has it
         twice
+    free: parameters that a comparison with a record estimates; all others are as programmed
     raises ModelError: a value is missing, unknown, infinite or out of bounds
     """
 
     law: ControlLaw
     values: Mapping[str, float]
     name: str = ""
+    free: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.name:
             object.__setattr__(self, "name", self.law.name)
         law, declared = self.law, self.law.parameters
-        for name in self.values:
+        for name in (*self.values, *self.free):
             if name not in declared:
                 raise ModelError(f"{law.name}: {unknown('parameter', name, declared)}")
         for name, parameter in declared.items():

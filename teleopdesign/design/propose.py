@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from ..base.errors import ExperimentError, ModelError
+from ..block_cuts import BlockDiagnosis
 from ..blocks import Body, free_space
 from ..diagnose import Diagnosis
 from ..diagrams import Diagram, four_cases, haptic_interface
@@ -28,6 +29,7 @@ from .expected import ExpectedError, expected_error, unexplained_force
 from .felt_impedance import felt_impedance
 from .force_feedback import FeedbackLoop, force_feedback, identified_delay, whole_inertia
 from .linear import transparency
+from .of_diagram import device_of_diagram
 from .other_effects import (
     following_cancellation,
     late_force_claim,
@@ -75,19 +77,22 @@ class Trial:
 
 
 def design(
-    diagnosis: Diagnosis,
+    diagnosis: Diagnosis | BlockDiagnosis,
     *,
     place: str | None = None,
     assumptions: Assumptions | None = None,
 ) -> Design:
     """Propose cancellation C and force feedback H for an identified body; predict their effect.
 
-    diagnosis: computed now, or read from its answer by `load_answer`
+    diagnosis: computed now, or read from its answer by `load_answer`; of a whole diagram, its
+        computer's delay and its hand take the place of assumptions
     place: which body; may be omitted if there is only one
     Of the laws for C that are certain to be passive, the design has the one with the smaller force
     error.
     raises ModelError: no such body, an assumption that cannot hold, a motion beyond the records
     """
+    if isinstance(diagnosis, BlockDiagnosis):
+        diagnosis, place, assumptions = device_of_diagram(diagnosis, place, assumptions)
     if diagnosis.kind:
         raise ExperimentError(
             "design: a friction curve tells no inertia and no motion: td.cancel(model.body("

@@ -94,7 +94,20 @@ def load_answer(
     raises ExperimentError: the file cannot be read, is no answer or one to another experiment, or
         an effect is unknown
     """
-    content = _content(path)
+    return diagnosis_in(content_of_answer(path), path, known, experiment=experiment)
+
+
+def diagnosis_in(
+    content: dict[str, Any],
+    path: str | Path,
+    known: Mapping[str, Effect] = EFFECTS,
+    *,
+    experiment: Experiment | None = None,
+) -> Diagnosis:
+    """The diagnosis in the content of an answer;  path: of its file.
+
+    raises ExperimentError: as `load_answer`
+    """
     try:
         diagnosis = _diagnosis_from(content, known, experiment)
         recording = replace(_recording_of(content, path), stated=experiment)
@@ -111,7 +124,7 @@ def folder_of_answer(path: str | Path) -> Path:
 
     raises ExperimentError: the file is no answer, or there is no such folder
     """
-    return _recording_of(_content(path), path).place
+    return _recording_of(content_of_answer(path), path).place
 
 
 @dataclass(frozen=True)
@@ -143,7 +156,7 @@ def with_recording(diagnosis: Diagnosis, recording: DiagnosedRecording) -> Diagn
     return replace(diagnosis, recording=here, joints=joints)
 
 
-def _content(path: str | Path) -> dict[str, Any]:
+def content_of_answer(path: str | Path) -> dict[str, Any]:
     """The content of a JSON file.
 
     raises ExperimentError: the file cannot be read, or is no JSON

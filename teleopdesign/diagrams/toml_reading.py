@@ -16,7 +16,7 @@ from typing import Any, cast, get_args
 
 from ..base.errors import ExperimentError, ModelError
 from ..base.toml import Table, describe_toml_value, read_toml
-from ..base.units import AXES, QUANTITIES
+from ..base.units import AXES, QUANTITIES, to_si
 from ..blocks import Body, with_block_effects
 from ..blocks.described import body_of
 from ..controllers import CANCEL, CONTROLLERS, ControlLaw, Controller, Stage, cancelling_law
@@ -241,9 +241,26 @@ def _stage(table: Table, known: _Known) -> Stage:
     try:
         law = known.laws[name] if name != CANCEL else _cancelling(parameters, known)
         parameters.allow(law.parameters)
-        return Stage(law, {name: parameters.number(name) for name in law.parameters})
+        entries = {n: _parameter(parameters, n, p.quantity) for n, p in law.parameters.items()}
+        free = tuple(name for name, (_, is_free) in entries.items() if is_free)
+        return Stage(law, {name: value for name, (value, _) in entries.items()}, free=free)
     except ModelError as error:
         raise ExperimentError(f"{parameters.where()}: {error}") from error
+
+
+def _parameter(table: Table, name: str, quantity: str) -> tuple[float, bool]:
+    """Value (SI) of a law's parameter, and whether it is free: a number is as programmed."""
+    if not isinstance(table.content.get(name), Mapping):
+        return table.number(name), False
+    entry = table.table(name)
+    entry.allow(("value", "unit", "fixed"))
+    value = entry.number("value")
+    if "unit" in entry.content:
+        # a law is used on either axis: the unit says on which
+        unit = entry.text("unit")
+        axis = "revolute" if "N*m" in unit or "rad" in unit else "prismatic"
+        value = to_si(value, unit, quantity=quantity, axis=axis, where=entry.where("unit"))
+    return value, not entry.flag("fixed", True)
 
 
 def _cancelling(parameters: Table, known: _Known) -> ControlLaw:
@@ -254,7 +271,8 @@ def _flat(content: Mapping[str, Any]) -> dict[str, Any]:
     """Parameters of effects, written cogging.amplitude = 0.1 or in a table of the effect."""
     flat: dict[str, Any] = {}
     for name, value in content.items():
-        inner = value if isinstance(value, Mapping) else {"": value}
+        is_effect = isinstance(value, Mapping) and "value" not in value
+        inner = value if is_effect else {"": value}
         flat |= {f"{name}.{n}" if n else name: v for n, v in inner.items()}
     return flat
 

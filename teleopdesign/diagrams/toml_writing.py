@@ -173,7 +173,8 @@ def _laws(
         if len(stages) > 1:
             yield f"[[blocks.{key_text(block.name)}.series]]"
         yield f"law = {string_text(stage.law.name)}"
-        yield f"parameters = {_value(stage.values)}"
+        free = {n: {"value": stage.values[n], "fixed": False} for n in stage.free}
+        yield f"parameters = {_value({**stage.values, **free})}"
 
 
 def _value(value: object) -> str:
@@ -185,6 +186,8 @@ def _value(value: object) -> str:
         return _number_with_marks(value)
     if isinstance(value, tuple):
         return _list(value)
+    if isinstance(value, bool):
+        return str(value).lower()
     return repr(value) if isinstance(value, int) else repr(float(value))  # type: ignore[arg-type]
 
 

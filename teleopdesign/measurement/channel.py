@@ -38,6 +38,8 @@ class Channel:
     noise: rms, SI; None: not stated
     conversion: how the columns become the signal; None: one column times the factor of the unit
     measured: an actuator force that is measured (for example by the motor current), not commanded
+    beside: a force that acts, but to which no error is relative, as a command nobody recorded
+    one_pass: written in one pass with the position, so that its log is neither late nor early
     """
 
     quantity: str
@@ -48,6 +50,8 @@ class Channel:
     noise: float | None
     conversion: Conversion | None = None
     measured: bool = False
+    beside: bool = False
+    one_pass: bool = False
 
     @property
     def columns(self) -> tuple[str, ...]:

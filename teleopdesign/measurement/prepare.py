@@ -49,6 +49,8 @@ class Stretch(ByValue):
     offset_names: quantities in which the record may have an offset against the others
     shared: for an arm's joint: removes the estimated link parameters from residuals; else None
     force_is_sensed: whether the actuator force was measured, not commanded
+    below: whether command and interaction force stand below the line of the error
+    one_pass: whether command and position have one clock
     """
 
     motion: Motion
@@ -59,6 +61,8 @@ class Stretch(ByValue):
     offset_names: frozenset[str] = frozenset()
     shared: Shared | None = None
     force_is_sensed: bool = False
+    below: tuple[bool, bool] = (True, True)
+    one_pass: bool = False
 
     @property
     def counted_time(self) -> float:
@@ -152,10 +156,15 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
             )
         for body in experiment.bodies:
             channel = experiment.channels[f"{body}.position"]
-            sensed = experiment.channels[f"{body}.actuator_force"].measured
+            force = experiment.channels[f"{body}.actuator_force"]
+            other = experiment.channels.get(f"{body}.interaction_force")
+            below = not force.beside, other is None or not other.beside
             for motion in motions(record, body, bandwidth=chosen, resolution=channel.resolution):
                 stretch = stretch_of(motion, record.use, chosen, record.offset_names)
-                stretches.append(replace(stretch, force_is_sensed=sensed))
+                stretch = replace(
+                    stretch, force_is_sensed=force.measured, one_pass=force.one_pass, below=below
+                )
+                stretches.append(_with_squares(stretch))
     if not any(s.use == "fit" for s in stretches):
         why = _why_too_short([r for r in experiment.records if r.use == "fit"])
         raise ExperimentError(
@@ -188,7 +197,7 @@ def prepare_curve(experiment: Experiment) -> Prepared:
                 f"speed, expected {FOLDS} or more"
             )
         keep = np.arange(len(motion.time))
-        stretches.append(Stretch(motion, record.use, keep, 1.0, _squares(motion, keep, 1.0)))
+        stretches.append(_with_squares(Stretch(motion, record.use, keep, 1.0, 0.0)))
     _refuse_without_force(experiment, stretches)
     return Prepared(experiment, np.inf, tuple(stretches))
 
@@ -235,9 +244,7 @@ def stretch_of(motion: Motion, use: str, bandwidth: float, offset_names: frozens
     trim = min(int(TRIM * rate), n // 3)
     stride = max(1, int(rate / (OVERSAMPLING * bandwidth)))
     keep = np.arange(trim, n - trim, stride)
-    return Stretch(
-        motion, use, keep, float(stride), _squares(motion, keep, float(stride)), offset_names
-    )
+    return _with_squares(Stretch(motion, use, keep, float(stride), 0.0, offset_names))
 
 
 def _thin(stretch: Stretch) -> Stretch:
@@ -251,7 +258,7 @@ def _thin(stretch: Stretch) -> Stretch:
         return stretch
     rows = len(keep) * stretch.weight
     thin = replace(stretch, motion=_thin_motion(motion, every), keep=kept, weight=rows / len(kept))
-    return replace(thin, measured=_squares(thin.motion, kept, thin.weight))
+    return _with_squares(thin)
 
 
 def _thin_motion(motion: Motion, count: int) -> Motion:
@@ -285,9 +292,11 @@ def _thin_motion(motion: Motion, count: int) -> Motion:
 def measured_force(stretch: Stretch) -> Array:
     """The low-passed measured force on the rows that count."""
     motion = stretch.motion
-    return motion.lowpassed(motion.at_rows(motion.command) + motion.interaction)[stretch.keep]
+    forces = (motion.at_rows(motion.command), motion.interaction)
+    whole = np.sum([f for f, counts in zip(forces, stretch.below, strict=True) if counts], axis=0)
+    return motion.lowpassed(whole)[stretch.keep]
 
 
-def _squares(motion: Motion, keep: NDArray[np.intp], weight: float) -> float:
-    measured = motion.lowpassed(motion.at_rows(motion.command) + motion.interaction)
-    return weight * float(np.sum(measured[keep] ** 2))
+def _with_squares(stretch: Stretch) -> Stretch:
+    """The stretch with the squares of its measured force."""
+    return replace(stretch, measured=stretch.weight * float(np.sum(measured_force(stretch) ** 2)))

@@ -1,31 +1,72 @@
-"""Right and false names on drawn interfaces.
+"""Right and false names on drawn interfaces and teleoperators, with one hidden effect or none.
 
-    PYTHONPATH=tests python -m block_cuts.campaign FOLDER [--seed 1] [--size 0.25] [--averages]
+    PYTHONPATH=tests python -m block_cuts.campaign FOLDER --level clear|weak|adequate [--first 0]
 
-Each hidden effect of `HIDDEN` is planted once in an interface of its own. Printed: a row a case,
-then how many are right, and how many were named falsely. Of effects in the
-computer only the cut of the command is compared: bodies take longest.
+Each hidden effect of `HIDDEN` is planted once, in a diagram of its own; `weak` has a quarter of its
+size. A row a case is added to `campaign.csv` beside this file. Of effects in the computer only the
+cuts of the computer are compared, of those in a body only its cut, since all signals between
+were recorded: what is planted on one side of a cut changes nothing on the other. Where nothing is
+planted, all cuts are compared.
+    PYTHONPATH=tests python -m block_cuts.campaign --table       what the file says
 """
 
 import argparse
+import csv
+import json
 from pathlib import Path
 
 import numpy as np
 from block_cuts.interface_simulator import draw_interface, write_case
+from block_cuts.teleoperator_simulator import draw_teleoperator, write_teleoperator
 
 import teleopdesign as td
 
+TABLE = Path(__file__).with_suffix(".csv")
+FIELDS = (
+    "level",
+    "number",
+    "planted",
+    "right",
+    "false",
+    "verdict",
+    "missing",
+    "groups",
+    "probabilities",
+)
 HIDDEN = [
-    {("gain", "H"): 1.06}, {("delay", "H"): 0.004}, {("lag", "H"): 0.004},
-    {("saturation", "H"): 0.5}, {("dead_zone", "H"): 0.05}, {("velocity_filter", "H"): 0.006},
-    {("gain", "C"): 0.9}, {("delay", "C"): 0.003}, {("lag", "C"): 0.005},
-    {("velocity_filter", "C"): 0.005}, {("bias", "C"): 0.02},
-    {("gain", "computer"): 1.04}, {("delay", "computer"): 0.003}, {("lag", "computer"): 0.003},
-    {("dead_zone", "computer"): 0.06}, {("bias", "computer"): -0.015},
-    {("stribeck", "Z_M"): 0.15}, {("quadratic_drag", "Z_M"): 6.0}, {("bias", "Z_M"): 0.12},
-    {("hardening_spring", "Z_H"): 1.5e6}, {("viscous_asymmetry", "Z_H"): 0.6},
-    {}, {}, {}, {},
+    ("gain", "H", 1.06), ("delay", "H", 0.004), ("lag", "H", 0.004),
+    ("saturation", "H", 1.2), ("dead_zone", "H", 0.05), ("velocity_filter", "H", 0.006),
+    ("gain", "C", 0.9), ("delay", "C", 0.003), ("velocity_filter", "C", 0.005),
+    ("bias", "C", 0.02), ("gain", "K", 1.06), ("delay", "K", 0.004),
+    ("gain", "computer", 1.04), ("delay", "computer", 0.003), ("lag", "computer", 0.003),
+    ("dead_zone", "computer", 0.06),
+    ("stribeck", "Z_M", 0.15), ("quadratic_drag", "Z_M", 6.0), ("bias", "Z_M", 0.12),
+    ("hardening_spring", "Z_H", 1.5e6), ("viscous_asymmetry", "Z_H", 0.6),
+    ("delay", "P", 0.003), ("gain", "P", 1.05), ("velocity_filter", "C_m", 0.005),
+    ("lag", "C_s", 0.004),
 ]  # fmt: skip
+#: weak sizes that are no quarter: a limit below the largest output, and more than one row of delay,
+#: because a shift of a row belongs to the record
+WEAK = {("saturation", "H"): 0.75, ("delay", "computer"): 0.002}
+#: number of diagrams with nothing planted; each third one is a teleoperator
+ADEQUATE = 30
+#: edges of the bins of a calibration, as probabilities
+BINS = (0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0 + 1e-9)
+
+
+def cases(level):
+    """(hidden, is a teleoperator) of each case of a level."""
+    if level == "adequate":
+        return [({}, number % 3 == 2) for number in range(ADEQUATE)]
+    size = 1.0 if level == "clear" else 0.25
+    made = []
+    for effect, at, value in HIDDEN:
+        absent = 1.0 if effect == "gain" else 0.0
+        less = absent + size * (value - absent)
+        if level == "weak":
+            less = WEAK.get((effect, at), less)
+        made.append(({(effect, at): less}, at in ("P", "C_m", "C_s")))
+    return made
 
 
 def judge(diagnosis, hidden):
@@ -37,50 +78,80 @@ def judge(diagnosis, hidden):
     return diagnosis.missing == (true,) or (not diagnosis.missing and listed)
 
 
-def shrink(hidden, size):
-    """The hidden effect at a part of its size; a limit keeps its value."""
-    if size == 1.0:
-        return hidden
-    made = {}
-    for (effect, at), value in hidden.items():
-        absent = 1.0 if effect == "gain" else 0.0
-        less = absent + size * (value - absent)
-        made[effect, at] = value if effect == "saturation" else less
-    return made
-
-
-def main(folder, seed, size, averages, first):
-    right = false = 0
-    for number, hidden in list(enumerate(HIDDEN))[first:]:
-        hidden = shrink(hidden, size)
-        random = np.random.default_rng([seed, number])
+def diagnose(level, number, hidden, of_two, place):
+    """Write the case, and diagnose it."""
+    random = np.random.default_rng([("clear", "weak", "adequate").index(level), number])
+    if of_two:
+        teleoperator = draw_teleoperator(random)
+        teleoperator.hidden = hidden
+        write_teleoperator(teleoperator, place, random)
+    else:
         interface = draw_interface(random)
-        interface.hidden, interface.averages = hidden, averages
-        place = Path(folder) / f"{number:03}"
-        if not (place / "experiment.toml").exists():
-            write_case(interface, place, random)
-        # all signals between were recorded, so what is hidden in the computer changes no body
-        at = ("R_A",) if {block for _, block in hidden} & {"H", "C", "computer"} else None
-        diagnosis = td.find_missing(td.load_experiment(place), at=at)
-        is_right = judge(diagnosis, hidden)
-        false_names = [key for key in diagnosis.missing if key not in hidden]
-        right, false = right + is_right, false + bool(false_names)
-        left = ", ".join(f"{name} {x:.2f}" for name, x in diagnosis.left.items())
-        print(
-            f"{number:03} {'right' if is_right else 'WRONG'} planted {list(hidden)} "
-            f"verdict {diagnosis.verdict} {diagnosis.missing} groups {diagnosis.groups} "
-            f"left in floors: {left}",
-            flush=True,
-        )
-    print(f"{right} of {len(HIDDEN) - first} right, {false} with a false name")
+        interface.hidden, interface.loop = hidden, any(at == "K" for _, at in hidden)
+        write_case(interface, place, random)
+    experiment = td.load_experiment(place)
+    touched = {at for _, at in hidden}
+    cuts = experiment.cuts.tested
+    kinds = {c.kind for c in cuts if touched & set(c.blocks)}
+    bodies = [c.name for c in cuts if c.kind == "body" and touched & set(c.blocks)]
+    at = bodies or [c.name for c in cuts if c.kind in kinds] or None
+    return td.find_missing(experiment, at=at)
+
+
+def run(folder, level, first, last):
+    for number, (hidden, of_two) in list(enumerate(cases(level)))[first : last + 1]:
+        diagnosis = diagnose(level, number, hidden, of_two, Path(folder) / level / f"{number:03}")
+        probabilities = [
+            [c["effect"], c["at"], round(c["probability"], 4)]
+            for c in diagnosis.answer()["candidates"]
+        ]
+        row = {
+            "level": level, "number": number, "planted": list(hidden.items()),
+            "right": judge(diagnosis, hidden),
+            "false": [key for key in diagnosis.missing if key not in hidden],
+            "verdict": diagnosis.verdict, "missing": diagnosis.missing,
+            "groups": diagnosis.groups, "probabilities": probabilities,
+        }  # fmt: skip
+        with TABLE.open("a", newline="") as file:
+            csv.DictWriter(file, FIELDS, lineterminator="\n").writerow(
+                {k: json.dumps(v) for k, v in row.items()}
+            )
+        print(*(f"{k} {v}" for k, v in row.items() if k != "probabilities"), flush=True)
+
+
+def table():
+    """Right and false names by level, and the calibration of every candidate's probability."""
+    with TABLE.open() as file:
+        rows = [{k: json.loads(v) for k, v in row.items()} for row in csv.DictReader(file, FIELDS)]
+    for level in ("clear", "weak", "adequate"):
+        here = [r for r in rows if r["level"] == level]
+        right, false = sum(r["right"] for r in here), sum(bool(r["false"]) for r in here)
+        print(f"{level}: {right} of {len(here)} right, {false} with a false name")
+    probabilities = np.array(
+        [
+            (p, (effect, at) in [tuple(key) for key, _ in r["planted"]])
+            for r in rows
+            for effect, at, p in r["probabilities"]
+        ]
+    )
+    error = 0.0
+    for low, high in zip(BINS[:-1], BINS[1:], strict=True):
+        here = probabilities[(probabilities[:, 0] >= low) & (probabilities[:, 0] < high)]
+        if len(here):
+            p, share = here.mean(axis=0)
+            error += len(here) / len(probabilities) * abs(p - share)
+            print(
+                f"probability {low:.2f} to {high:.2f}: {len(here)}, mean {p:.3f}, true {share:.3f}"
+            )
+    print(f"expected calibration error {error:.4f} over {len(probabilities)} candidates")
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--size", type=float, default=1.0, help="part of the effects' sizes")
-    parser.add_argument("--averages", action="store_true", help="the force sensor averages")
+    parser.add_argument("folder", nargs="?")
+    parser.add_argument("--level", choices=("clear", "weak", "adequate"))
     parser.add_argument("--first", type=int, default=0, help="number of the first case")
+    parser.add_argument("--last", type=int, default=99, help="number of the last case")
+    parser.add_argument("--table", action="store_true", help="print what the file says")
     options = parser.parse_args()
-    main(options.folder, options.seed, options.size, options.averages, options.first)
+    table() if options.table else run(options.folder, options.level, options.first, options.last)

@@ -1,6 +1,7 @@
 """A haptic interface with a computer, simulated in numpy alone: no code of the package.
 
     R_A = R_D + H (R_D - R_M) + C L        (m + m_H) a = R_A - friction - B v - b v - k x - ...
+    R_D = K (L_D - L)                      where there is a position loop, a lead
     R_M = m_H a + b v + k x + ...          the hand is relaxed, R_V = 0
 
 The computer reads encoder and force sensor each millisecond, just before its command changes. H is
@@ -43,6 +44,10 @@ parameters = {{ gain = {h_gain}, scheduling_velocity = {h_velocity} }}
 law = "low_pass"
 parameters = {{ bandwidth = {h_bandwidth} }}
 """
+LOOP = """[blocks.K]
+law = "lead"
+parameters = {{ gain = {k_gain}, zero = {k_zero}, pole = {k_pole} }}
+"""
 EXPERIMENT = """
 title = "simulated interface"
 [diagram]
@@ -71,8 +76,7 @@ use = "check"
 class Interface:
     """Values (SI) of one interface; `hidden`: (effect, place) -> value, what the file lacks.
 
-    averages: the force sensor gives the mean over a period, not the force at one moment. A force
-    that jumps at each reversal is known at one moment only, up to 0.8 % of it on drawn interfaces
+    loop: a position loop K makes the desired force
     """
 
     values: dict
@@ -80,7 +84,7 @@ class Interface:
     converter: float = 0.004
     encoder: float = 1e-6
     noise: float = 0.015
-    averages: bool = False
+    loop: bool = False
 
 
 def draw_interface(random):
@@ -92,6 +96,7 @@ def draw_interface(random):
             "m_hand": u(0.06, 0.18), "b_hand": u(2.0, 5.0), "k_hand": u(200, 380),
             "c_level": u(0.2, 0.6), "c_velocity": u(0.012, 0.022),
             "h_gain": u(1.7, 3.4), "h_velocity": u(0.05, 0.12), "h_bandwidth": u(11, 20),
+            "k_gain": u(80, 150), "k_zero": u(15, 30), "k_pole": u(100, 200),
         }
     )  # fmt: skip
 
@@ -139,22 +144,28 @@ class Velocity:
 
 
 def record(interface, duration, random):
-    """Columns t, r_a, x, f_h, r_d of one recording from rest."""
+    """Columns t, r_a, x, f_h, r_d, and l_d with a position loop, of one recording from rest."""
     p, hidden = interface.values, interface.hidden
     n = round(duration / PERIOD)
     time = np.arange(n) * PERIOD
     desired = _desired(time, random)
+    reference = 0.01 * desired
     out = np.zeros((4, n))
-    h_out, c_out, whole = (Output(hidden, at) for at in ("H", "C", "computer"))
+    h_out, c_out, k_out, whole = (Output(hidden, at) for at in ("H", "C", "K", "computer"))
     h_velocity, c_velocity = Velocity(hidden, "H"), Velocity(hidden, "C")
-    x = v = low = last = command = mean = 0.0
+    x = v = low = last = command = memory = 0.0
     blend = 1 - np.exp(-2 * np.pi * p["h_bandwidth"] * PERIOD)
+    forgets = 1 - np.exp(-p["k_pole"] * PERIOD)
     for i in range(n):
         reading = np.floor(x / interface.encoder + 0.5) * interface.encoder
-        force = mean if interface.averages else _force(p, hidden, x, v, command)
+        force = _force(p, hidden, x, v, command)
         force += interface.noise * random.standard_normal()
         speed = (reading - last) / PERIOD if i else 0.0
         last = reading
+        if interface.loop:
+            error = reference[i] - reading
+            desired[i] = k_out(p["k_gain"] * (error + memory))
+            memory += forgets * ((p["k_zero"] / p["k_pole"] - 1.0) * error - memory)
         feedback = h_out(low)
         slow = p["h_velocity"] / (p["h_velocity"] + abs(h_velocity(speed)))
         low += blend * (p["h_gain"] * slow * (desired[i] - force) - low)
@@ -162,13 +173,12 @@ def record(interface, duration, random):
         cancel = c_out(p["c_level"] * known / (p["c_velocity"] + abs(known)))
         command = whole(desired[i] + feedback + cancel)
         out[:, i] = command, reading, force, desired[i]
-        mean = 0.0
         for _ in range(INNER):
-            mean += _force(p, hidden, x, v, command) / INNER
             faster = v + DT * _acceleration(p, hidden, x, v, command)
             x, v = x + 0.5 * DT * (v + faster), faster
     command = np.round(out[0] / interface.converter) * interface.converter
-    return {"t": time, "r_a": command, "x": out[1], "f_h": out[2], "r_d": out[3]}
+    columns = {"t": time, "r_a": command, "x": out[1], "f_h": out[2], "r_d": out[3]}
+    return columns | ({"l_d": reference} if interface.loop else {})
 
 
 def _hand(p, hidden, x, v):
@@ -208,16 +218,25 @@ def _desired(time, random):
 
 def write_case(interface, folder, random, durations=(11.0, 8.0)):
     """The folder of an experiment, with stated values of bodies that are a few percent off."""
+    write_logs(folder, [record(interface, duration, random) for duration in durations])
+    values = interface.values
+    names = ("m", "level", "damping", "m_hand", "b_hand", "k_hand")
+    stated = {f"{n}_stated": values[n] * random.uniform(0.85, 1.15) for n in names}
+    blocks = TOML + (LOOP if interface.loop else "")
+    (folder / "interface.toml").write_text(blocks.format(**values, **stated))
+    sensors = {n: getattr(interface, n) for n in ("converter", "encoder", "noise")}
+    text = EXPERIMENT.format(**sensors)
+    if interface.loop:
+        reference = '"L_D" = { column = "l_d", unit = "m" }\n'
+        text = text.replace("[comparison]", reference + "[comparison]")
+    (folder / "experiment.toml").write_text(text)
+
+
+def write_logs(folder, logs):
+    """The columns of the logs as fit.csv.gz and check.csv.gz."""
     folder.mkdir(parents=True, exist_ok=True)
-    for use, duration in zip(("fit", "check"), durations, strict=True):
-        columns = record(interface, duration, random)
+    for use, columns in zip(("fit", "check"), logs, strict=True):
         with gzip.open(folder / f"{use}.csv.gz", "wt") as file:
             file.write(",".join(columns) + "\n")
             for row in zip(*columns.values(), strict=True):
                 file.write(",".join(f"{value:.7g}" for value in row) + "\n")
-    values = interface.values
-    names = ("m", "level", "damping", "m_hand", "b_hand", "k_hand")
-    stated = {f"{n}_stated": values[n] * random.uniform(0.85, 1.15) for n in names}
-    (folder / "interface.toml").write_text(TOML.format(**values, **stated))
-    sensors = {n: getattr(interface, n) for n in ("converter", "encoder", "noise")}
-    (folder / "experiment.toml").write_text(EXPERIMENT.format(**sensors))

@@ -8,7 +8,7 @@ import pytest
 from block_cuts.interface_simulator import draw_interface, write_case
 
 import teleopdesign as td
-from teleopdesign.block_cuts.diagnosis import write_answer
+from teleopdesign.block_cuts import write_answer
 
 
 def diagnosis_of(folder, hidden, seed, **options):
@@ -36,6 +36,25 @@ def test_an_effect_of_the_computer_is_named_at_its_block_with_its_value(
     (parameter,) = candidate["parameters"].values()
     assert parameter["value"] == pytest.approx(value, rel=0.02)
     assert candidate["probability"] > 0.9
+
+
+@pytest.mark.slow
+def test_a_free_parameter_of_a_law_absorbs_the_gain(tmp_path):
+    random = np.random.default_rng(5)
+    interface = replace(draw_interface(random), hidden={("gain", "H"): 1.06})
+    write_case(interface, tmp_path, random, durations=(3.0, 2.5))
+    gain = interface.values["h_gain"]
+    text = (tmp_path / "interface.toml").read_text()
+    assert text.count(f"gain = {gain},") == 1
+    free = text.replace(f"gain = {gain},", f"gain = {{ value = {gain}, fixed = false }},")
+    (tmp_path / "interface.toml").write_text(free)
+    experiment = td.load_experiment(tmp_path)
+    td.write_diagram(experiment.diagram, tmp_path / "again.toml")
+    assert td.read_diagram(tmp_path / "again.toml") == experiment.diagram
+    answer = td.find_missing(experiment, at=["R_A"]).answer()
+    assert answer["verdict"] == "model_adequate"
+    value = answer["model_parameters"]["H.velocity_schedule.gain"]
+    assert value["value"] == pytest.approx(1.06 * gain, rel=0.01)
 
 
 @pytest.fixture(scope="module")

@@ -22,7 +22,6 @@ def block_diagnosis_text(diagnosis: BlockDiagnosis) -> str:
             lines += [f"      {text}" for text in _parameters(diagnosis, row.added)]
     floors = [f"{100 * diagnosis.floors[c.name]:.3g}%" for c in cuts]
     lines.append(_line("noise floor", floors, ""))
-    lines += [f"wiring at {name}: {100 * e:.3g}% is left" for name, e in diagnosis.wiring.items()]
     lines += ["", *(_tests(c) for c in diagnosis.cuts.tested)]
     lines += [f"untested: {block}: {why}" for block, why in diagnosis.cuts.untested.items()]
     for name, value in diagnosis.experiment.assumed.items():

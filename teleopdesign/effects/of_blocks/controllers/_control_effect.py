@@ -27,6 +27,7 @@ class ControlEffect:
     passes(samples, value): the rows whose input still changes the output; None: all rows
     absent: value of the parameter at which there is no effect
     on_velocity: acts on the velocity in front of the law, not on the output behind it
+    of_law: no effect, but a parameter of the law itself that is free
     """
 
     act: Callable[[Array, float, float], Array]
@@ -35,6 +36,7 @@ class ControlEffect:
     starts: Callable[[Array, float], Array]
     passes: Callable[[Array, float], NDArray[np.bool_]] | None = None
     on_velocity: bool = False
+    of_law: bool = False
     absent: float = 0.0
     name: str = ""
     text: str = field(default="", repr=False)

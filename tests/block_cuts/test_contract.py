@@ -1,0 +1,104 @@
+"""Sentences of the file format for whole diagrams, each on a small case."""
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.block_cuts.body import body_experiment
+from teleopdesign.diagnose.record_shift import record_shifts
+from teleopdesign.measurement.prepare import prepare
+
+H = td.controller("low_pass", {"bandwidth": 15.0}).then(td.controller("gain", {"gain": 1.5}))
+C = td.controller("smoothed_coulomb", {"level": 0.3, "smoothing_velocity": 0.02})
+SIGNALS = ("R_D", "R_A", "R_M", "L", "R_FF", "R_MBC")
+
+
+@pytest.fixture(scope="module")
+def diagram():
+    device = td.Body(
+        "prismatic", {"inertia": 0.2, "viscous.damping": 2.0}, (td.EFFECTS["viscous"],)
+    )
+    held = td.hand(mass=0.1, damping=4.0, stiffness=300.0)
+    return td.haptic_interface(device, hand=held, cancellation=C, force_feedback=H)
+
+
+@pytest.fixture(scope="module")
+def log(diagram):
+    def desired(t):
+        return 0.8 * np.sin(13.0 * t) + 0.6 * np.sin(31.0 * t + 1.0)
+
+    run = td.simulate_diagram(diagram, duration=2.5, inputs={"R_D": desired})
+    columns = {name: run[name].values for name in SIGNALS if name != "R_D"}
+    time = run.data["time"].values
+    return columns | {"R_D": desired(time), "t": time}
+
+
+def experiment(diagram, log, *signals, outside=("R_V",), **more):
+    channels = {n: {"column": n, "unit": "m" if n == "L" else "N"} for n in signals}
+    for name, extra in more.items():
+        channels[name] |= extra
+    channels["time"] = {"column": "t", "unit": "s"}
+    return td.diagram_experiment(
+        diagram, log, channels=channels, outside=outside, sample_period=1e-3, bandwidth=60
+    )
+
+
+def body_of(made, name):
+    (cut,) = [c for c in made.cuts.tested if c.name == name]
+    return prepare(body_experiment(made, cut))
+
+
+def test_below_the_line_stand_recorded_forces_only(diagram, log):
+    """Without R_A the error of Z_M is relative to R_M, not to the command of the laws."""
+    whole = body_of(experiment(diagram, log, "R_D", "R_M", "L"), "Z_M")
+    (stretch,) = whole.stretches
+    low = stretch.motion.lowpassed(log["R_M"])[stretch.keep]
+    assert stretch.measured == pytest.approx(stretch.weight * np.sum(low**2), rel=0.01)
+    neither = body_of(experiment(diagram, log, "R_D", "R_A", "L"), "Z_M").stretches[0]
+    low = neither.motion.lowpassed(neither.motion.at_rows(log["R_A"]))[neither.keep]
+    assert neither.measured == pytest.approx(neither.weight * np.sum(low**2), rel=0.01)
+
+
+def test_the_error_of_a_hand_is_relative_to_its_force_whatever_pushes_beside(diagram, log):
+    pushed = {**log, "R_V": 5.0 + np.sin(3.0 * log["t"])}
+    made = experiment(diagram, pushed, "R_A", "R_M", "L", "R_V", outside=())
+    (stretch,) = body_of(made, "Z_H").stretches
+    low = stretch.motion.lowpassed(log["R_M"])[stretch.keep]
+    assert stretch.measured == pytest.approx(stretch.weight * np.sum(low**2), rel=0.01)
+
+
+def test_columns_of_one_pass_have_one_clock(diagram, log):
+    made = experiment(diagram, log, "R_D", "R_A", "R_M", "L")
+    assert record_shifts(body_of(made, "Z_M").stretches, 100).logs == ("Z_M",)
+    tables = {n: dict(t.content) for n, t in made.channels.items()}
+    same = td.diagram_experiment(
+        diagram, log, channels=tables, outside=["R_V"], sample_period=1e-3, one_pass=True
+    )
+    for name in ("Z_M", "Z_H"):
+        assert record_shifts(body_of(same, name).stretches, 100).logs == ()
+
+
+def test_the_sum_of_device_and_hand_needs_a_known_push(diagram, log):
+    known = experiment(diagram, log, "R_D", "R_A", "L")
+    assert {c.name for c in known.cuts.tested} == {"Z_M"}
+    with pytest.raises(td.ExperimentError, match="R_V"):
+        experiment(diagram, log, "R_A", "L", outside=())
+
+
+@pytest.mark.parametrize(("sign", "verdict"), [(1, "model_adequate"), (-1, "undecided")])
+def test_a_sum_whose_terms_are_recorded_tests_wiring_and_sign(diagram, log, sign, verdict):
+    signals = ("R_D", "R_A", "R_FF", "R_MBC")
+    made = experiment(diagram, log, *signals, R_MBC={"sign": sign})
+    assert [c.name for c in made.cuts.of("wiring")] == ["R_A"]
+    diagnosis = td.find_missing(made, at=["R_A"])
+    assert diagnosis.verdict == verdict and not diagnosis.missing
+    errors = diagnosis.answer()["ladder"][-1]["cuts"]
+    assert (errors["R_A"] < 1e-9) == (sign == 1)
+
+
+def test_a_floor_is_never_below_the_last_digit_of_its_column(diagram, log):
+    coarse = {**log, "R_M": np.round(log["R_M"], 2)}
+    made = experiment(diagram, coarse, "R_A", "R_M", "L", R_M={"noise": 1e-4})
+    (cut,) = [c for c in made.cuts.tested if c.name == "Z_H"]
+    force = body_experiment(made, cut).channels["Z_H.actuator_force"]
+    assert force.resolution == pytest.approx(0.01)
