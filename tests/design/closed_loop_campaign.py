@@ -1,6 +1,6 @@
 """From a raw log to a compensation to a second log with it on, on devices of a simulator.
 
-    PYTHONPATH=tests NUMBA_NUM_THREADS=1 python -m design.closed_loop_campaign FOLDER [--devices 60] [--first 0]
+    PYTHONPATH=tests python -m design.closed_loop_campaign FOLDER [--devices 60] [--first 0]
 
 Each device is drawn with one effect beside Coulomb and viscous friction. Its raw log goes through
 `new`, a diagnosis among `AMONG`, and a design, whose map of impedances and claims over motions are

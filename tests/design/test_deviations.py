@@ -3,7 +3,6 @@
 import pytest
 from design.faults_campaign import FAULTS, WAYS, is_right, named
 
-
 QUICK = ("none", "level")
 EACH = [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in FAULTS]
 
