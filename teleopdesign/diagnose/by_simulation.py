@@ -16,8 +16,8 @@ reference was.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from ..base.arguments import check_types
 from ..base.errors import ModelError, did_you_mean, quote
 from ..base.files import make_plain
 from ..base.frozen import ByValue
-from ..base.shown import html_table
+from ..base.shown import figure_of, html_table
 from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
@@ -37,8 +37,13 @@ from .model_data import model_of_body
 from .parts import PreparedParts, prepare_parts, remove_links, with_bodies_of
 from .parts_fit import error_over_joints
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 #: s: times after which the simulation restarts on the measured motion; at last the whole record
 HORIZONS = (0.1, 0.3, 1.0, 3.0, 10.0)
+#: horizons whose courses are kept, to be drawn
+DRAWN = (1.0, float("inf"))
 
 
 @check_types
@@ -77,6 +82,11 @@ class HorizonError:
     of_travel: float
     of_speed: float
 
+    @property
+    def fit(self) -> float:
+        """Fit of the position in %: 100 for the measured motion, 0 for its mean (NRMSE)."""
+        return 100.0 * (1.0 - self.of_travel)
+
 
 @dataclass(frozen=True, eq=False)
 class SimulationComparison(ByValue):
@@ -86,6 +96,7 @@ class SimulationComparison(ByValue):
         record)
     errors: for each use and body, the shortest horizon first
     loop: controller that holds the body, or joint -> controller of that joint of an arm; None: none
+    courses: (use, body, horizon) -> (stretches) of time, measured and simulated position, (3, n)
     """
 
     model: Model
@@ -94,6 +105,11 @@ class SimulationComparison(ByValue):
     check_error: float
     errors: tuple[HorizonError, ...]
     loop: RecordedLoop | Mapping[str, RecordedLoop] | None = None
+    courses: Mapping[tuple[str, str, float], tuple[Array, ...]] = field(default_factory=dict)
+
+    def plot(self) -> Figure:
+        """Measured and simulated position with the fit in %, and correlations of the residual."""
+        return figure_of(self)
 
     def error(self, horizon: float, *, use: str = "check", at: str | None = None) -> HorizonError:
         """The errors of one horizon (s; inf: the whole record).
@@ -167,15 +183,20 @@ def compare_by_simulation(
     model = model if model.links else model.with_links(prepared.initial)
     prepared = with_bodies_of(model, prepared)
     models = {j: model_of_body(model, j) if j else model for j in prepared.parts}
-    errors, by_force = [], {}
+    errors: list[HorizonError] = []
+    by_force, courses = {}, dict[tuple[str, str, float], tuple[Array, ...]]()
     for use in ("fit", "check"):
         for driven in driven_stretches(models, prepared, use, _gains(loop, tuple(model.bodies))):
-            errors += _horizon_errors(driven, use)
+            longest = max((one.length for one in driven), default=0.0)
+            horizons = [h for h in HORIZONS if h < longest] + [np.inf] * bool(driven)
+            parts = map_in_threads(lambda one, h=horizons: _deviations(one, h), driven)
+            errors += _horizon_errors(driven, parts, horizons, use)
+            courses |= _courses(driven, parts, horizons, use)
         by_force[use] = error_over_joints(
             {j: force_error(models[j], remove_links(p.of(use))) for j, p in prepared.parts.items()}
         )
     return SimulationComparison(
-        model, prepared, by_force["fit"], by_force["check"], tuple(errors), loop
+        model, prepared, by_force["fit"], by_force["check"], tuple(errors), loop, courses
     )
 
 
@@ -230,14 +251,16 @@ def _loop_data(loop: RecordedLoop | None) -> dict[str, float] | None:
     return None if loop is None else {"stiffness": loop.stiffness, "damping": loop.damping}
 
 
-def _horizon_errors(driven: Sequence[Driven], use: str) -> list[HorizonError]:
+def _horizon_errors(
+    driven: Sequence[Driven],
+    parts: Sequence[Sequence[Array]],
+    horizons: Sequence[float],
+    use: str,
+) -> list[HorizonError]:
     """Errors of bodies that move together, body by body, the shortest horizon first.
 
-    driven: the bodies along all stretches of one use
+    driven: the bodies along all stretches of one use;  parts: of each, `_deviations`
     """
-    longest = max((one.length for one in driven), default=0.0)
-    horizons = [h for h in HORIZONS if h < longest] + [np.inf] * bool(driven)
-    parts = map_in_threads(lambda one: _deviations(one, horizons), driven)
     return [
         _horizon_error(driven, parts, use, body, (h, horizon))
         for body in range(len(driven[0].places) if driven else 0)
@@ -245,25 +268,45 @@ def _horizon_errors(driven: Sequence[Driven], use: str) -> list[HorizonError]:
     ]
 
 
+def _courses(
+    driven: Sequence[Driven],
+    parts: Sequence[Sequence[Array]],
+    horizons: Sequence[float],
+    use: str,
+) -> dict[tuple[str, str, float], tuple[Array, ...]]:
+    """(use, body, horizon) -> of each stretch: time, measured and simulated position, (3, n)."""
+    made = {}
+    for body, at in enumerate(driven[0].places if driven else ()):
+        for h, horizon in enumerate(horizons):
+            if horizon not in DRAWN:
+                continue
+            rows = []
+            for one, part in zip(driven, parts, strict=True):
+                motion, off = one.motions[body], part[h][0, body]
+                at_rows = np.concatenate([np.r_[span] for span in _spans(one, horizon)])
+                measured = motion.position[at_rows]
+                rows.append(np.array([motion.time[at_rows], measured, measured + off]))
+            made[use, at, horizon] = tuple(rows)
+    return made
+
+
 def _deviations(driven: Driven, horizons: Sequence[float]) -> list[Array]:
     """Simulated less measured position and velocity (2, k, rows) along one stretch, per horizon."""
-    rows, step = driven.end - driven.first, driven.motions[0].sample_time
-    spans: list[list[slice]] = []
-    for horizon in horizons:
-        each = rows if np.isinf(horizon) else max(round(horizon / step), 2)
-        # one extra row, which is not counted: no command follows the last row of a course
-        spans.append(
-            [
-                slice(begin, min(begin + each + 1, driven.end))
-                for begin in range(driven.first, driven.end - 1, each)
-            ]
-        )
+    spans = [_spans(driven, horizon) for horizon in horizons]
     measured = np.array([[getattr(m, q) for m in driven.motions] for q in ("position", "velocity")])
     courses = iter(driven.courses([span for part in spans for span in part]))
     return [
         np.concatenate([next(courses) - measured[:, :, span] for span in part], axis=2)
         for part in spans
     ]
+
+
+def _spans(driven: Driven, horizon: float) -> list[slice]:
+    """Rows of each restart; one extra row, after which no command follows, is shared by two."""
+    rows, step = driven.end - driven.first, driven.motions[0].sample_time
+    each = rows if np.isinf(horizon) else max(round(horizon / step), 2)
+    starts = range(driven.first, driven.end - 1, each)
+    return [slice(begin, min(begin + each + 1, driven.end)) for begin in starts]
 
 
 def _horizon_error(
