@@ -173,7 +173,7 @@ def deviations_of(
     """
     blocks = block_numbers(on.stretches)
     if on.has_command:
-        logged = _lateness_of_log(on)
+        logged = _lateness_of_log(on, blocks)
         recorded = [on.low(i, s.motion.command) for i, s in enumerate(on.stretches)]
         size = _rms(np.concatenate(recorded))
 
@@ -212,10 +212,19 @@ def _apart(
     return [z - on.low(i, u) for i, (z, u) in enumerate(zip(recorded, made, strict=True))]
 
 
-def _lateness_of_log(on: SecondRecording) -> float:
-    """Whether the command was logged as computed (0) or as applied (the delay), s."""
+def _lateness_of_log(on: SecondRecording, blocks: NDArray[np.intp]) -> float:
+    """Whether the command was logged as computed (0) or as applied (the delay), s.
+
+    The force says when the command acts. Where that is too little to see, the command decides, which
+    another filter makes late as well.
+    """
     recorded = [on.low(i, s.motion.command) for i, s in enumerate(on.stretches)]
-    ends = (0.0, on.sampling.delay)
+    written = [s.motion.command for s in on.stretches]
+    delay = on.sampling.delay
+    now, later = (np.concatenate(on.left(written, late=late)) for late in (0.0, delay))
+    if abs(gain_score(now, later, blocks) - gain_score(later, now, blocks)) >= CRITERIA.sure:
+        return 0.0 if _rms(later) < _rms(now) else delay
+    ends = (0.0, delay)
     return min(ends, key=lambda late: _rms(np.concatenate(_apart(on, recorded, {}, late))))
 
 
