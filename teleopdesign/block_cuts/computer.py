@@ -175,7 +175,7 @@ class _Evaluation:
     def _control(self, block: Control) -> Array:
         source = self.value(block.input)
         filters = [p for p in self.placed if p.at == block.name and p.effect.on_velocity]
-        same = not filters and not self.changed & {block.input, block.motion}
+        same = not filters and not self.changed & {block.input, block.motion, *block.others}
         key = (self.rows.file, block.name)
         law = self.part.kept.get(key) if same else None
         if law is None:
@@ -203,8 +203,14 @@ class _Evaluation:
             velocity = np.asarray(lfilter([1.0 - keeps], [1.0, -keeps], travel))
         velocity = apply(velocity, block.name, self.placed, period, on_velocity=True)
         assert isinstance(block.controller, Controller)
+        reads = block.controller.reads_command
         return controller_along(
-            block.controller, input=source, velocity=velocity, travel_rate=travel, period=period
+            block.controller,
+            input=source,
+            velocity=velocity,
+            travel_rate=travel,
+            period=period,
+            command=self.value(block.others[0]) if reads else None,
         )
 
 

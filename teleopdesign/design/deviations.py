@@ -215,8 +215,8 @@ def _apart(
 def _lateness_of_log(on: SecondRecording, blocks: NDArray[np.intp]) -> float:
     """Whether the command was logged as computed (0) or as applied (the delay), s.
 
-    The force says when the command acts. Where that is too little to see, the command decides, which
-    another filter makes late as well.
+    The force says when the command acts. Where that is too little to see, the command decides,
+    which another filter makes late as well.
     """
     recorded = [on.low(i, s.motion.command) for i, s in enumerate(on.stretches)]
     written = [s.motion.command for s in on.stretches]

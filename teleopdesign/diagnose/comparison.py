@@ -34,8 +34,8 @@ class Comparison(ByValue):
 
     fit_error, check_error: relative force errors (NaN where there is no such record)
     data: per sample of every record and body (dimension "sample"): record, use, body, segment,
-        time, position, velocity, direction, the low-passed measured, model and residual force, and
-        whether the sample counts in the error (samples at the ends do not)
+        time, position, velocity, direction, the low-passed command, measured, model and residual
+        force, and whether the sample counts in the error (samples at the ends do not)
     """
 
     model: Model
@@ -144,6 +144,7 @@ def residual_data(model: Model, prepared: Prepared) -> Dataset:
             "position": motion.position,
             "velocity": motion.velocity,
             "direction": motion.direction,
+            "command": motion.lowpassed(motion.at_rows(motion.command)),
             "measured": measured,
             "model": measured - residual,
             "residual": residual,
@@ -151,8 +152,8 @@ def residual_data(model: Model, prepared: Prepared) -> Dataset:
         }.items():
             columns.setdefault(name, []).append(values)
     axis = next(iter(model.bodies.values())).axis
-    quantity = {"measured": "force", "model": "force", "residual": "force"}
+    quantity = dict.fromkeys(("command", "measured", "model", "residual"), "force")
     data = xr.Dataset({k: ("sample", np.concatenate(v)) for k, v in columns.items()})
-    for name in ("time", "position", "velocity", "measured", "model", "residual"):
+    for name in ("time", "position", "velocity", *quantity):
         data[name].attrs["units"] = unit_of(quantity.get(name, name), axis)
     return data.set_coords(["record", "use", "body", "segment", "time"])

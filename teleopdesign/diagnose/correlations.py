@@ -51,7 +51,7 @@ def residual_correlations(model: Model, prepared: Prepared, place: str) -> Resid
     command = motion.lowpassed(motion.at_rows(motion.command))[at]
     count = min(LAGS, len(at) // 4)
     return ResidualCorrelations(
-        np.arange(-count, count + 1) * every * motion.sample_time,
+        np.arange(-float(count), count + 1) * (every * motion.sample_time),
         _correlation(left, left, count),
         _correlation(command, left, count),
         NINETY_NINE / float(np.sqrt(len(at))),

@@ -1,7 +1,12 @@
 """What `verify` names where a compensation or its device differs from the design."""
 
+import numpy as np
 import pytest
-from design.faults_campaign import FAULTS, WAYS, is_right, named
+from design.compensated_joint import PERIOD, record_without
+from design.faults_campaign import FAULTS, WAYS, experiment, is_right, named
+
+import teleopdesign as td
+from teleopdesign.design.second_recording import SecondRecording
 
 QUICK = ("none", "level")
 EACH = [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in FAULTS]
@@ -35,3 +40,20 @@ def test_a_recording_with_the_compensation_off_tells_a_changed_device():
     assert [f"{one.at}: {one.parameter}" for one in group] == ["Z_M: coulomb.level"]
     (one,) = group
     assert one.value == pytest.approx(1.4 * one.designed, rel=0.03)
+
+
+def test_a_law_that_reads_the_command_runs_along_a_recording():
+    """A ripple is divided out: without force feedback, C commands its friction over the gain."""
+    effects = {"coulomb": {"level": 0.2}, "torque_ripple": {"amplitude": 0.3, "period": 0.5}}
+    effects["torque_ripple"]["phase"] = 0.0
+    body = td.Body("revolute", {"inertia": 0.01})
+    for name, values in effects.items():
+        body = body.with_effect(td.EFFECTS[name], values)
+    diagram = td.haptic_interface(body, cancellation=td.cancel(effects, smoothing_velocity=0.2))
+    columns = record_without(0.01, {}, 4, np.random.default_rng(1))
+    sampling = td.Sampling(period=PERIOD, delay=0.0, velocity_bandwidth=np.inf)
+    on = SecondRecording.of(diagram, sampling, experiment(columns), "device")
+    (command,) = on.commands()
+    speed = np.diff(columns["q"], prepend=columns["q"][0]) / PERIOD
+    gain = 1 + 0.3 * np.sin(2 * np.pi * columns["q"] / 0.5)
+    np.testing.assert_allclose(command, 0.2 * speed / (0.2 + abs(speed)) / gain, atol=1e-9)

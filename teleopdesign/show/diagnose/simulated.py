@@ -32,11 +32,11 @@ def plot_simulation(comparison: SimulationComparison) -> Figure:
     axis = comparison.model.body(at).axis
     alone = not comparison.prepared.joints
     with plt.style.context(house_style()):
-        layout = [["motion", "motion"], ["own", "command"]] if alone else [["motion", "motion"]]
+        layout = "mm;oc" if alone else "mm"
         figure, axes = plt.subplot_mosaic(layout, figsize=(TWO_COLUMNS, 4.2 if alone else 2.3))
-        _overlay(axes["motion"], comparison, use, at)
-        axes["motion"].set_xlabel("time (s)")
-        axes["motion"].set_ylabel(f"position ({unit_at_axis(unit_of('position', axis))})")
+        _overlay(axes["m"], comparison, use, at)
+        axes["m"].set_xlabel("time (s)")
+        axes["m"].set_ylabel(f"position ({unit_at_axis(unit_of('position', axis))})")
         if alone:
             (prepared,) = comparison.prepared.parts.values()
             _correlations(axes, residual_correlations(comparison.model, prepared, at))
@@ -66,7 +66,7 @@ def _overlay(ax: Any, comparison: SimulationComparison, use: str, at: str) -> No
 
 
 def _correlations(axes: Any, known: ResidualCorrelations) -> None:
-    pairs = (("own", known.own, "itself"), ("command", known.command, "the command"))
+    pairs = (("o", known.own, "itself"), ("c", known.command, "the command"))
     for name, values, words in pairs:
         ax = axes[name]
         ax.axhspan(-known.band, known.band, color="0.9", label="99 %")

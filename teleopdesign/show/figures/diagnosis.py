@@ -9,6 +9,7 @@ import numpy as np
 from ...base.sentences import unit_at_axis
 from ...diagnose.comparison import Comparison, residual_data
 from ..registry import shows
+from .carrier import Carrier, carrier_of
 from .style import house_style
 
 if TYPE_CHECKING:
@@ -40,7 +41,8 @@ def check_rows(data: Any) -> Any:
 
 def label_of(data: Any, name: str) -> str:
     """Name and unit of a variable of residual data, for an axis."""
-    return f"{name} ({unit_at_axis(data[name].attrs['units'])})"
+    shown = data[name].attrs
+    return f"{shown.get('label', name)} ({unit_at_axis(shown['units'])})"
 
 
 def draw_by_direction(ax: Axes, data: Any, over: str) -> None:
@@ -135,8 +137,11 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
 
     if diagnosis.joints:
         return _plot_joints(diagnosis)
-    before = check_rows(residual_data(diagnosis.before.model, diagnosis.prepared))
-    after = check_rows(residual_data(diagnosis.model, diagnosis.prepared))
+    carrier = carrier_of(diagnosis, next(iter(diagnosis.model.bodies)))
+    before, after = (
+        _with_carrier(check_rows(residual_data(model, diagnosis.prepared)), carrier, diagnosis)
+        for model in (diagnosis.before.model, diagnosis.model)
+    )
     changed = len(diagnosis.rungs) > 1
     with plt.style.context(house_style()):
         figure, axes = plt.subplot_mosaic(
@@ -167,6 +172,15 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
         _residual_maps(axes, before, after, changed=changed)
         _draw_ladder(axes["ladder"], diagnosis, of="the measured force")
     return figure
+
+
+def _with_carrier(data: Any, carrier: Carrier, diagnosis: Diagnosis) -> Any:
+    """The data with the variable "carrier", beside the velocity; the position carries as well."""
+    if carrier.name == "velocity":
+        carrier = Carrier("position")
+    axis = next(iter(diagnosis.model.bodies.values())).axis
+    attributes = {"units": data[carrier.name].attrs["units"], "label": carrier.label(axis)}
+    return data.assign(carrier=("sample", carrier.values(data), attributes))
 
 
 def _plot_joints(diagnosis: Diagnosis) -> Figure:
@@ -231,7 +245,7 @@ def _first_record(data: Any) -> Any:
 
 
 def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None:
-    for over, first, second in (("velocity", "v0", "v1"), ("position", "x0", "x1")):
+    for over, first, second in (("velocity", "v0", "v1"), ("carrier", "x0", "x1")):
         draw_by_direction(axes[first], before, over)
         axes[first].set_ylabel(label_of(before, "residual").replace("residual", "residual before"))
         if changed:

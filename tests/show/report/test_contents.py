@@ -73,7 +73,7 @@ def test_a_body_that_no_effect_changed_shows_one_step(diagnosis):
     same = replace(diagnosis.rungs[1], fitted=diagnosis.before.model)
     (view,) = body_views(replace(diagnosis, rungs=(diagnosis.rungs[0], same)), ("a", "b"))
     assert len(view.steps) == 1
-    assert [s.name for s in view.over_velocity.series] == ["your model"]
+    assert [s.name for s in view.over_carrier.series] == ["your model"]
 
 
 def test_parameters_stand_beside_what_was_stated(diagnosis):
