@@ -10,7 +10,7 @@ MUTATE ?= teleopdesign/effects tests/effects --number 10
 STUDY_ARGS ?=
 STUDY_OUTPUT ?= studies/output
 # what is run with the lowest versions: files, equations, compiled code, proofs, tables
-LOWEST_TESTS ?= tests/effects tests/measurement tests/check tests/realise tests/simulate tests/passivity/test_kyp.py \
+LOWEST_TESTS ?= tests/effects tests/measurement tests/check tests/realise tests/simulate \
 	tests/studies tests/tuning tests/plot tests/design tests/commands
 # processes at a time, of tests and of studies
 JOBS ?= 2
@@ -105,7 +105,7 @@ lowest:  ## tests with every dependency at the lowest version that pyproject.tom
 	@echo "== Tests with the lowest declared versions"
 	@$(PYTHON) -m venv --clear build/lowest
 	@build/lowest/bin/python -m pip --disable-pip-version-check --no-input install --quiet \
-		--constraint release/lowest.txt --editable ".[app,cluster,io,learn,lmi,proof,ros,studies]" \
+		--constraint release/lowest.txt --editable ".[app,cluster,io,learn,ros,studies]" \
 		hypothesis polars pytest
 	@build/lowest/bin/python -m pytest $(LOWEST_TESTS) $(PYTEST_ARGS)
 

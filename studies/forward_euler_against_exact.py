@@ -23,7 +23,7 @@ import xarray
 from _passivity_figures import plot_forward_euler
 from _study import write_study
 
-from teleopdesign.papers import dahl_euler
+from teleopdesign.papers import dahl_integration
 from teleopdesign.passivity import Dahl
 
 LEVEL, STIFFNESS, PERIOD = 1.0, 1e4, 1e-3  # N, N/m, s: bristle length 0.1 mm
@@ -31,9 +31,9 @@ SHOWN = (0.5, 1.0, 1.5, 2.1)
 SAMPLES = 24  # one way; then as many back
 
 _euler_step = sp.lambdify(
-    (dahl_euler.f, dahl_euler.v),
-    dahl_euler.FORWARD.subs(
-        {dahl_euler.f_c: LEVEL, dahl_euler.sigma: STIFFNESS, dahl_euler.T: PERIOD}
+    (dahl_integration.f, dahl_integration.v),
+    dahl_integration.FORWARD.subs(
+        {dahl_integration.f_c: LEVEL, dahl_integration.sigma: STIFFNESS, dahl_integration.T: PERIOD}
     ),
     "math",
 )

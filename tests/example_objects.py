@@ -119,7 +119,6 @@ QUICK: Mapping[str, Callable[[], Any]] = {
     ),
     "impedance": lambda: passivity.impedance(0.15 * sp.Symbol("s") + 4),
     "excess of damping": lambda: passivity.damping_excess(0.15 * sp.Symbol("s") + 4),
-    "storage": lambda: passivity.kyp((sp.Symbol("s") + 3) / (sp.Symbol("s") + 4)),
     "claim over intervals": lambda: passivity.claim_over_intervals(
         diagrams.haptic_interface(td.Body("prismatic", {"inertia": 0.1})),
         {"Z_M.inertia": (0.1, 0.2)},

@@ -5,8 +5,7 @@ from devices import DAHL, LINK, body
 
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, teleoperator
-from teleopdesign.realise._loop import module_source
-from teleopdesign.realise.program import CompiledLoop
+from teleopdesign.realise.program import CompiledLoop, module_source
 from teleopdesign.simulate import Sampling, prepare
 
 RUBBING = {"coulomb__level": 0.5, "presliding__stiffness": 2e4, "viscous__damping": 0.4}

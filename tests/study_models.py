@@ -6,8 +6,6 @@ import signal
 import time
 from pathlib import Path
 
-import numpy as np
-
 import teleopdesign as td
 from teleopdesign.base.machine import can_copy
 
@@ -91,28 +89,6 @@ def lethal_product(x, y):
     return product(x, y)
 
 
-def terminated_product(x, y):
-    """As `product`, but at x = 3 a process that handles SIGTERM receives it."""
-    if x == 3 and signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
-        os.kill(os.getpid(), signal.SIGTERM)
-    return product(x, y)
-
-
-def drawn(number):
-    """A number that depends on the process, and on how many it has drawn before."""
-    time.sleep(0.004)
-    return float(np.random.random())  # noqa: NPY002
-
-
 def can_be_copied(x):
     """Whether the process that computes it may be copied."""
     return float(can_copy())
-
-
-#: what only a process that set it, and its copies, have
-mark = 0.0
-
-
-def has_mark(x):
-    """Whether the process that computes it is a copy of one that has set `mark`."""
-    return mark

@@ -7,8 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from teleopdesign.studies import processes
-
 TESTS = Path(__file__).parent
 AXES = {"x": np.arange(6.0), "y": np.linspace(0.1, 1.0, 5)}
 EXPECTED = AXES["x"][:, None] * np.sin(AXES["y"])
@@ -28,11 +26,6 @@ def study_code(out, model="slow_product", points=300, **more):
         f"td.study(models.{model}, {{'x': np.arange({points}.0), 'y': 0.5}}, "
         f"measures=models.value, out={str(out)!r}{arguments})\n"
     )
-
-
-def anew(monkeypatch):
-    """From now on no process is copied."""
-    monkeypatch.setattr(processes, "can_copy", lambda: False)
 
 
 def children():

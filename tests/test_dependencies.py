@@ -17,12 +17,11 @@ MODULES = {
     "myst-parser": "myst_parser",
     "numba-cuda": "numba_cuda",
     "scikit-learn": "sklearn",
-    "z3-solver": "z3",
 }
 #: tools that are run, not imported
 TOOLS = {"import-linter", "mypy", "pytest-xdist", "ruff", "scipy-stubs"}
-#: what another library is asked for by a text: themes and readers of sphinx, a solver of cvxpy
-NAMED = {"clarabel", "furo", "myst-parser", "sphinx"}
+#: what another library is asked for by a text: themes and readers of sphinx
+NAMED = {"furo", "myst-parser", "sphinx"}
 
 
 def names(requirements):

@@ -52,6 +52,7 @@ WHOLE = {
     "base/units": "symbols, quantities and their units are one table",
     "app/notebook": "cells of one page, which marimo reads from one file",
     "realise/integrator": "one loop, compiled as a whole",
+    "realise/on_gpu": "all that runs on a GPU, and nothing else does",
 }
 MOST_LINES = 60
 MOST_POSITIONAL = 6

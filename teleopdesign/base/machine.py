@@ -77,8 +77,6 @@ def one_thread() -> Iterator[None]:
                 os.environ[name] = value
 
 
-#: threads of a library that starts them again in a copy: jemalloc's, which pyarrow contains
-_RESTARTED = "jemalloc_bg_thd"
 _makes_copies = sys.platform == "linux"
 
 
@@ -92,19 +90,6 @@ def forbid_copies() -> None:
     """Let this process make no copies from now on."""
     global _makes_copies
     _makes_copies = False
-
-
-def has_hidden_threads() -> bool:
-    """Whether this process, just copied, has threads that Python does not count.
-
-    Such threads belong to libraries that may not work in a copy. Threads of linear algebra ended
-    before the copy, and begin anew where they are needed.
-    """
-    try:
-        names = [file.read_text().strip() for file in Path("/proc/self/task").glob("*/comm")]
-    except OSError:
-        return True
-    return sum(name != _RESTARTED for name in names) != 1
 
 
 @contextmanager

@@ -19,7 +19,7 @@ from ._progress import Reporter
 from ._terminal import print_styled
 
 if TYPE_CHECKING:
-    from ..block_cuts import BlockDiagnosis, DiagramExperiment
+    from ..block_cuts import DiagramExperiment
     from ..blocks import Body
     from ..diagnose import Diagnosis
     from ..effects import Effect
@@ -80,7 +80,8 @@ def folder_of(path: Path) -> Path:
         return path
     from ..diagnose.answer import folder_of_answer
 
-    return folder_of_answer(answer)
+    folder = folder_of_answer(answer)
+    return folder.resolve() if ".." in folder.parts else folder
 
 
 def experiment_and_answer(options: argparse.Namespace) -> Experiment:
@@ -161,13 +162,13 @@ _STYLES = {
 }
 
 
-def print_diagnosis(diagnosis: Diagnosis | BlockDiagnosis) -> None:
-    """Print the ladder and the verdict, in colours on a terminal."""
+def print_diagnosis(text: str) -> None:
+    """Print a diagnosis in words, in colours on a terminal."""
 
     def style(line: str) -> str:
         return next((s for begin, s in _STYLES.items() if line.startswith(begin)), "")
 
-    print_styled(str(diagnosis), style)
+    print_styled(text, style)
 
 
 def model_of_source(options: argparse.Namespace) -> tuple[Model, Path]:
@@ -221,7 +222,7 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
     place = _place(list(experiment.bodies), source, options.body)
     diagnosis = diagnosis_of(experiment, options)
     if options.answer is None:
-        print_diagnosis(diagnosis)
+        print_diagnosis(str(diagnosis))
         print()
     model = model_at_place(diagnosis, source, options)
     if diagnosis.joints:

@@ -45,7 +45,7 @@ def diagnose_diagram(experiment: DiagramExperiment, options: argparse.Namespace)
     )
     reporter.clear()
     assert isinstance(diagnosis, BlockDiagnosis)
-    print_diagnosis(diagnosis)
+    print_diagnosis(str(diagnosis))
     if options.json is not None:
         write_answer(diagnosis, options.json)
     if options.figure is not None:

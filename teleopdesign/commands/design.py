@@ -102,7 +102,7 @@ def _diagnosis_to_design_for(experiment: Experiment, options: argparse.Namespace
     diagnosis = diagnosis_of(experiment, options)
     joint = None if experiment.arm is None else joint_of(experiment, options)
     if options.answer is None:
-        print_diagnosis(diagnosis if joint is None else diagnosis.joints[joint])
+        print_diagnosis(str(diagnosis if joint is None else diagnosis.joints[joint]))
         print()
     if joint is None:
         return diagnosis

@@ -3,25 +3,45 @@
 from __future__ import annotations
 
 import argparse
+import csv
+import math
+import sys
+from collections.abc import Sequence
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..base.errors import ModelError
-from ..base.files import write_beside
+from ..base.errors import ExperimentError, ModelError
+from ..base.files import harmless_cell, write_beside, write_text
+from ..base.sentences import percent
+from . import STOPPED
 from ._diagnosis import (
+    candidate_effects,
     diagnose_experiment,
+    effects_by_name,
     experiment_or_diagram,
     folder_of,
     print_diagnosis,
 )
-from ._folders import diagnose_all
-from ._options import add_effect_files, add_output, add_search, count_argument, say, say_written
+from ._failures import BAD_INPUT
+from ._options import (
+    add_effect_files,
+    add_output,
+    add_search,
+    count_argument,
+    make_folder,
+    say,
+    say_written,
+)
 from ._paths import shell_word
-from ._report import write_page
+from ._progress import PointReporter
 from ._whole_diagram import diagnose_diagram
+from .report import write_page
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis, SimulationComparison
+    from ..measurement import Experiment
+    from ..studies.folders import DiagnosedFolder, FolderSearch
 
 EXAMPLES = """
   teleopdesign diagnose rod
@@ -57,6 +77,11 @@ def add(parser: argparse.ArgumentParser) -> None:
         "device; in an arm, each joint has such a loop",
     )
     add_output(parser, "--report", "write a report of the whole diagnosis", ".html")
+    parser.add_argument(
+        "--verbose",
+        action="store_true",
+        help="also print how the log was read, what was refused and why, and the whole model",
+    )
     add_search(parser)
     parser.add_argument(
         "--output",
@@ -75,7 +100,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the ladder; write the requested files.
+    """Print the verdict and the errors behind it; write the requested files.
 
     For several folders, returns 0 if all were diagnosed, whatever the verdicts, and 2 if one was
     not.
@@ -93,12 +118,8 @@ def run(options: argparse.Namespace) -> int:
     if not isinstance(whole, Experiment):
         return diagnose_diagram(whole, options)
     experiment = whole
-    print(experiment)
-    print()
     diagnosis = diagnose_experiment(experiment, options)
-    print_diagnosis(diagnosis)
-    if not diagnosis.joints:  # of an arm, each effect states its parameters above
-        print(f"\n{diagnosis.model}")
+    _print(diagnosis, experiment, verbose=options.verbose)
     simulation = _simulation(diagnosis, options)
     if options.json is not None:
         write_answer(diagnosis, options.json, simulation=simulation)
@@ -111,9 +132,24 @@ def run(options: argparse.Namespace) -> int:
         write_page(diagnosis, options.report)
     say_written(options.report, options.json, options.predictions, options.figure)
     source = shell_word(options.json or folder)
+    if not options.verbose and options.report is None:
+        print("how the log was read, reasons and the whole model: --verbose, or --report F.html")
     for line in _suggest_commands(diagnosis, source):
         print(line)
     return 0
+
+
+def _print(diagnosis: Diagnosis, experiment: Experiment, *, verbose: bool) -> None:
+    """Print the first screen; verbose: how the log was read, every reason and the model instead."""
+    from ..show.diagnose.brief import brief_text
+
+    if not verbose:
+        print_diagnosis(brief_text(diagnosis))
+        return
+    print(f"{experiment}\n")
+    print_diagnosis(str(diagnosis))
+    if not diagnosis.joints:  # of an arm, each effect states its parameters above
+        print(f"\n{diagnosis.model}")
 
 
 def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> SimulationComparison | None:
@@ -151,4 +187,102 @@ def _suggest_commands(diagnosis: Diagnosis, source: str) -> list[str]:
                 lines[:0] = [f.sentence for f in wrong_band]
     if not diagnosis.joints:
         lines.append(f"to design a compensation: teleopdesign design {source} --output design")
-    return ["", *lines] if lines else []
+    return lines
+
+
+#: the table within the output folder
+TABLE = "table.csv"
+_HEAD = ("folder", "verdict", "missing", "error before", "error after")
+
+
+def diagnose_all(options: argparse.Namespace) -> int:
+    """Diagnose every folder, print and write the table; returns 2 if one was not diagnosed."""
+    if options.output is None:
+        raise ExperimentError(f"{len(options.folder)} folders: expected --output DIR beside them")
+    for name in ("json", "predictions", "figure", "report"):
+        if getattr(options, name) is not None:
+            raise ExperimentError(
+                f"--{name}: is for one folder, found it with --output: every answer goes there, "
+                "and `teleopdesign report ANSWER` makes its page"
+            )
+    if options.simulate:
+        raise ExperimentError("--simulate: is for one folder, found it with --output")
+    for folder in options.folder:
+        if not folder.is_dir():
+            raise ExperimentError(f"{folder}: no such folder")
+    search = _search(options)
+    output = make_folder(options.output)
+    from ..studies.folders import diagnose_folders
+
+    reporter = PointReporter()
+    try:
+        rows = diagnose_folders(
+            options.folder, output, search=search, workers=options.workers, progress=reporter
+        )
+    except KeyboardInterrupt:
+        reporter.clear()
+        print(
+            f"teleopdesign: stopped; {reporter.describe_finished()} kept in {output}, "
+            "the same command continues from there",
+            file=sys.stderr,
+        )
+        return STOPPED
+    reporter.clear()
+    print("\n".join(table_lines(rows)))
+    write_text(output / TABLE, table_csv(rows))
+    failed = sum(bool(row.failure) for row in rows)
+    print(f"\n{len(rows) - failed} of {len(rows)} folders diagnosed; answers and {TABLE}: {output}")
+    return BAD_INPUT if failed else 0
+
+
+def _search(options: argparse.Namespace) -> FolderSearch:
+    from ..studies.folders import FolderSearch
+
+    known = effects_by_name(options)
+    among = candidate_effects(known, options.only, options.exclude)
+    return FolderSearch(dict(known), among, options.quick)
+
+
+def table_lines(rows: Sequence[DiagnosedFolder]) -> list[str]:
+    """The table for a terminal: a line for each folder, in the order of the command line."""
+    cells = [_HEAD, *(_cells(row) for row in rows if not row.failure)]
+    widths = [max(len(line[k]) for line in cells) for k in range(len(_HEAD))]
+    widths[0] = max(widths[0], *(len(str(row.folder)) for row in rows))
+    lines = [_line(_HEAD, widths)]
+    for row in rows:
+        if row.failure:
+            lines.append(f"{str(row.folder):<{widths[0]}}  failed: {row.failure}")
+        else:
+            lines.append(_line(_cells(row), widths))
+    return lines
+
+
+def _cells(row: DiagnosedFolder) -> tuple[str, ...]:
+    return (
+        str(row.folder),
+        row.verdict,
+        row.missing or "-",
+        percent(row.before, unknown="not told"),
+        percent(row.after, unknown="not told"),
+    )
+
+
+def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
+    words = [f"{cell:<{width}}" for cell, width in zip(cells[:3], widths, strict=False)]
+    numbers = [f"{cell:>{width}}" for cell, width in zip(cells[3:], widths[3:], strict=True)]
+    return "  ".join([*words, *numbers])
+
+
+def table_csv(rows: Sequence[DiagnosedFolder]) -> str:
+    """The table as CSV for a spreadsheet; errors are fractions of the measured force."""
+    text = StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(
+        ["folder", "answer", "verdict", "missing", "error_before", "error_after", "failure"]
+    )
+    for row in rows:
+        numbers = ["" if not math.isfinite(x) else f"{x:.6g}" for x in (row.before, row.after)]
+        answer = "" if row.failure else row.answer.name
+        words = [str(row.folder), answer, row.verdict, row.missing]
+        out.writerow([*map(harmless_cell, words), *numbers, harmless_cell(row.failure)])
+    return text.getvalue()

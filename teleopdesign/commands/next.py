@@ -93,7 +93,7 @@ def run(options: argparse.Namespace) -> int:
     diagnosis = diagnosis_of_part(experiment, options)
     proposal = propose(diagnosis, duration=options.duration, limits=limits, progress=say)
     say("")
-    print_diagnosis(diagnosis)
+    print_diagnosis(str(diagnosis))
     print()
     print(_wrap(repr(proposal)))
     shown: Sequence[SimulatedDiagnosis] = ()
@@ -134,7 +134,7 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
     }
     paths = propose_paths(diagnosis, duration=options.duration, limits=limits, progress=say)
     say("")
-    print_diagnosis(diagnosis)
+    print_diagnosis(str(diagnosis))
     print(f"\n{_wrap('next experiment: ' + repr(paths))}")
     if options.output is not None and paths.is_useful:
         write_reference(paths.reference, experiment, options.output)

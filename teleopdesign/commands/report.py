@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from ..base.errors import ModelError
 from ._diagnosis import diagnosis_of, experiment_and_answer
-from ._options import add_experiment, add_output, add_search, check_output
-from ._report import write_page
+from ._options import add_experiment, add_output, add_search, check_output, say
+
+if TYPE_CHECKING:
+    from ..base.finding import Finding
+    from ..diagnose import Diagnosis
 
 EXAMPLES = """
   teleopdesign report answer.json
@@ -43,3 +48,34 @@ def run(options: argparse.Namespace) -> int:
     write_page(diagnosis, path)
     print(f"written: {path}")
     return 0
+
+
+def write_page(diagnosis: Diagnosis, path: Path) -> None:
+    """Write the page, with findings on the recording, the residual, and what to measure next."""
+    from ..fitted_checks import check_experiment
+    from ..show.report import write_report
+    from ..unexplained import where_it_fails
+
+    say("checking the recording")
+    before = None if diagnosis.joints else diagnosis.before.model
+    soundness = check_experiment(diagnosis.experiment, before)
+    left = {}
+    for part, one in (diagnosis.joints or {"": diagnosis}).items():
+        say(f"describing what is left{f' at {part}' if part else ''}")
+        left[part] = where_it_fails(one.model, one.prepared, one.floor)
+    steps = _next_steps(diagnosis)
+    say("")
+    write_report(diagnosis, path, soundness=soundness, unexplained=left, next_steps=steps)
+
+
+def _next_steps(diagnosis: Diagnosis) -> tuple[Finding, ...]:
+    """What to measure next; nothing where nothing is open, or no motion was shown to be safe."""
+    from ..next_experiment import propose, shown_limits
+
+    if diagnosis.joints or (diagnosis.verdict != "undecided" and not diagnosis.groups):
+        return ()
+    try:
+        shown_limits(diagnosis.prepared)
+    except ModelError:
+        return ()
+    return propose(diagnosis, progress=say).findings()

@@ -34,8 +34,14 @@ from ._declarations import (
     unknown_symbols,
 )
 from ._exact import exact_decimal, make_exact, resolvent
-from ._from_control import from_control, invert_plant, matrices_of, unit_state
-from ._measured import measured_frequencies, measured_plant
+from ._from_control import (
+    from_control,
+    invert_plant,
+    matrices_of,
+    measured_frequencies,
+    measured_plant,
+    unit_state,
+)
 from ._of_effects import CANCEL, cancel, cancelling_law, why_not_cancelled
 from ._opaque import calls_in, is_call, opaque_laws
 from ._state_space import is_of_matrices, sides_of

@@ -13,7 +13,7 @@ from ..base.arguments import check_types
 from ..base.errors import ModelError, did_you_mean
 from ..base.frozen import Frozen
 from ..base.shown import html_table
-from ._by_numbers import has_numbers, insert_values, is_by_numbers
+from ._exact import has_numbers, insert_values, is_by_numbers
 from ._law import SIGNALS, Ability, ControlLaw, ControllerState, Stage, mark_sampled_rate
 
 #: names that the file of a law may import, those of `_law` included

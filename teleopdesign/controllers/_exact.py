@@ -2,14 +2,20 @@
 
 A float stands for the shortest decimal number that prints like it; 0.1 is 1/10. Poles and zeros
 that cancel on paper then cancel, and a pole at zero stays there.
+
+So are transfer functions of laws with the values of a stage inserted.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import sympy as sp
+
+if TYPE_CHECKING:
+    from ._controller import Stage
 
 
 def exact_decimal(value: float) -> sp.Rational:
@@ -52,3 +58,36 @@ def resolvent(
         below.append(coefficient)
         power = [[moved[i][j] + (i == j) * coefficient for j in range(n)] for i in range(n)]
     return below, above
+
+
+def has_numbers(stage: Stage) -> bool:
+    """Whether the law is a measured response, or has a transfer function in z at a fixed period."""
+    if stage.law.response is not None:
+        return True
+    return stage.law.in_z is not None and stage.values["period"] > 0
+
+
+def is_by_numbers(stage: Stage) -> bool:
+    """Whether the law states a transfer function or response, which depends on its input alone."""
+    law = stage.law
+    return any(x is not None for x in (law.transfer, law.in_z, law.response))
+
+
+def insert_values(stage: Stage, s: sp.Symbol) -> sp.Expr:
+    """Transfer function of a law that states one, with the values of the stage inserted."""
+    if stage.law.transfer is not None:
+        return stage.law.transfer(stage.values, s)
+    if stage.law.response is not None:
+        return exact_decimal(stage.values["scale"]) * stage.law.response(s)
+    assert stage.law.in_z is not None
+    period, z = exact_decimal(stage.values["period"]), sp.Symbol("z")
+    late = sp.exp(-s * period)
+    above, below = (
+        sp.Poly(x, z) for x in sp.fraction(sp.together(stage.law.in_z(stage.values, z)))
+    )
+    # in powers of e^(-s T): those of e^(s T) overflow far out in the right half plane
+    order = below.degree()
+    sides = (
+        sp.Add(*(c * late ** (order - k) for (k,), c in part.terms())) for part in (above, below)
+    )
+    return sp.Mul(next(sides), 1 / next(sides)) * (1 - late) / (s * period)

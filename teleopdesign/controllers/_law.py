@@ -7,6 +7,8 @@ it; `travel_rate` is the travel of the last sample over its duration, velocity i
 time; `command` is the force commanded without this law, for laws that declare to read it. Every
 form of the law (transfer function, python-control system, sampled step of the kernel) is derived
 from it.
+
+`store_input` and `zero_rate` serve laws that keep a value from one sample to the next.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal, get_args
 
 import sympy as sp
+from sympy import S
 
 from ..base.arguments import check_types
 from ..base.errors import ModelError, did_you_mean, unknown
@@ -183,3 +186,13 @@ class Stage:
         """Value (SI) of the parameter that the law declares for an ability; None without it."""
         parameter = getattr(self.law, ability)
         return float(self.values[parameter]) if parameter else None
+
+
+def store_input(now, p):
+    """The input, for the next sample."""
+    return now.input
+
+
+def zero_rate(now, p):
+    """Rate 0: in continuous time there is no last sample."""
+    return S.Zero

@@ -18,7 +18,7 @@ from sympy import Abs
 from ..effects import Parameter
 from . import passivity_controller
 from ._controller import ControlLaw, ControllerState
-from ._memory import zero_rate
+from ._law import zero_rate
 
 
 def _power(force, velocity, p):

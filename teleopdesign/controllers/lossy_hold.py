@@ -11,7 +11,7 @@ from sympy import Piecewise, pi, sin
 
 from ..effects import Parameter
 from ._controller import ControlLaw, ControllerState
-from ._memory import zero_rate
+from ._law import zero_rate
 
 
 def law(now, p):

@@ -19,7 +19,7 @@ from sympy import Max, Min, exp
 
 from ..effects import Parameter
 from ._controller import ControlLaw, ControllerState
-from ._memory import store_input, zero_rate
+from ._law import store_input, zero_rate
 
 _STANDSTILL = 1e-30  # (m/s)^2: alpha stays finite there, and acts on no velocity
 

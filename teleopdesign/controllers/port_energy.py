@@ -14,7 +14,7 @@ from sympy import Max
 
 from ..effects import Parameter
 from ._controller import ControlLaw, ControllerState
-from ._memory import store_input, zero_rate
+from ._law import store_input, zero_rate
 
 
 def law(now, p):

@@ -34,16 +34,17 @@ from ..diagrams.second_input import acts_along_another
 from ..effects import Effect, sort_by_action
 from ..realise.lti import S
 from ..realise.tips import with_tips
-from .cramer import Row, solve
 from .linear_rows import (
     DRIVE,
     LATE,
     MOVED,
     SPEED,
     OfLaw,
+    Row,
     late_symbols,
     rows_of_effect,
     rows_of_law,
+    solve,
 )
 
 

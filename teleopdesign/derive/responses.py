@@ -10,7 +10,7 @@ import numpy as np
 import sympy as sp
 
 from .all_states import AllStates
-from .cramer import Row, eliminate_numbers
+from .linear_rows import Row, eliminate_numbers
 
 #: symbols of a ring -> their numbers
 SymbolNumbers = Mapping[sp.Symbol, float]

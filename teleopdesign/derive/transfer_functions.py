@@ -16,7 +16,7 @@ from ..base.errors import ModelError
 from ..base.frozen import ByName, Frozen
 from ..diagrams import Control, Diagram
 from ..realise.lti import LinearBlocks, as_transfer_function, linear_blocks
-from ..realise.parted import linear_parted
+from ..realise.simulated import linear_parted
 from ..realise.tips import linear_tips
 from .elimination import round_trip, transfer
 from .printing import (

@@ -19,7 +19,7 @@ from ..base.shown import Shown
 from ..base.units import unit_after_number, unit_of
 from ..blocks import Body
 from ..controllers import CANCEL, Controller, controller, laws_that_declare
-from ..realise.acting_bound import largest_acting_force
+from ..realise.damping_interval import largest_acting_force
 from ..realise.friction_interval import FrictionInterval
 from ..realise.reach import Reach
 from .assumptions import Assumptions

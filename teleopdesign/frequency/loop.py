@@ -27,8 +27,7 @@ from ..realise.lti import S, as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
 from . import sampled_margins
 from .frozen_friction import cancellations_left_over
-from .late_envelope import unity_grid
-from .late_loop import LateRatio, count_loop, crossings, loop_as_written
+from .late_loop import LateRatio, count_loop, crossings, loop_as_written, unity_grid
 from .late_zeros import count_growing
 from .sampled_loop import SampledLoop, sampled_loop
 

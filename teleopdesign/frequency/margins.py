@@ -8,8 +8,14 @@ from sympy.core.function import AppliedUndef
 from ..base.errors import ModelError
 from ..realise.lti import numerical
 from . import sampled_margins
-from .late_envelope import envelope, factor_far_out, halve_steps, is_followed, least_between
-from .late_loop import loop_as_written
+from .late_loop import (
+    envelope,
+    factor_far_out,
+    halve_steps,
+    is_followed,
+    least_between,
+    loop_as_written,
+)
 from .late_zeros import degree_of
 from .loop import LoopGain, frequencies_of, unity_crossings
 

@@ -19,7 +19,7 @@ from ..derive import symbol_values
 from ..derive.elimination import rows
 from ..diagrams import Diagram, Moving
 from ..realise.lti import linear_blocks, numerical
-from ..realise.parted import linear_parted
+from ..realise.simulated import linear_parted
 from .frozen_friction import cancellations_left_over, growing_modes
 
 if TYPE_CHECKING:

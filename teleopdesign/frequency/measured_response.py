@@ -17,7 +17,7 @@ from ..base.errors import ModelError
 from ..base.units import unit_of
 from ..diagrams import Diagram
 from ..diagrams.units import first_axis
-from ..realise.parted import simulated_parted
+from ..realise.simulated import simulated_parted
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
 from .impedance_map import Amplitude, Grid, ImpedanceMap

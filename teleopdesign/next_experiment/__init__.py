@@ -13,8 +13,6 @@ from ..base.folders import lazy_face
 if TYPE_CHECKING:
     from .arm_paths import ArmPaths as ArmPaths
     from .arm_paths import propose_paths as propose_paths
-    from .in_simulation import SimulatedDiagnosis as SimulatedDiagnosis
-    from .in_simulation import show_in_simulation as show_in_simulation
     from .limits import Limits as Limits
     from .limits import shown_limits as shown_limits
     from .prediction import DeterminedParameter as DeterminedParameter
@@ -23,7 +21,9 @@ if TYPE_CHECKING:
     from .proposal import Reference as Reference
     from .proposal import proposal_data as proposal_data
     from .proposal import write_reference as write_reference
+    from .propose import SimulatedDiagnosis as SimulatedDiagnosis
     from .propose import propose as propose
+    from .propose import show_in_simulation as show_in_simulation
     from .remedies import Remedy as Remedy
     from .rivals import Rival as Rival
 

@@ -1,21 +1,27 @@
-"""Find the motion that best separates the models that a diagnosis leaves open."""
+"""Find the motion that best separates the models that a diagnosis leaves open.
+
+A proposal is tested with each rival in turn as the truth: the simulated records are diagnosed.
+"""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..base.errors import ModelError, did_you_mean
+from ..base.shown import Shown
 from ..base.units import si_factor
 from ..diagnose.diagnosis import Diagnosis
+from ..diagnose.ladder import find_missing
 from ..diagnose.sensors import sensors_of
 from ..measurement.experiment import Experiment
 from .family import PathPart, Setting, Show, family
 from .limits import Limits, course_of, shown_limits
 from .path import servo_of
-from .prediction import find_least_determined, predict
+from .prediction import find_least_determined, predict, run_twice, with_records
 from .proposal import Proposal, Reference
 from .remedies import Remedy, remedies, setups
 from .rivals import Rival, depends_on_time, floor_force, pairs, present_separation, rivals_of
@@ -179,3 +185,49 @@ def _remedies(
             seed=seed,
         )
     return others
+
+
+@dataclass(frozen=True)
+class SimulatedDiagnosis(Shown):
+    """A diagnosis of the present and the new records, with one rival as the truth.
+
+    named: whether the truth, and no other effect instead of it, is named
+    """
+
+    truth: Rival
+    named: bool
+    diagnosis: Diagnosis
+
+
+def show_in_simulation(
+    proposal: Proposal,
+    *,
+    seconds: float = float("inf"),
+    progress: Callable[[str], None] | None = None,
+    seed: int = 100,
+) -> tuple[SimulatedDiagnosis, ...]:
+    """Diagnose the present records with new records of the motion, for each rival as the truth.
+
+    seconds: no further rival is started after this time;  seed: of the new records' sensor errors
+    returns: empty where the proposal has no motion
+    """
+    shown: list[SimulatedDiagnosis] = []
+    began = time.perf_counter()
+    for i, rival in enumerate(proposal.rivals):
+        if proposal.plan is None or time.perf_counter() - began > seconds:
+            break
+        if progress is not None:
+            progress(f"simulating records with {rival} as the true effect")
+        new = run_twice(rival.model, proposal.plan, proposal.bench, seed=seed + i)
+        experiment = with_records(proposal.diagnosis.experiment, new)
+        diagnosis = find_missing(experiment, proposal.diagnosis.before.model)
+        shown.append(SimulatedDiagnosis(rival, names_alone(diagnosis, rival), diagnosis))
+    return tuple(shown)
+
+
+def names_alone(diagnosis: Diagnosis, rival: Rival) -> bool:
+    """Whether a diagnosis names the rival's effect, and no other explains the records as well."""
+    key = rival.candidate.key
+    return diagnosis.verdict == "effects_missing" and any(
+        r.added is not None and r.added.key == key and not r.alternatives for r in diagnosis.rungs
+    )

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from .claims.claim import region as region
     from .claims.counterexample_files import read_record as read_record
     from .claims.counterexample_files import write_record as write_record
-    from .claims.second_opinion import SecondOpinion as SecondOpinion
-    from .claims.second_opinion import second_opinion as second_opinion
     from .diagram_claims import DiagramClaims as DiagramClaims
     from .diagram_claims import Search as Search
     from .diagram_claims import diagram_claims as diagram_claims
@@ -40,9 +38,6 @@ if TYPE_CHECKING:
     from .linear.impedance import Impedance as Impedance
     from .linear.impedance import impedance as impedance
     from .linear.judge import positive_real as positive_real
-    from .linear.kyp import Kyp as Kyp
-    from .linear.kyp import kyp as kyp
-    from .linear.kyp import storage_function as storage_function
     from .linear_diagrams import hand_port as hand_port
     from .margin_map import MarginMap as MarginMap
     from .margin_map import margin_map as margin_map

@@ -13,8 +13,7 @@ from ..base.frozen import Frozen
 from ..base.units import unit_of
 from ..blocks import NINETY_FIVE, Body
 from ..effects import Effect
-from ..realise.acting_bound import largest_acting_force
-from ..realise.damping_interval import damping_interval
+from ..realise.damping_interval import damping_interval, largest_acting_force
 from ..realise.friction_cells import FrictionCells
 from ..realise.friction_interval import (
     SPEED,

@@ -12,7 +12,8 @@ from collections.abc import Callable
 import sympy as sp
 
 from ..controllers import calls_in
-from ._law_source import (
+from .equations import Equations, Layout, affine_slopes
+from .laws import (
     LawWriter,
     list_inverses,
     locate_entry,
@@ -20,8 +21,6 @@ from ._law_source import (
     write_function,
     write_reader,
 )
-from .equations import Equations, affine_slopes
-from .layout import Layout
 from .signal_symbols import (
     PERIOD,
     TIME,

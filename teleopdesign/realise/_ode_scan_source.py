@@ -12,7 +12,7 @@ from functools import lru_cache
 import sympy as sp
 
 from ..effects import SIGNALS, UNEXPLAINED, Effect
-from .exponentials import head
+from .compiled import head
 from .laws import Names, assignments, indent, source_of
 
 

@@ -16,10 +16,8 @@ import sympy as sp
 from ..base.errors import ModelError
 from ..controllers import SIGNALS, ControlLaw, Controller, Stage, parameter_symbol
 from ..measurement.filtering import Array
-from .compiled import compile_source
-from .delays import delay_in_samples
-from .exponentials import PHI, head
-from .late_signals import LateSignals, without_delays
+from .compiled import PHI, compile_source, head
+from .delays import LateSignals, delay_in_samples, without_delays
 from .laws import assignments, indent
 from .simulated import without_no_delay
 

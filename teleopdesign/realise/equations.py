@@ -26,7 +26,7 @@ from .computer import (
     solve_computer,
     write_computer,
 )
-from .late_signals import LateSignals, replace_delays
+from .delays import LateSignals, replace_delays
 from .signal_symbols import (
     TIME,
     acceleration,
@@ -258,3 +258,22 @@ class _Builder:
         if equation.friction != 0:
             self.friction[f"{part.name}_friction"] = equation.friction.xreplace(here)
         return (total.xreplace(here) - acting).xreplace({_NO_COMMAND: sp.S(0)})
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Order of all arguments and results of the loop, as names.
+
+    columns: of a row of the result
+    exponential: hidden states whose affine part is integrated exactly; they are the last states
+    """
+
+    states: tuple[str, ...]
+    computer_states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    sampled_inputs: tuple[str, ...]
+    commands: tuple[str, ...]
+    late: tuple[str, ...]
+    parameters: tuple[str, ...]
+    columns: tuple[str, ...]
+    exponential: tuple[str, ...]

@@ -20,8 +20,8 @@ from ..base.arguments import check_types
 from ..base.errors import ModelError
 from ..controllers import Controller, Stage, from_control
 from ..diagrams import Control, Diagram, Junction, Kinematics, with_shared_states
-from ._law_source import needed_steps
 from .equations import Equations, build_equations
+from .laws import needed_steps
 from .private_names import PrivateNames, private_names
 from .sampled_iosystem import sampled_iosystem
 from .signal_symbols import TIME, motion_of, signal, velocity

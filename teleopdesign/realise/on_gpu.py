@@ -3,12 +3,19 @@
 The loop and the laws are those of one simulation (`integrator.py`), with the same steps. Numbers
 differ from those of the lanes (`side_by_side.py`) by rounding, because exp and sums of products are
 rounded differently.
+
+The memory of a case stays in registers if the compiler knows every place in it. Therefore all parts
+are inlined, loops over quantities are written out, and a column that is chosen when the loop runs
+is looked for among all columns. Rings and results lie in the memory of the GPU, case beside case,
+so that threads read and write together.
 """
 
 from __future__ import annotations
 
+import ast
+import re
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from importlib.metadata import version
@@ -18,10 +25,9 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import ModelError
-from ._gpu_source import KERNEL, gpu_source
 from .compiled import compiled_module
 from .kernel import LoopGrid, first_memory, grid
-from .program import Program
+from .program import PLAIN, Program, loop_source
 from .side_by_side import (
     GridRun,
     LaneRequest,
@@ -44,6 +50,70 @@ _STREAMS = 32
 #: part of the free memory that is used
 _USED = 0.8
 _RINGS = ("held", "before", "after", "past")
+#: name of the kernel
+_KERNEL = "simulate_cases"
+_HEAD = """from numba import cuda
+from numba.cuda.libdevice import floor as round_down
+
+jitted = cuda.jit(device=True, forceinline=True)
+entry = jitted
+"""
+# numba's simulator of a GPU runs plain Python
+_SIMULATED_HEAD = f"from numba import cuda\n{PLAIN}"
+_COLUMN = """
+@jitted
+def column_at(place, memory):
+    value = 0.0
+    for i in range(MANY_COLUMNS):
+        if place == COLUMNS + i:
+            value = memory[COLUMNS + i]
+    return value
+
+"""
+_TEXT = '''
+
+@cuda.jit(cache=True)
+def simulate_cases(
+    samples, inner, h, period, lag, late_steps, encoder_step, smoothing,
+    held, held_slots, before, after, late_slots, late_samples, past, past_slots,
+    inputs, sampled, start, parameters, kept, out, limit, begin, kinds, columns, others, first,
+    results, worst, spoiled,
+):
+    """Run each case in a thread;  arrays: rings, parameters and results, each (entries, cases).
+
+    start: the memory at the start, without parameters;  first: reductions at the start
+    worst: largest measure of the reload;  spoiled: NaN where a signal is not finite
+    """
+    case = cuda.grid(1)
+    if case >= worst.size:
+        return
+    memory = cuda.local.array(ROWS, np.float64)
+    for row in range(ROWS):
+        memory[row] = start[row]
+    for row in range(MANY_PARAMETERS):
+        memory[PARAMETERS + row] = parameters[row, case]
+    for row in range(held.shape[0]):
+        held[row, case] = 0.0
+    for row in range(before.shape[0]):
+        before[row, case] = 0.0
+        after[row, case] = 0.0
+    for row in range(past.shape[0]):
+        past[row, case] = 0.0
+    for row in range(len(first)):
+        results[row, case] = first[row]
+    run(
+        samples, inner, h, period, lag, late_steps, encoder_step, smoothing,
+        held[:, case], held_slots, before[:, case], after[:, case], late_slots,
+        late_samples, past[:, case], past_slots,
+        False, inputs, sampled,
+        memory, kept, out[:, case], limit, begin, kinds, columns, others, results[:, case],
+    )
+    largest = 0.0
+    for i in range(MANY_BRISTLES):
+        largest = max(largest, memory[WORST + i])
+    worst[case] = largest
+    spoiled[case] = memory[SPOILED]
+'''
 
 
 def check_gpu() -> None:
@@ -109,47 +179,19 @@ def _execute_grids(
     # the longest first: the others run beside it
     parts.sort(key=lambda part: -part.run.timing.steps)
     streams = [cuda.stream() for _ in range(min(len(parts), _STREAMS))]
-    running: list[_Running] = []
+    running: list[Callable[[], None]] = []
     room = memory
     for part in parts:
         if part.bytes > room:
-            _collect(running)
+            while running:
+                running.pop(0)()
             room = memory
         running.append(part.launch(streams[len(running) % len(streams)]))
         room -= part.bytes
-    _collect(running)
+    for store in running:
+        store()
     scale_sums(runs, results, request)
     return results
-
-
-@dataclass(frozen=True)
-class _Running:
-    """A kernel that was started, and its results in the memory of the GPU.
-
-    results: rows that are kept, reductions, measure of the reload, mark of signals that are not
-        finite, each (entries, cases) or (cases,);  in_use: what must not be freed before the end
-    """
-
-    part: _Part
-    stream: Any
-    results: tuple[Any, ...]
-    in_use: list[Any]
-
-    def store(self) -> None:
-        """Wait for the kernel, and copy its results."""
-        result, here, kept = self.part.result, self.part.here, len(self.part.request.kept)
-        out, sums, worst, spoiled = (x.copy_to_host(stream=self.stream) for x in self.results)
-        self.stream.synchronize()
-        result.kept[here] = np.moveaxis(out.reshape(-1, kept, out.shape[1]), -1, 0) if kept else 0.0
-        result.reduced[here] = sums.T
-        result.worst[here] = worst
-        result.is_finite[here] = np.isfinite(spoiled)
-
-
-def _collect(running: list[_Running]) -> None:
-    for one in running:
-        one.store()
-    running.clear()
 
 
 @dataclass(frozen=True)
@@ -199,8 +241,8 @@ class _Part:
         for first in range(0, self.cases, size):
             yield replace(self, here=slice(first, min(first + size, self.cases)))
 
-    def launch(self, stream: Any) -> _Running:
-        """Start the kernel for these cases."""
+    def launch(self, stream: Any) -> Callable[[], None]:
+        """Start the kernel for these cases; returns what waits for its end and copies results."""
         from numba import cuda
 
         made, run, request, cases = self.made, self.run, self.request, self.cases
@@ -241,12 +283,28 @@ class _Part:
                 worst,
                 spoiled,
             )
-        return _Running(self, stream, (out, sums, worst, spoiled), in_use)
+
+        def store() -> None:
+            arrays = [x.copy_to_host(stream=stream) for x in (out, sums, worst, spoiled)]
+            stream.synchronize()
+            self._store(*arrays)
+            in_use.clear()  # nothing of it may be freed before the end
+
+        return store
+
+    def _store(
+        self, rows: np.ndarray, sums: np.ndarray, worst: np.ndarray, spoiled: np.ndarray
+    ) -> None:
+        result, here, kept = self.result, self.here, len(self.request.kept)
+        result.kept[here] = np.moveaxis(rows.reshape(-1, kept, self.cases), -1, 0) if kept else 0.0
+        result.reduced[here] = sums.T
+        result.worst[here] = worst
+        result.is_finite[here] = np.isfinite(spoiled)
 
 
 @lru_cache(maxsize=64)
 def _kernel(laws: str) -> Any:
-    return compiled_module(gpu_source(laws, is_simulated=_is_simulated()), KERNEL)[KERNEL]
+    return compiled_module(_gpu_source(laws, is_simulated=_is_simulated()), _KERNEL)[_KERNEL]
 
 
 def _is_simulated() -> bool:
@@ -254,3 +312,34 @@ def _is_simulated() -> bool:
     from numba import config
 
     return bool(getattr(config, "ENABLE_CUDASIM", 0))
+
+
+def _gpu_source(laws: str, *, is_simulated: bool = False) -> str:
+    """The module whose kernel `simulate_cases` simulates a case in each thread.
+
+    laws: from `Generator.source`;  is_simulated: for numba's simulator of a GPU
+    """
+    head = [_SIMULATED_HEAD if is_simulated else _HEAD, _COLUMN]
+    source = loop_source(laws, head, is_typed=not is_simulated) + _TEXT
+    counts = {n: int(count) for n, count in re.findall(r"^(\w+) = (\d+)$", source, re.MULTILINE)}
+    return ast.unparse(ast.fix_missing_locations(_Unroller(counts).visit(ast.parse(source))))
+
+
+class _Unroller(ast.NodeTransformer):
+    """Writes loops over a constant number of quantities as their passes, one after the other.
+
+    counts: name of a constant -> its value
+    """
+
+    def __init__(self, counts: Mapping[str, int]) -> None:
+        self.counts = counts
+
+    def visit_For(self, node: ast.For) -> ast.For | list[ast.stmt]:
+        self.generic_visit(node)
+        match node.iter:
+            case ast.Call(func=ast.Name("range"), args=[ast.Name(name)]) if name in self.counts:
+                passes: list[ast.stmt] = []
+                for i in range(self.counts[name]):
+                    passes += [ast.Assign([node.target], ast.Constant(i)), *node.body]
+                return passes or [ast.Pass()]
+        return node

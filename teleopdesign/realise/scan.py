@@ -15,8 +15,7 @@ import sympy as sp
 from ..base.errors import ModelError
 from ..effects import SIGNALS, Effect
 from ..measurement.filtering import Array
-from .compiled import compile_source
-from .exponentials import PHI, head
+from .compiled import PHI, compile_source, head
 from .laws import Names, assignments, indent
 from .tangent_columns import TangentColumns
 from .traced import Along, Traced, joined_rows

@@ -16,7 +16,7 @@ from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from ..diagrams import Attached, Block, Control, Diagram, Linked, Moving, with_shared_states
 from ..effects import EFFECTS, SIGNALS, Effect
-from .tips import with_tips
+from .tips import led_motion, linear_tips, with_tips
 from .traced import for_numpy
 
 #: m/s or rad/s: a speed above which no friction level changes
@@ -270,3 +270,22 @@ def _has_no_inertia(body: Body) -> bool:
         return False
     inertia = sp.sympify(body.equation().inertia).subs(body.numbers())
     return not inertia.free_symbols and float(inertia) == 0
+
+
+def linear_parted(diagram: Diagram, motions: tuple[str, ...]) -> tuple[Diagram, Mapping[str, str]]:
+    """The diagram with linear structures as two bodies, and each prescribed motion -> the led one.
+
+    A hand moves the tip, so a prescribed motion is that of the tip.
+    Backlash has no linear form: there the body stays whole, and its left-out effects name it.
+    """
+    apart = linear_tips(diagram)
+    there = {name: led_motion(diagram, name) for name in motions}
+    return apart, {name: tip if tip in apart.signals else name for name, tip in there.items()}
+
+
+def simulated_parted(diagram: Diagram, motion: str) -> tuple[Diagram, str]:
+    """The diagram with every structure as two bodies, and the motion that a hand leads."""
+    for part in diagram.bodies:
+        if isinstance(part.body, Body) and any(e.role == "structure" for e in part.body.effects):
+            diagram = diagram.with_block(part.name, without_absent(part.body))
+    return with_tips(diagram), led_motion(diagram, motion)

@@ -13,7 +13,7 @@ from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Moving
 from ..diagrams.junctions import Weight
 from ..diagrams.second_input import without_motion
 from ..effects import SIGNALS, Effect
-from .late_signals import LateSignals, without_delays
+from .delays import LateSignals, without_delays
 
 #: signal's name -> symbol that stands for it
 SignalReader = Callable[[str], sp.Symbol]

@@ -17,7 +17,6 @@ import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
-from weakref import WeakSet
 
 from ..base.errors import ExperimentError
 from .outcomes import Outcomes, PointOutcome
@@ -26,19 +25,6 @@ try:
     import fcntl
 except ImportError:  # no such thing on Windows: there two processes are not kept apart
     fcntl = None  # type: ignore[assignment]
-
-#: the journals of this process that have a file
-_JOURNALS: WeakSet[Journal] = WeakSet()
-
-
-def _close_all() -> None:
-    """In a copy of the process: there, a lock would outlive a process that is killed."""
-    for journal in [*_JOURNALS]:
-        journal.close()
-
-
-if hasattr(os, "register_at_fork"):  # not on Windows
-    os.register_at_fork(after_in_child=_close_all)
 
 
 class Journal:
@@ -62,7 +48,6 @@ class Journal:
             self._file = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
         except OSError as error:
             raise ExperimentError(f"{path}: cannot be written: {error.strerror}") from error
-        _JOURNALS.add(self)
         try:
             if fcntl is not None:
                 try:

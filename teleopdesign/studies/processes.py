@@ -1,52 +1,40 @@
-"""Points of a study in processes beside this one: its copies, processes started anew, a cluster.
+"""Points of a study in processes beside this one: of this machine, or of an existing Dask cluster.
 
 Each is an executor as of `concurrent.futures`. A point is computed by the same code with the same
 numbers in any process; the number of processes changes only the time.
-
-A copy has the task and all compiled code at once, where loky needs seconds to start a process anew.
-No copy is made on systems other than Linux, beside other threads (a notebook) and within a worker.
 """
 
 from __future__ import annotations
 
 import gc
-import multiprocessing
 import os
 import pickle
 import signal
 import threading
 import time
-import warnings
 from collections.abc import Iterable, Iterator
-from concurrent.futures.process import ProcessPoolExecutor
 from contextlib import contextmanager
+from functools import lru_cache, partial
 from typing import Any
 
-from ..base.errors import ModelError, TeleopDesignError
-from ..base.machine import (
-    ONE_THREAD,
-    Copy,
-    act_as_copy,
-    can_copy,
-    count_cores,
-    forbid_copies,
-    has_hidden_threads,
-    one_thread,
-    shield_from_ctrl_c,
-)
+from ..base.errors import ExperimentError, ModelError, TeleopDesignError
+from ..base.machine import ONE_THREAD, count_cores, forbid_copies, one_thread, shield_from_ctrl_c
 from .evaluate import StudyTask, Unit, evaluate_unit
+from .fingerprint import versions
 from .outcomes import as_row
 from .shared_units import BatchResult, SharedUnits, Sink, Workers
 
-#: s: processor time that a process needs before its first point: started anew, or as a copy
-_START_TIME, _COPY_TIME = 2.5, 0.1
-#: part of this time, in which this process alone computes: an estimate for the whole study
-_TRIAL = 0.4
+#: s: processor time that a process needs before its first point
+_START_TIME = 2.5
+#: s: for which this process computes alone, to estimate the time of the whole study
+_TRIAL = 1.0
 #: s between two looks of a worker whether the process that asked is still there
 _BETWEEN_LOOKS = 1.0
-#: points that are computed to measure their time: so many that what each block needs beside its
-#: points, 10 ms, counts little; from units of `_MANY` points, of which they are an eighth at most
-_MEASURED, _MANY = 64, 512
+#: s: duration of a task of a cluster, long against the milliseconds of the scheduler for each
+_TASK_TIME = 1.0
+#: tasks for each thread that a cluster has at a time: enough to be busy, and few enough to stop
+#: soon
+_AHEAD = 3
 
 
 def run_on_this_machine(
@@ -54,35 +42,30 @@ def run_on_this_machine(
 ) -> None:
     """Evaluate points in one process per core, or in this process if that is as fast.
 
-    workers: number of processes; None: chosen by the time of the first points
+    workers: number of processes; None: chosen by the time of the first points. Then a task that
+        cannot be sent is computed in this process
+    raises ModelError: a task that cannot be sent to that many processes
     """
-    count, is_compiled, seconds = workers or count_cores(), True, float("inf")
-    # points side by side call no function of the user, which could end this process
-    is_safe = workers is None or can_copy() and len(units[0]) > 1
-    if count == 1 or is_safe and len(units) == 1:
-        _run_here(task, units, sink)
-        return
-    if is_safe and can_copy() and len(units[0]) >= _MANY:
-        seconds = _compile_and_measure(task, units[0]) * sum(map(len, units))
-    elif is_safe:
-        # the first unit alone compiles what the others have or find in the cache
+    count = workers or count_cores()
+    if workers is None and count > 1:
+        # the first unit alone compiles what the others find in the cache
         units = units[_run_here(task, units[:1], sink) :]
-    else:
-        is_compiled = False
-    if workers is None and seconds == float("inf"):
         start = time.monotonic()
-        until = _TRIAL * (_COPY_TIME if can_copy() else _START_TIME)
-        done = _run_here(task, units, sink, until=until)
-        seconds = (time.monotonic() - start) / max(done, 1) * len(units[done:])
-        units = units[done:]
-    saved = float("inf") if workers else seconds * (1 - 1 / count)
-    are_copies = saved >= _COPY_TIME and _can_work_as_copy()
-    if not units or saved < (_COPY_TIME if are_copies else _START_TIME):
+        done = _run_here(task, units, sink, until=_TRIAL)
+        units, seconds = units[done:], (time.monotonic() - start) * len(units[done:]) / max(done, 1)
+        if seconds * (1 - 1 / count) < _START_TIME:
+            count = 1
+    try:
+        payload = b"" if count == 1 else pack_task(task)
+    except ModelError:
+        if workers is not None:
+            raise
+        count = 1
+    if count == 1 or not units:
         _run_here(task, units, sink)
         return
-    start_copies = _copies if are_copies else _started_anew
-    SharedUnits(units, sink, is_compiled=is_compiled).run(
-        lambda is_first: (start_copies if is_first else _started_anew)(task, min(count, len(units)))
+    SharedUnits(units, sink, is_compiled=workers is None).run(
+        lambda: _processes(payload, min(count, len(units)))
     )
 
 
@@ -101,53 +84,12 @@ def _run_here(
     return count
 
 
-def _compile_and_measure(task: StudyTask, unit: Unit) -> float:
-    """Compile the code of points side by side; returns the time of a point, s. Nothing is kept."""
-    from ..realise.side_by_side import LANES
-
-    with one_thread():
-        evaluate_unit(task, unit[:LANES])
-        start = time.monotonic()
-        evaluate_unit(task, unit[:_MEASURED])
-    return (time.monotonic() - start) / _MEASURED
-
-
-def _can_work_as_copy() -> bool:
-    """Whether a copy of this process works: a trial shows whether it would lack any threads."""
-    if not can_copy():
-        return False
-    try:
-        with shield_from_ctrl_c(), one_thread():
-            Copy(lambda: None).wait()
-            return not has_hidden_threads()
-    except OSError:  # no memory for another process
-        return False
-
-
 @contextmanager
-def _copies(task: StudyTask, count: int) -> Iterator[Workers]:
-    context, before = multiprocessing.get_context("fork"), {*multiprocessing.active_children()}
-    executor = ProcessPoolExecutor(count, context, _begin_copy, (task, os.getpid()))
-    gc.freeze()  # else a collection in a copy would write to, and so copy, all memory
-    try:
-        with one_thread(), shield_from_ctrl_c(), warnings.catch_warnings():
-            # Python 3.12 counts threads of linear algebra, which end before a copy and begin anew
-            warnings.simplefilter("ignore", DeprecationWarning)
-            executor.submit(os.getpid)  # all processes start here
-        yield Workers(executor, lambda: count, _evaluate_batch)
-    finally:
-        gc.unfreeze()
-        for process in {*multiprocessing.active_children()} - before:
-            process.kill()
-        executor.shutdown()
+def _processes(payload: bytes, count: int) -> Iterator[Workers]:
+    from joblib.externals.loky import ProcessPoolExecutor
 
-
-@contextmanager
-def _started_anew(task: StudyTask, count: int) -> Iterator[Workers]:
-    from joblib.externals.loky import ProcessPoolExecutor as Loky
-
-    executor = Loky(
-        count, initializer=_begin_anew, initargs=(pack_task(task), os.getpid()), env=ONE_THREAD
+    executor = ProcessPoolExecutor(
+        count, initializer=_begin, initargs=(payload, os.getpid()), env=ONE_THREAD
     )
     try:
         with shield_from_ctrl_c():
@@ -180,22 +122,14 @@ def pack_task(task: StudyTask) -> bytes:
 _tasks: list[StudyTask] = []
 
 
-def _begin_copy(task: StudyTask, first: int) -> None:
-    import numpy as np
-
-    act_as_copy(first)
-    _leave_terminal()
-    # numbers that a user's function draws without a seed: other ones in each process
-    np.random.seed()  # noqa: NPY002
-    _tasks.append(task)
-
-
-def _begin_anew(payload: bytes, first: int) -> None:
+def _begin(payload: bytes, first: int) -> None:
     # Ctrl-C goes to all processes of a terminal: the one that asked decides what happens
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     forbid_copies()
     threading.Thread(target=_end_with, args=(first,), daemon=True).start()
-    _leave_terminal()
+    # what a user's function prints must not come between results
+    os.dup2(2, 1)
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     _tasks.append(pickle.loads(payload))
 
 
@@ -204,12 +138,6 @@ def _end_with(first: int) -> None:
     while os.getppid() == first:
         time.sleep(_BETWEEN_LOOKS)
     os._exit(0)
-
-
-def _leave_terminal() -> None:
-    """What a user's function prints must not come between results."""
-    os.dup2(2, 1)
-    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
 
 
 def _evaluate_batch(batch: list[Unit], until: float) -> BatchResult:
@@ -226,3 +154,70 @@ def evaluate_batch(task: StudyTask, batch: list[Unit], until: float) -> BatchRes
         rows += [as_row(outcome) for outcome in evaluate_unit(task, batch[done])]
         done += 1
     return rows, time.monotonic() - start, done
+
+
+def run_on_cluster(task: StudyTask, units: list[Unit], sink: Sink, address: str) -> None:
+    """Evaluate points in the workers of the scheduler at an address, such as "tcp://10.0.0.1:8786".
+
+    raises ExperimentError: no scheduler there, or no longer, no worker, dask is not installed
+    raises ModelError: workers have another version of a package
+    """
+    SharedUnits(units, sink).run(lambda: _cluster(task, address))
+
+
+@contextmanager
+def _cluster(task: StudyTask, address: str) -> Iterator[Workers]:
+    try:
+        from distributed import Client
+    except ImportError:
+        raise ExperimentError(
+            "study: a cluster needs dask: pip install 'teleopdesign[cluster]'"
+        ) from None
+    try:
+        client = Client(address, timeout="5s", set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:  # TimeoutError is an OSError
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise ExperimentError(f"study: no scheduler answers at {address}: {reason}") from None
+
+    def count_threads() -> int:
+        try:
+            return max(int(sum(client.nthreads().values())), 1)
+        except OSError:
+            raise ExperimentError(
+                f"study: the scheduler at {address} answers no more; with out=, the same call "
+                "goes on where this one stopped"
+            ) from None
+
+    try:
+        _check_versions(client, address)
+        evaluate = partial(_evaluate_packed, pack_task(task))
+        executor = client.get_executor(pure=False)
+        yield Workers(executor, count_threads, evaluate, _TASK_TIME, _AHEAD, " on the cluster")
+    finally:
+        client.close(timeout=5)
+
+
+def _check_versions(client: Any, address: str) -> None:
+    by_worker = client.run(versions)
+    if not by_worker:
+        raise ExperimentError(f"study: the scheduler at {address} has no worker")
+    here = versions()
+    for worker, there in by_worker.items():
+        for name, version_here in here.items():
+            if there.get(name) != version_here:
+                raise ModelError(
+                    f"study: worker {worker} has {name} {there.get(name)}, here is "
+                    f"{version_here}: results could differ"
+                )
+
+
+def _evaluate_packed(payload: bytes, batch: list[Unit], until: float) -> BatchResult:
+    """In a worker: the outcomes of a batch."""
+    with one_thread():
+        return evaluate_batch(_task(payload), batch, until)
+
+
+@lru_cache(maxsize=4)
+def _task(payload: bytes) -> StudyTask:
+    task: StudyTask = pickle.loads(payload)
+    return task

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +18,6 @@ from ..base.errors import ExperimentError, ModelError, did_you_mean
 from ..base.files import write_beside
 from ..base.frozen import ByName, ByValue
 from ..base.shown import Shown
-from .hdf5_trial import read_on_trial
 from .outcomes import PointOutcome
 from .plots import StudyPlots
 from .points import SAMPLE, Points
@@ -25,6 +27,9 @@ if TYPE_CHECKING:
 
 #: name of the variable with the reason of a failed point; "" for a point that did not fail
 REASON = "failure"
+#: s: for reading a file in a process apart, beside `_RATE` bytes in a second, until it is ended. A
+#: study of 10 000 points takes 0.1 s; a machine may be busy
+_LONGEST, _RATE = 20.0, 5e7
 #: most bytes of all variables of a file, because they are read into memory: twenty measures over
 #: ten million points
 LARGEST = 1.6e9
@@ -112,7 +117,7 @@ def read_study(path: str | Path) -> Study:
     if not Path(path).is_file():
         raise ExperimentError(f"{path}: no such file")
     try:
-        read_on_trial(path, largest=LARGEST)
+        _read_on_trial(path)
         _check_size(path)
         data = xarray.load_dataset(path, engine="h5netcdf")
     except ExperimentError:
@@ -130,6 +135,41 @@ def read_study(path: str | Path) -> Study:
     if not isinstance(axes, list) or not all(isinstance(a, str) and a in data for a in axes):
         raise ExperimentError(f"{path}: axes: expected a list of names of variables, as JSON")
     return Study(data)
+
+
+#: source of a program that reads all of a file. What h5py refuses, the reader of the study reports
+_READ = """
+import sys, h5py
+def look(name, item):
+    for key in item.attrs:
+        item.attrs[key]
+    if isinstance(item, h5py.Dataset) and item.size * item.dtype.itemsize <= {largest!r}:
+        item[()]
+try:
+    with h5py.File(sys.argv[1]) as file:
+        look("", file)
+        file.visititems(look)
+except Exception:
+    pass
+"""
+
+
+def _read_on_trial(path: str | Path) -> None:
+    """Read a file once in a process apart: a damaged one may end or block the HDF5 library.
+
+    raises ExperimentError: the library ends the process, or does not come to an end
+    """
+    program = [sys.executable, "-c", _READ.format(largest=LARGEST), os.fspath(path)]
+    try:
+        most = _LONGEST + os.stat(path).st_size / _RATE
+        is_read = not subprocess.run(program, capture_output=True, timeout=most).returncode
+    except subprocess.TimeoutExpired:
+        is_read = False
+    if not is_read:
+        raise ExperimentError(
+            f"{path}: no study can be read: the file is damaged, the HDF5 library comes to no end "
+            "with it"
+        )
 
 
 def _check_size(path: str | Path) -> None:

@@ -22,7 +22,7 @@ from .fingerprint import fingerprint, versions
 from .journal import Journal
 from .outcomes import Clock, PointOutcome, Progress
 from .points import Points, points_of
-from .processes import run_on_this_machine
+from .processes import run_on_cluster, run_on_this_machine
 from .result import Study, check_netcdf, label_outcomes, read_study, without_reason
 
 
@@ -182,8 +182,6 @@ def _run(
             progress(clock.now())
         return
     if scheduler:
-        from .cluster import run_on_cluster
-
         run_on_cluster(task, units, sink, scheduler)
     else:
         run_on_this_machine(task, units, sink, workers)

@@ -66,16 +66,15 @@ class SharedUnits:
         # most units in a batch, twice as many as came back: a slow one keeps back those before it
         self.most = 1
 
-    def run(self, start: Callable[[bool], AbstractContextManager[Workers]]) -> None:
-        """Run until every point is done.
+    def run(self, start: Callable[[], AbstractContextManager[Workers]]) -> None:
+        """Run until every point is done;  start: starts workers.
 
-        start: starts workers; its argument tells whether none has ended before
         raises ModelError: processes end before their first point
         """
         vain_starts = 0
         while self.todo or self.alone:
             try:
-                with start(not self.ends and not vain_starts) as workers:
+                with start() as workers:
                     vain_starts = 0
                     self._run_until_one_ends(workers)
             except BrokenExecutor as error:

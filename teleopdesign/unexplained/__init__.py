@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
-    from .description import BodyResidual as BodyResidual
-    from .description import DescribedDependence as DescribedDependence
+    from .result import BodyResidual as BodyResidual
+    from .result import DescribedDependence as DescribedDependence
     from .result import ResidualDescription as ResidualDescription
     from .result import describe as describe
     from .result import describe_residual as describe_residual

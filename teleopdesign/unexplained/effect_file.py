@@ -14,8 +14,8 @@ from ..base.files import write_text
 from ..base.sentences import span
 from ..measurement.prepare import Prepared
 from ..measurement.scales import scales
-from .description import BodyResidual, DescribedDependence
 from .effect_law import law_of_formula, law_of_points
+from .result import BodyResidual, DescribedDependence
 from .shapes import COMMAND, FRICTION, LATENESS, LOST, Shape
 
 #: variable -> signal of a law; laws have no signal for other variables

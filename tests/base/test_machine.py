@@ -9,7 +9,7 @@ import pytest
 
 from teleopdesign.base.machine import count_cores, count_workers, hash_files, list_files_of_callees
 from teleopdesign.measurement import zero_phase, zero_phase_spans
-from teleopdesign.realise import balance, compiled, lane_exp
+from teleopdesign.realise import compiled, friction_along, lane_exp
 
 
 def test_cores_are_counted_where_the_system_tells_none_for_the_process(monkeypatch):
@@ -25,7 +25,7 @@ def test_workers_are_as_many_as_numba_may_have_threads(allowed, count, monkeypat
 
 def test_what_a_compiled_function_calls_in_other_files_counts_for_it():
     called = Path(zero_phase.__file__)
-    assert called in list_files_of_callees(balance._balance)
+    assert called in list_files_of_callees(friction_along._balance)
     assert called in list_files_of_callees(zero_phase_spans.filter_spans)
 
 

@@ -12,7 +12,7 @@ import pytest
 from teleopdesign import load_experiment
 from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
-from teleopdesign.commands._report import _next_steps
+from teleopdesign.commands.report import _next_steps
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.next_experiment import shown_limits
 

@@ -299,29 +299,6 @@ def test_a_certificate_cannot_run_code(text, certificates):
         resealed(forged).check()
 
 
-@pytest.mark.slow
-def test_z3_confirms_what_the_identities_show(certificates):
-    """The same inequalities without the identities; see `second_opinion`."""
-    pytest.importorskip("z3", reason="the extra `proof` is not installed")
-    from teleopdesign.passivity.claims.second_opinion import second_opinion
-
-    for name, certificate in certificates.items():
-        if certificate.kind == "storage":
-            assert second_opinion(certificate).verdict == "confirmed", name
-
-
-def test_z3_finds_values_that_break_a_claim_without_its_condition(certificates):
-    pytest.importorskip("z3", reason="the extra `proof` is not installed")
-    from teleopdesign.passivity.claims.second_opinion import second_opinion
-
-    for condition in ("covered", "soft_enough"):
-        forged = copy.deepcopy(dict(certificates["presliding 0"].content))
-        del forged["nonnegative"][condition]
-        opinion = second_opinion(resealed(forged))
-        assert opinion.verdict == "refuted"
-        assert "f_D" in opinion.counterexample
-
-
 @pytest.mark.parametrize("expression", [sp.Float(0.5), sp.sqrt(2), sp.exp(S), 0.1 * S, sp.oo])
 def test_only_rational_expressions_are_written(expression):
     from teleopdesign.passivity.claims.certificate import matrix_certificate

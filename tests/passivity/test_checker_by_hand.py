@@ -8,8 +8,6 @@ import pytest
 from passivity.small_certificates import sealed, storage
 
 from teleopdesign.passivity.checker import Refused, check, main
-from teleopdesign.passivity.claims.certificate import Certificate
-from teleopdesign.passivity.claims.second_opinion import second_opinion
 
 
 def is_proved(content):
@@ -56,16 +54,6 @@ def test_a_term_of_weight_zero_changes_no_proof_and_one_below_zero_is_none():
 
     assert is_proved(weighed("0")) and is_proved(weighed("1/2"))
     assert not is_proved(weighed("-1/2"))
-
-
-@pytest.mark.parametrize("share", ["0", "1/4", "1"])
-def test_a_second_opinion_assumes_no_more_than_the_certificate_says(share):
-    """Where a damper is only known not to be negative, half of the supply's claim does not hold."""
-    pytest.importorskip("z3")
-    less = storage(supply=f"p*v + (b - {share})*v**2")
-    opinion = second_opinion(Certificate(less))
-    assert opinion.verdict == ("confirmed" if share == "0" else "refuted")
-    assert bool(opinion.counterexample) == bool(opinion.open) == (share != "0")
 
 
 def test_the_command_says_by_its_status_whether_all_files_prove_something(tmp_path, capsys):

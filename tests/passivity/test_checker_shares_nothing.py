@@ -6,12 +6,8 @@ import sys
 from syntax_trees import PACKAGE, syntax_trees
 
 CHECKER = PACKAGE / "passivity" / "checker"
-#: they write certificates, read them for a second opinion, and check those of a file
-READERS = {
-    "passivity/claims/certificate.py",
-    "passivity/claims/second_opinion.py",
-    "commands/passivity.py",
-}
+#: they write certificates, and check those of a file
+READERS = {"passivity/claims/certificate.py", "commands/passivity.py"}
 
 
 def imported(tree):

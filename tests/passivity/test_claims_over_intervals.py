@@ -22,8 +22,8 @@ from teleopdesign.diagrams import (
 )
 from teleopdesign.passivity import claim_over_intervals
 from teleopdesign.passivity.intervals.box import box_of
-from teleopdesign.passivity.intervals.friction import _rest_is_passive
 from teleopdesign.passivity.intervals.linear import states_over
+from teleopdesign.passivity.intervals.over_box import _rest_is_passive
 from teleopdesign.passivity.linear.family import family_at
 from teleopdesign.passivity.ports import ports
 

@@ -6,10 +6,7 @@ import random
 import pytest
 from passivity.small_certificates import impedance, storage
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity.checker import Refused, check
-from teleopdesign.passivity.claims.certificate import Certificate
-from teleopdesign.passivity.claims.second_opinion import second_opinion
 
 
 def _number(rng, low=1):
@@ -235,15 +232,3 @@ def test_false_certificates_are_refused(make):
 @pytest.mark.parametrize("make", FALSE)
 def test_a_thousand_false_certificates_are_refused(make):
     refuse_all(make, 70, 2)
-
-
-@pytest.mark.parametrize("make", FALSE[:6])
-def test_z3_is_not_asked_about_what_the_checker_refuses_or_does_not_confirm_it(make):
-    pytest.importorskip("z3", reason="the extra `proof` is not installed")
-    rng = random.Random(4)
-    for _ in range(5):
-        try:
-            opinion = second_opinion(Certificate(make(rng)), seconds=2)
-        except ModelError:
-            continue
-        assert opinion.verdict != "confirmed"

@@ -7,7 +7,7 @@ from scipy.signal import sosfilt
 
 from teleopdesign.measurement.zero_phase import sections, zero_phase
 from teleopdesign.measurement.zero_phase_spans import gains, response
-from teleopdesign.realise.balance import STEPS, _list_windows, balance_within_bounds
+from teleopdesign.realise.friction_along import STEPS, _list_windows, balance_within_bounds
 from teleopdesign.realise.traced import Traced, constant
 
 SAMPLE_TIME, BANDWIDTH = 2e-3, 60.0

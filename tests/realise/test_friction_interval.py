@@ -14,8 +14,11 @@ import teleopdesign as td
 from teleopdesign.base.errors import ModelError
 from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter, State
 from teleopdesign.passivity.identified import identify_device
-from teleopdesign.realise.acting_bound import largest_acting_force
-from teleopdesign.realise.damping_interval import damping_interval, small_motion_damping
+from teleopdesign.realise.damping_interval import (
+    damping_interval,
+    largest_acting_force,
+    small_motion_damping,
+)
 from teleopdesign.realise.friction_interval import friction_interval, value_interval
 from teleopdesign.realise.reach import Reach
 

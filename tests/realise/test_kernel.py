@@ -14,6 +14,7 @@ from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface, world_haptics_2005
 from teleopdesign.realise.compiled import cache_folder
+from teleopdesign.realise.equations import Layout
 from teleopdesign.realise.kernel import (
     FINER,
     RELOAD,
@@ -25,7 +26,6 @@ from teleopdesign.realise.kernel import (
     round_up_steps,
     worst_reload,
 )
-from teleopdesign.realise.layout import Layout
 from teleopdesign.simulate import Sampling, prepare, simulate, sine
 
 REFERENCE = sine(amplitude=0.01, frequency=1.5)

@@ -1,29 +1,11 @@
-"""How the processes of a study start: as copies of this one, or anew."""
-
-import sys
+"""Studies leave no process behind."""
 
 import pytest
-from study_processes import anew, children
-
-from teleopdesign.studies import processes
+from study_processes import children
 
 
 @pytest.fixture
-def copies(monkeypatch):
-    """Processes of a study are copies of this one, also beside the thread that tests come from."""
-    if sys.platform != "linux":
-        pytest.skip("processes are copied on Linux only")
-    monkeypatch.setattr(processes, "can_copy", lambda: True)
-    monkeypatch.setattr(processes, "has_hidden_threads", lambda: False)
-
-
-@pytest.fixture(params=("copies", "anew"))
-def start(request, monkeypatch):
-    """How the processes of a study start; none of them is left at the end."""
-    if request.param == "anew":
-        anew(monkeypatch)
-    else:
-        request.getfixturevalue("copies")
+def no_process_is_left():
     before = children()
-    yield request.param
+    yield
     assert not children() - before

@@ -10,7 +10,7 @@ from study_processes import AXES
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError, ModelError
-from teleopdesign.studies import cluster as cluster_module
+from teleopdesign.studies.processes import run_on_cluster
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +56,6 @@ def test_a_worker_of_a_cluster_that_is_killed_costs_no_point(cluster, tmp_path):
 def test_a_result_that_its_killed_worker_held_is_computed_again(cluster, tmp_path, monkeypatch):
     with cluster.get_client() as client:  # one that another test killed may not be back yet
         client.wait_for_workers(2, timeout=20)
-    run_on_cluster = cluster_module.run_on_cluster
     killed = tmp_path / "killed"
 
     def run_and_wait(task, units, sink, address):
@@ -69,7 +68,7 @@ def test_a_result_that_its_killed_worker_held_is_computed_again(cluster, tmp_pat
 
         run_on_cluster(task, units, slow_sink, address)
 
-    monkeypatch.setattr(cluster_module, "run_on_cluster", run_and_wait)
+    monkeypatch.setattr("teleopdesign.studies.run.run_on_cluster", run_and_wait)
     axes = {"x": np.arange(40.0), "y": 0.5, "folder": str(tmp_path)}
     arguments = {"measures": models.value, "scheduler": cluster.scheduler_address}
     dataset = td.study(models.lost_product, axes, **arguments)

@@ -4,6 +4,7 @@ import os
 import random
 import signal
 import subprocess
+import threading
 import time
 
 import numpy as np
@@ -11,14 +12,14 @@ import pytest
 import study_models as models
 import xarray
 from joblib.externals.loky.backend.process import LokyProcess
-from study_processes import AXES, EXPECTED, anew, in_a_process, study_code, wait_for_points
+from study_processes import AXES, EXPECTED, in_a_process, study_code, wait_for_points
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError, ModelError
 
 
 @pytest.mark.slow
-def test_two_processes_give_the_data_set_of_one(start):
+def test_two_processes_give_the_data_set_of_one(no_process_is_left):
     one = td.study(models.product, AXES, measures=models.value, workers=1)
     two = td.study(models.product, AXES, measures=models.value, workers=2)
     xarray.testing.assert_identical(one.data, two.data)
@@ -34,6 +35,67 @@ def test_functions_without_a_name_go_to_other_processes_too():
     assert list(dataset["measure"].values) == [4.0, 5.0]
 
 
+@pytest.mark.slow
+def test_simulations_in_processes_give_the_data_set_of_one(no_process_is_left):
+    """Of 512 points side by side; the measure of a user needs each simulation by itself."""
+    side_by_side = {"C.dahl.level": np.linspace(0.2, 1.2, 600), "C.dahl.stiffness": [1e4, 2e4]}
+    arguments = {"measures": ["force_error", "energy_drawn"], **models.SIMULATED}
+    one = td.study(models.interface(), side_by_side, workers=1, **arguments)
+    two = td.study(models.interface(), side_by_side, workers=2, **arguments)
+    xarray.testing.assert_identical(one.data, two.data)
+
+
+def locked_model():
+    lock = threading.Lock()  # which no other process can get
+
+    def locked(x):
+        with lock:
+            time.sleep(0.3)
+            return x
+
+    return locked
+
+
+@pytest.mark.slow
+def test_a_model_that_cannot_be_sent_is_computed_in_this_process():
+    axes = {"x": np.arange(30.0)}
+    dataset = td.study(locked_model(), axes, measures=models.value)
+    assert list(dataset["value"].values) == list(axes["x"])
+    with pytest.raises(ModelError, match="cannot be sent to another process"):
+        td.study(locked_model(), axes, measures=models.value, workers=2)
+
+
+@pytest.mark.slow
+def test_a_worker_of_a_study_is_not_copied():
+    dataset = td.study(models.can_be_copied, {"x": [1, 2]}, measures=models.value, workers=2)
+    assert list(dataset["value"].values) == [0.0, 0.0]
+
+
+@pytest.mark.slow
+def test_an_interrupt_ends_all_processes(no_process_is_left, monkeypatch):
+    def interrupt(progress):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("teleopdesign.studies.outcomes._BETWEEN", 0.05)
+    axes, begin = {"x": np.arange(1e5), "y": 0.5}, time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        arguments = {"measures": models.value, "workers": 2, "progress": interrupt}
+        td.study(models.slow_product, axes, **arguments)
+    assert time.monotonic() - begin < 60
+
+
+@pytest.mark.slow
+def test_workers_end_with_a_process_that_is_killed(tmp_path):
+    out = tmp_path / "s.nc"
+    code = study_code(out, points=100_000, workers=2)
+    with in_a_process(code, stderr=subprocess.PIPE) as process:
+        wait_for_points(out, 1)
+        process.kill()
+        begin = time.monotonic()
+        process.stderr.read()  # until the last process that may write has ended
+        assert time.monotonic() - begin < 30
+
+
 def then(function):
     """Let each process that loky starts go through `function` before its first line of Python."""
     start = LokyProcess.start
@@ -47,7 +109,6 @@ def then(function):
 
 @pytest.mark.slow
 def test_ctrl_c_while_a_process_still_starts_costs_no_point_and_prints_nothing(monkeypatch, capfd):
-    anew(monkeypatch)
     interrupt = then(lambda process: os.kill(process.pid, signal.SIGINT))
     monkeypatch.setattr(LokyProcess, "start", interrupt)
     dataset = td.study(models.product, AXES, measures=models.value, workers=2)
@@ -58,7 +119,6 @@ def test_ctrl_c_while_a_process_still_starts_costs_no_point_and_prints_nothing(m
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [0, 1])
 def test_a_process_that_is_killed_before_its_first_point_is_replaced(monkeypatch, number):
-    anew(monkeypatch)
     processes = []
 
     def kill_one(process):
@@ -74,7 +134,6 @@ def test_a_process_that_is_killed_before_its_first_point_is_replaced(monkeypatch
 
 @pytest.mark.slow
 def test_processes_that_all_end_before_their_first_point_are_one_line(monkeypatch):
-    anew(monkeypatch)
     monkeypatch.setattr(
         LokyProcess, "start", then(lambda process: os.kill(process.pid, signal.SIGKILL))
     )
@@ -83,7 +142,7 @@ def test_processes_that_all_end_before_their_first_point_are_one_line(monkeypatc
 
 
 @pytest.mark.slow
-def test_a_point_whose_process_is_killed_is_computed_again(start, tmp_path):
+def test_a_point_whose_process_is_killed_is_computed_again(no_process_is_left, tmp_path):
     axes = {**AXES, "folder": str(tmp_path)}
     dataset = td.study(models.deadly_product, axes, measures=models.value, workers=2)
     assert (tmp_path / "killed").exists()
@@ -91,7 +150,9 @@ def test_a_point_whose_process_is_killed_is_computed_again(start, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_point_that_kills_its_process_every_time_is_a_failure_and_no_other_is(start):
+def test_a_point_that_kills_its_process_every_time_is_a_failure_and_no_other_is(
+    no_process_is_left,
+):
     dataset = td.study(models.lethal_product, AXES, measures=models.value, workers=2)
     assert dataset.failures == {"its process ended twice, by signal 9": 1}
     expected = EXPECTED.copy()

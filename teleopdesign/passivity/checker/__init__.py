@@ -10,7 +10,7 @@ Each kind of certificate has its theorem and its proof in its file: `storage.py`
 `positive_real.py`, `absolute_stability.py`, and `over_a_box.py` for all values within intervals.
 """
 
-from .check import KINDS, check, load, main, read
+from .check import KINDS, check, load, main
 from .effort import Refused
 
-__all__ = ["KINDS", "Refused", "check", "load", "main", "read"]
+__all__ = ["KINDS", "Refused", "check", "load", "main"]

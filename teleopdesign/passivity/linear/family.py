@@ -25,8 +25,7 @@ from sympy.polys.matrices import DomainMatrix
 from ...base.errors import ModelError
 from ...controllers import make_exact
 from ...derive.all_states import AllStates, all_states, is_well_posed
-from ...derive.cramer import Row
-from ...derive.linear_rows import late_symbols
+from ...derive.linear_rows import Row, late_symbols
 from ...derive.polynomials import as_poly, element
 from ...diagrams import Diagram
 from ...frequency.late_zeros import count_growing, terms_of, zeros_at_origin

@@ -20,7 +20,7 @@ from ...base.errors import ModelError
 from ...controllers import resolvent
 from ...derive.polynomials import element, fraction
 from ...realise.lti import S
-from .gaussian import value_at
+from .matrices import value_at
 
 MotionKind = Literal["velocity", "position"]
 _LONGEST = 9  # most characters of a fraction that a text contains as a fraction

@@ -33,8 +33,8 @@ from .box_certificates import stability_certificate
 from .conditions import axis_conditions, is_shown
 from .excess import damping_excess, describe_equality
 from .family import Family, family_of_impedance
-from .gaussian import round_point, value
 from .impedance import Impedance, MotionKind, impedance, readable
+from .matrices import round_point, value
 from .signs import Signs
 from .sweep import fails_at_ends, holds_at, least_over, margin_of, resonances, zeros_and_poles
 from .unseen import explain_unseen, unseen_modes

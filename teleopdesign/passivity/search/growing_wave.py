@@ -23,8 +23,8 @@ from mpmath.libmp import NoConvergence
 
 from ...derive.polynomials import even_part, fraction, where_negative
 from ...realise.lti import S
-from ..linear.gaussian import square_root
 from ..linear.impedance import Impedance
+from ..linear.matrices import square_root
 from ..rate_independent import AbstractRecord
 
 LONGEST = 500  # most periods of a wave that are sampled; each of them releases energy

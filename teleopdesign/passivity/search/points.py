@@ -15,8 +15,7 @@ import sympy as sp
 from ...derive.polynomials import roots_of
 from ..linear.conditions import where_it_fails
 from ..linear.family import Family
-from ..linear.gaussian import ZERO, add, multiply, value_at
-from ..linear.matrices import close, dampers
+from ..linear.matrices import ZERO, add, close, dampers, multiply, value_at
 from ..linear.sweep import passive_margin, zeros_and_poles
 from .growing_wave import GrowingWave, growing_wave, halvings, wave_of
 

@@ -18,8 +18,7 @@ from ..claims.claim import Claim, Evidence, Proof, Unknown
 from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Cycle, Dahl, symmetric_cycle
-from ._certificates import certificate
-from ._hypotheses import Positive, require_hypotheses
+from ._hypotheses import Positive, certificate, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, decide, simulate_cycle
 
 #: N/m for each N of level: a bristle so stiff that its length does not matter to a hand

@@ -25,8 +25,7 @@ from ..rate_independent import (
     strongest,
     symmetric_cycle,
 )
-from ._certificates import certificate
-from ._hypotheses import Free, NonNegative, Positive, Whole, require_hypotheses
+from ._hypotheses import Free, NonNegative, Positive, Whole, certificate, require_hypotheses
 from ._theorem import Theorem
 from .dahl_compensation import dahl_compensation
 

@@ -18,8 +18,7 @@ from ..claims.claim import Claim, Proof
 from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal
 from ..rate_independent import Coulomb, Cycle, Dahl, dahl_loss, lost_share, symmetric_cycle
-from ._certificates import certificate
-from ._hypotheses import Positive, PositiveOrNone, require_hypotheses
+from ._hypotheses import Positive, PositiveOrNone, certificate, require_hypotheses
 from ._theorem import Question, Theorem, Time, TopicClaim, decide, simulate_cycle
 from .bounded_compensation import cycle_beyond_onset, proof_of_level
 from .lugre import add_bristle_damping

@@ -22,8 +22,7 @@ from ...realise.lti import S
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ..search.growing_wave import rates_at
-from ._certificates import certificate
-from ._hypotheses import NonNegative, require_hypotheses
+from ._hypotheses import NonNegative, certificate, require_hypotheses
 from ._theorem import Theorem, refute_by_wave
 
 #: just above 0.2172336, which is minus the least value of sin(y)/y (at tan y = y, y = 4.4934)

@@ -15,8 +15,7 @@ from ...realise.lti import S
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ..two_port.two_port import absolutely_stable, teleoperator_two_port
-from ._certificates import certificate
-from ._hypotheses import NonNegative, Real, require_hypotheses
+from ._hypotheses import NonNegative, Real, certificate, require_hypotheses
 from ._theorem import Theorem
 
 

@@ -26,8 +26,7 @@ from ..claims.claim import Claim, Evidence, Proof, Unknown
 from ..linear.impedance import decimal
 from ..linear.judge import positive_real
 from ..search.growing_wave import rates_at
-from ._certificates import certificate
-from ._hypotheses import NonNegative, one_of, require_hypotheses
+from ._hypotheses import NonNegative, certificate, one_of, require_hypotheses
 from ._theorem import Theorem, refute_by_wave
 
 Order = Literal[1, 2]

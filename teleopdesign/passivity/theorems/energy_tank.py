@@ -12,8 +12,7 @@ from __future__ import annotations
 
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
-from ._certificates import certificate
-from ._hypotheses import NonNegative, Positive, require_hypotheses
+from ._hypotheses import NonNegative, Positive, certificate, require_hypotheses
 from ._theorem import Theorem
 
 

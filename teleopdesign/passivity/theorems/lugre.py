@@ -24,8 +24,7 @@ from ..claims.claim import Claim, Proof, Unknown
 from ..identified import DIGITS
 from ..linear.impedance import decimal, exact
 from ..rate_independent import AbstractMotion, Dahl, strongest
-from ._certificates import certificate
-from ._hypotheses import NonNegative, Positive, require_hypotheses
+from ._hypotheses import NonNegative, Positive, certificate, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, decide
 
 _STRIBECK = EFFECTS["stribeck"]

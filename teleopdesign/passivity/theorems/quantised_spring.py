@@ -21,8 +21,7 @@ import numpy as np
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, strongest
-from ._certificates import certificate
-from ._hypotheses import NonNegative, Positive, require_hypotheses
+from ._hypotheses import NonNegative, Positive, certificate, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, decide
 
 

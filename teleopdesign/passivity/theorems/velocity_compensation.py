@@ -34,8 +34,14 @@ from ...controllers import laws_that_declare
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, Coulomb, Dahl
-from ._certificates import certificate
-from ._hypotheses import NonNegative, Positive, PositiveOrNone, Whole, require_hypotheses
+from ._hypotheses import (
+    NonNegative,
+    Positive,
+    PositiveOrNone,
+    Whole,
+    certificate,
+    require_hypotheses,
+)
 from ._theorem import Question, Theorem, Time, TopicClaim, decide, leave_open
 
 _SYMBOLS = sp.symbols("velocity level smoothing", real=True)

@@ -30,8 +30,7 @@ from ..linear.impedance import decimal, exact
 from ..linear.judge import positive_real
 from ..linear.unseen import unseen_within
 from ..ports import drop_absent_effects, without_holders
-from ._certificates import certificate
-from ._hypotheses import Free, NonNegative, Positive, require_hypotheses
+from ._hypotheses import Free, NonNegative, Positive, certificate, require_hypotheses
 from ._theorem import Theorem
 
 

@@ -29,19 +29,20 @@ from ...derive.polynomials import (
 from ...realise.lti import S
 from ..linear.conditions import where_it_fails
 from ..linear.family import Family, family_of_matrix
-from ..linear.gaussian import (
+from ..linear.matrices import (
     ZERO,
     Gaussian,
     add,
     as_complex,
+    close,
     divide,
+    inverse_denominator,
     multiply,
     round_point,
     short,
     square_root,
     value_at,
 )
-from ..linear.matrices import close, inverse_denominator
 from ..rate_independent import AbstractRecord
 from ..search.growing_wave import last_part
 from ..search.points import candidates, near_axis, near_poles

@@ -14,7 +14,7 @@ from fractions import Fraction
 import sympy as sp
 
 from ...realise.lti import S
-from ..linear.gaussian import Gaussian, round_point, short
+from ..linear.matrices import Gaussian, round_point, short
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 from ...base.sentences import unit_at_axis
 from ..figures.style import house_style
 from ..registry import shows
-from .axes import PageColumns, legend_below, look, mark_degrees, panels, points, share_abscissa
+from .response import PageColumns, legend_below, look, mark_degrees, panels, points, share_abscissa
 
 if TYPE_CHECKING:
     import matplotlib.axes

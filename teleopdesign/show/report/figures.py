@@ -1,9 +1,19 @@
-"""The figures of a report, drawn from the data of its page, each with an alternative text."""
+"""The figures of a report, drawn from the data of its page, each with an alternative text.
+
+A figure is an <img> element that contains the SVG: the page loads no other file. Inside an image,
+identifiers and styles of the SVG cannot conflict with those of the page, and no text in it can
+become an element of the page. The same figure gives the same bytes. On a dark page the style sheet
+inverts the picture's lightness.
+"""
 
 from __future__ import annotations
 
+import warnings
+from base64 import b64encode
+from collections.abc import Callable
+from io import BytesIO
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from markupsafe import Markup
@@ -13,8 +23,8 @@ from ...base.sentences import number_on_page as number
 from ...base.sentences import percent_on_page as percent
 from ..figures.diagnosis import AFTER, BEFORE
 from ..figures.graph import draw_graph
+from ..figures.style import STYLE, further_fonts
 from .before_and_after import YOURS
-from .picture import picture
 from .residuals import BodyView, RungResidual
 
 if TYPE_CHECKING:
@@ -171,3 +181,45 @@ def graph_figure(graph: Graph, alt: str, *, width: float = PANEL) -> Markup:
         draw_graph(graph, axes, colours={YOURS: BEFORE})
 
     return picture(draw, size=(width, 0.62 * width), alt=alt)
+
+
+#: settings of matplotlib for pictures of a page, besides the house style
+SETTINGS: Any = {
+    "svg.fonttype": "none",  # text stays text: small, and sharp at every size
+    "svg.hashsalt": "teleopdesign",  # the same identifiers in every process
+    "text.parse_math": False,  # a name from a file may hold a dollar sign
+    "axes.formatter.use_mathtext": False,
+    "axes.formatter.limits": (-4, 5),
+    "font.size": 7.5,
+    "axes.labelsize": 7.5,
+    "axes.titlesize": 7.5,
+    "figure.facecolor": "none",
+    "axes.facecolor": "none",
+    "savefig.facecolor": "none",
+}
+#: pixels per inch of parts that are drawn as pixels: three for each pixel of a usual screen
+PIXELS_PER_INCH = 288
+
+
+def picture(draw: Callable[[Figure], None], *, size: tuple[float, float], alt: str) -> Markup:
+    """The drawing by `draw` as an <img> element with an alternative text.
+
+    draw: function that receives an empty figure in house style
+    size: width and height, inches;  alt: plain text, escaped here
+    """
+    import matplotlib.style
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+    from matplotlib.figure import Figure
+
+    fonts = {"font.family": ["DejaVu Sans", *further_fonts()]}  # the first comes with matplotlib
+    with matplotlib.style.context(STYLE), rc_context(SETTINGS | fonts), warnings.catch_warnings():
+        # the text stays text: the reader's browser has the letters that no font here has
+        warnings.filterwarnings("ignore", "Glyph .* missing from font")
+        figure = Figure(figsize=size, layout="constrained")
+        FigureCanvasSVG(figure)
+        draw(figure)
+        out = BytesIO()
+        figure.savefig(out, format="svg", metadata={"Date": None}, dpi=PIXELS_PER_INCH)
+    data = b64encode(out.getvalue()).decode("ascii")
+    return Markup('<img alt="{}" src="data:image/svg+xml;base64,{}">').format(alt, data)

@@ -19,8 +19,14 @@ from ...diagnose import Diagnosis
 from ...diagnose.comparison import residual_data
 from ...diagnose.evidence import SAME
 from ..figures.carrier import carrier_of
-from .before_and_after import BodySamples, excerpt, plot_over_carrier
-from .scaled import Scaled, choose_prefix, size_of
+from .before_and_after import (
+    BodySamples,
+    Scaled,
+    choose_prefix,
+    excerpt,
+    plot_over_carrier,
+    size_of,
+)
 
 #: cells of a map along the travel and along velocity, and fewest samples in a cell that is shown
 CELLS, FEWEST = (40, 25), 3

@@ -15,7 +15,7 @@ from ...unexplained.shapes import DAMPING, FORCE, FRICTION, LATENESS, LOST, MASS
 from ..registry import shows
 
 if TYPE_CHECKING:
-    from ...unexplained.description import DescribedDependence
+    from ...unexplained.result import DescribedDependence
 
 #: ratio of the sizes on two sides from which the text states a difference
 UNLIKE = 1.5

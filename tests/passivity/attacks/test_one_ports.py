@@ -22,7 +22,7 @@ from passivity.attacks.rational import (
     values,
 )
 
-from teleopdesign.passivity import damping_excess, positive_real, storage_function
+from teleopdesign.passivity import damping_excess, positive_real
 
 DIGITS = 60
 
@@ -156,18 +156,3 @@ def test_the_attacker_sees_a_residue_that_is_tilted_by_a_hair(tilt, square):
     assert active_point(rng, ratio) is not None
     level = plus(times([Fraction(5, 3), 0], [1, 1]), below), times(below, [1, 1])
     assert active_point(rng, level) is None
-
-
-@attacked(2, 15)
-def test_no_port_that_gives_out_energy_has_a_storage_function(seed, number):
-    pytest.importorskip("cvxpy", reason="the extra `lmi` is not installed")
-    rng = np.random.default_rng(seed)
-    counts = Counter()
-    for k in range(number):
-        ratio = random_ratio(rng, KINDS[k % len(KINDS)])
-        status = storage_function(expression(*ratio)).status
-        if status == "proved":
-            assert active_point(rng, ratio) is None, ratio
-        counts[status] += 1
-    print(dict(counts))
-    assert counts.total() == number

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from teleopdesign.show.figures import style
 from teleopdesign.show.figures.style import explain_boxes, further_fonts, house_style
-from teleopdesign.show.report.picture import picture
+from teleopdesign.show.report.figures import picture
 
 #: Arabic: in DejaVu Sans, which comes with matplotlib, and in no font of the house style
 ARABIC = "قوة (N)"

@@ -12,9 +12,8 @@ from teleopdesign.diagnose.recording import DiagnosedRecording
 from teleopdesign.diagnose.statements import Alternative, SetAside, Undetermined
 from teleopdesign.show.report.candidate_table import candidate_rows
 from teleopdesign.show.report.cannot_tell import cannot_tell
-from teleopdesign.show.report.page import page_of
+from teleopdesign.show.report.page import page_of, record_rows
 from teleopdesign.show.report.parameter_table import parameter_rows
-from teleopdesign.show.report.provenance import record_rows
 from teleopdesign.show.report.residuals import CELLS, body_views
 
 

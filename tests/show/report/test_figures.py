@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from teleopdesign.base.finding import Graph, Series
 from teleopdesign.show.figures.diagnosis import AFTER, BEFORE
 from teleopdesign.show.report import figures
+from teleopdesign.show.report.before_and_after import Scaled
 from teleopdesign.show.report.candidate_table import LadderLine
 from teleopdesign.show.report.residuals import BodyView, RungResidual
-from teleopdesign.show.report.scaled import Scaled
 
 EMPTY = Graph("", "", ())
 STEPS = tuple(

@@ -12,8 +12,8 @@ from show.report.html_page import HtmlPage
 
 from teleopdesign.base.finding import Graph, Series
 from teleopdesign.show.figures.graph import draw_graph, extremes, thin_series
-from teleopdesign.show.report.picture import picture
-from teleopdesign.show.report.scaled import choose_prefix
+from teleopdesign.show.report.before_and_after import choose_prefix
+from teleopdesign.show.report.figures import picture
 
 X = np.linspace(0.0, 1.0, 50)
 

@@ -127,7 +127,7 @@ def test_the_same_diagnosis_gives_the_same_bytes(diagnosis, written, tmp_path):
 @pytest.mark.slow
 def test_a_figure_is_the_same_in_a_process_with_another_hash_seed():
     code = (
-        "from teleopdesign.show.report.picture import picture\n"
+        "from teleopdesign.show.report.figures import picture\n"
         "def draw(f):\n    a = f.subplots(); a.plot([0, 1, 2], [1, 0, 2], 'o'); a.imshow([[1.0]])\n"
         "print(picture(draw, size=(2, 1), alt='y'))"
     )

@@ -2,7 +2,7 @@
 
 from base64 import b64decode
 
-from teleopdesign.show.report.picture import picture
+from teleopdesign.show.report.figures import picture
 
 
 def test_a_name_with_two_dollar_signs_stays_as_it_is_written():

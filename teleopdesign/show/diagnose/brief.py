@@ -1,0 +1,88 @@
+"""The first screen of a diagnosis: the verdict, the errors behind it, and what was set aside.
+
+Twelve lines with the next command; values of the effects give way where the ladder is long. The
+whole ladder with its reasons is the registry's "text".
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from ...base.sentences import with_standard_error
+from ...base.units import unit_after_number
+from .text import name_of_error, sentence
+
+if TYPE_CHECKING:
+    from ...diagnose.diagnosis import Diagnosis
+
+#: columns of a line
+WIDTH = 100
+#: columns of a row's name
+NAME = 42
+#: lines of a screen that has room for the values of the effects
+LINES = 9
+
+
+def brief_text(diagnosis: Diagnosis) -> str:
+    """The verdict first, then before, after and the noise floor, and how much more there is to say.
+
+    Values of the effects that were added stand beside their rows. Reasons, candidates that were not
+    accepted and the whole model are counted in one line, and stand in the long text.
+    """
+    lines = [*(_arm(diagnosis) if diagnosis.joints else _body(diagnosis, with_values=True))]
+    if not diagnosis.joints and len(lines) > LINES:
+        lines = [*_body(diagnosis, with_values=False)]
+    if diagnosis.left_out:
+        lines += textwrap.wrap(f"left out: {'; '.join(diagnosis.left_out)}", WIDTH)
+    if more := _more(diagnosis):
+        lines.append(f"not shown: {more}")
+    return "\n".join(lines)
+
+
+def _body(diagnosis: Diagnosis, *, with_values: bool) -> Iterator[str]:
+    """Lines of one body, or of two: verdict, ladder, floor."""
+    yield from textwrap.wrap(sentence(diagnosis), WIDTH)
+    yield f"{'':<{NAME}}{'fit error':>10}{name_of_error(diagnosis):>15}"
+    for row in diagnosis.rungs:
+        name = "your model, re-estimated" if row.added is None else f"+ {row.title}"
+        yield f"{name:<{NAME}}{100 * row.fit_error:>9.2f}%{100 * row.check_error:>14.2f}%"
+        if row.added is not None and with_values:
+            begin = f"{row.added.at}.{row.added.effect.name}."
+            yield f"    {', '.join(_values(diagnosis, begin))}"
+    yield f"{'noise floor':<{NAME}}{'':>10}{100 * diagnosis.floor.value:>14.2f}%"
+
+
+def _values(diagnosis: Diagnosis, begin: str) -> Iterator[str]:
+    """Estimates of one effect, each "name = value +- standard error unit"."""
+    model = diagnosis.model
+    for name, value in model.parameters.items():
+        if name.startswith(begin):
+            number = with_standard_error(value.value, value.stderr)
+            bound = " (at its bound)" if name in diagnosis.at_bound else ""
+            unit = unit_after_number(model.unit(name))
+            yield f"{name.removeprefix(begin)} = {number}{unit}{bound}"
+
+
+def _arm(diagnosis: Diagnosis) -> Iterator[str]:
+    """Lines of an arm: the verdict, then one line for each joint."""
+    names = ", ".join(map(str, diagnosis.missing))
+    yield f"verdict: {diagnosis.verdict}{': ' + names if names else ''}"
+    yield f"{'joint':<20}{'before':>10}{'after':>10}{'floor':>10}  verdict"
+    for joint, one in diagnosis.joints.items():
+        ends = [row.joints[joint].check_error for row in (diagnosis.before, diagnosis.after)]
+        errors = "".join(f"{100 * e:>9.2f}%" for e in (*ends, one.floor.value))
+        yield f"{joint:<20}{errors}  {one.verdict}"
+
+
+def _more(diagnosis: Diagnosis) -> str:
+    """What the long text says in addition, counted; "": no more than the model."""
+    parts = list(diagnosis.joints.values()) or [diagnosis]
+    counts = {
+        "effects not accepted": sum(len(one.not_accepted) for one in parts),
+        "set aside": sum(len(one.set_aside) for one in parts),
+        "parameters not determined": sum(len(one.undetermined) for one in parts),
+        "remarks": len(diagnosis.remarks),
+    }
+    return ", ".join(f"{n} {name}" for name, n in counts.items() if n)
