@@ -8,7 +8,7 @@ left small, since nothing here reads them. The design's numbers, with the cancel
 switched on in the simulator, and the second log goes through `new` and `verify`. A row a device
 goes to FOLDER/rows_FIRST.csv: effect, verdict, names, ends of the predicted interval, measured and
 uncompensated force error, and what `verify` names. `closed_loop.csv` beside this file holds the
-rows of the last whole run.
+rows of the last run.
 """
 
 import argparse
@@ -53,9 +53,11 @@ AMONG = (
 )
 
 
-def keep_small():
-    """Few motions in the claims and in the map of impedances."""
-    verdict.SIZES, verdict.FREQUENCIES, felt_impedance.MULTIPLES = (1.0,), (1.0, 10.0), (1.0,)
+def keep_small(put=setattr):
+    """Few motions in the claims and in the map of impedances; put: sets an attribute."""
+    put(verdict, "SIZES", (1.0,))
+    put(verdict, "FREQUENCIES", (1.0, 10.0))
+    put(felt_impedance, "MULTIPLES", (1.0,))
 
 
 def draw_device(number):
@@ -88,7 +90,7 @@ def run(*words):
     return text.getvalue()
 
 
-def close_the_loop(number, folder):
+def close_the_loop(number, folder, among=AMONG):
     """One device: from its raw log to the second log; the row of the table."""
     inertia, effects, name, random = draw_device(number)
     place = Path(folder) / f"{number:03}"
@@ -96,7 +98,7 @@ def close_the_loop(number, folder):
     file = place / "design.json"
     write_log(place / "off.csv", record_without(inertia, effects, SECONDS, random))
     run("new", place / "off.csv", "--yes", "--overwrite", "--output", place / "off")
-    diagnosis = td.find_missing(td.load_experiment(place / "off"), among=AMONG)
+    diagnosis = td.find_missing(td.load_experiment(place / "off"), among=among)
     td.design_compensation(diagnosis).to_json(file)
     design = json.loads(file.read_text())
     case = "MBC" if design["cancellation"] else "FF"
