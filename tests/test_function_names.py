@@ -7,7 +7,7 @@ import pytest
 from syntax_trees import PACKAGE, syntax_trees
 
 #: laws and parts of laws, in the words of their equations; a file that a generator writes
-LAWS = re.compile(r"(effects|controllers)/(of_blocks/)?[a-z0-9_]+\.py$|realise/_free_mass.py$")
+LAWS = re.compile(r"(effects|controllers)/(of_blocks/)?[a-z0-9_]+\.py$")
 PLACES = """
     above across after against along among around at before behind below beside between
     beyond by from in inside of off on once out over per since through till toward under

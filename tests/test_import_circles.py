@@ -3,7 +3,7 @@
 import ast
 from graphlib import CycleError, TopologicalSorter
 
-from syntax_trees import PACKAGE, parsed, syntax_trees
+from syntax_trees import PACKAGE, import_statements, parsed, syntax_trees
 
 
 def module_name(path, root):
@@ -11,21 +11,10 @@ def module_name(path, root):
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-def runtime_nodes(node):
-    """Every node below, without the blocks that only type checkers read."""
-    for child in ast.iter_child_nodes(node):
-        if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.dump(child.test):
-            continue
-        yield child
-        yield from runtime_nodes(child)
-
-
 def targets(node, module, is_package):
     """Full names that an import statement may stand for."""
     if isinstance(node, ast.Import):
         return [a.name for a in node.names]
-    if not isinstance(node, ast.ImportFrom):
-        return []
     base = node.module or ""
     if node.level:
         parts = module.split(".")
@@ -43,7 +32,7 @@ def imports_of(root, trees=None):
         tree = trees[path]
         names = [
             name
-            for node in runtime_nodes(tree)
+            for node in import_statements(tree, for_types=False)
             for name in targets(node, module, path.name == "__init__.py")
         ]
         # `from .folder import name` needs the module `name`, or the folder that defines `name`

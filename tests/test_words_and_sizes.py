@@ -42,7 +42,7 @@ PUBLIC_KEYWORDS = {
     "given": ("derive", "frequency"),
 }
 #: compiled: their functions take arrays and places in them, for which there are no objects
-COMPILED = ("realise/integrator", "realise/_free_mass")
+COMPILED = ("realise/integrator",)
 #: cells of a page: marimo gives each what it uses by name, nobody calls them
 CELLS = ("app/notebook",)
 

@@ -120,7 +120,7 @@ class Workbench:
         bench = self.rank(progress)
         search = replace(self.search, progress=progress) if progress else self.search
         states = bench.states
-        while (moved := make_next_move(search, states[-1])) is not None:
+        while (moved := make_next_move(search, states[-1], pairs=True)) is not None:
             states = (*states, look(search, moved.rungs, moved))
         return replace(bench, states=states)
 

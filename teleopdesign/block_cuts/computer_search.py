@@ -135,10 +135,12 @@ def _step(data: ControlData, here: ControlFit, floors: dict[str, float]) -> Comp
 
 def _is_alike(one: Attempt, best: Attempt) -> bool:
     """Whether two candidates explain the records equally well."""
-    if one.behind >= CRITERIA.close:
+    if one.behind >= CRITERIA.indistinguishable:
         return False
     errors = one.fit.error("check"), best.fit.error("check")
-    return errors[0] <= (1.0 + CRITERIA.near) * errors[1] or one.behind < 1.0
+    return (
+        errors[0] ** 2 <= (1.0 + CRITERIA.relative_improvement) * errors[1] ** 2 or one.behind < 1.0
+    )
 
 
 def _score(data: ControlData, before: ControlFit, after: ControlFit) -> float:
@@ -152,12 +154,12 @@ def _reason_against(
     floor = _floor(floors)
     old, new = before.error("check"), one.fit.error("check")
     gain = old**2 - new**2
-    if one.score < CRITERIA.sure:
+    if one.score < CRITERIA.significance:
         return "its gain may be chance"
     from_absence = abs(one.added.value - one.added.effect.absent)
-    if from_absence < CRITERIA.strong * one.fit.stderr[-1]:
+    if from_absence < CRITERIA.interval * one.fit.stderr[-1]:
         return "its value is absence as well"
-    if gain < max(CRITERIA.of_floor * floor**2, CRITERIA.relevant * old**2):
+    if gain < max(CRITERIA.of_floor * floor**2, CRITERIA.relative_improvement * old**2):
         return "its gain is too small"
     names = one.fit.errors["check"]
     if any(e > max(before.errors["check"][n], floors[n]) * (1.0 + SAME) for n, e in names.items()):

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError
 from ._paths import shell_word
@@ -246,46 +246,23 @@ def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> C
     """The choices, with the user's answers on the guesses; an empty answer accepts a guess."""
     from ..measurement.value_text import lever_arm, motor_constant, plain_number
 
+    numbers: dict[str, Callable[..., Any]] = {
+        "torque_constant": motor_constant,
+        "lever_arm": lever_arm,
+        **dict.fromkeys(("counts_per_turn", "gear_ratio", "sample_rate"), plain_number),
+    }
     units = dict(choices.units)
     for key, why in list(survey.guesses.items()):
         _, quantity, part = (*key.split("."), "", "")[:3]
-        if part not in (
-            "unit",
-            "column",
-            "torque_constant",
-            "lever_arm",
-            "counts_per_turn",
-            "gear_ratio",
-        ) and key not in ("model.device.axis", "sample_rate"):
+        name = {"model.device.axis": "axis", "sample_rate": key}.get(key, part)
+        if name not in ("unit", "column", "axis", *numbers):
             continue
-        entry = survey.channels.get(quantity, {})
         answer = ask(f"{key}: {why}\n  Enter accepts this; or type another value: ").strip()
         if not answer:
             continue
-        if part == "unit":
-            units[entry["column"]] = answer
-        elif part == "column":
-            choices = _with_column(choices, quantity, answer)
-        elif part == "torque_constant":
-            choices = replace(choices, torque_constant=motor_constant(answer, where=key))
-        elif part == "lever_arm":
-            choices = replace(choices, lever_arm=lever_arm(answer, where=key))
-        elif part == "counts_per_turn":
-            choices = replace(choices, counts_per_turn=plain_number(answer, where=key))
-        elif part == "gear_ratio":
-            choices = replace(choices, gear_ratio=plain_number(answer, where=key))
-        elif key == "model.device.axis":
-            choices = replace(choices, axis=answer)
+        value: Any = numbers[name](answer, where=key) if name in numbers else answer
+        if name == "unit":
+            units[survey.channels[quantity]["column"]] = answer
         else:
-            choices = replace(choices, sample_rate=plain_number(answer, where=key))
+            choices = replace(choices, **{quantity if name == "column" else name: value})
     return replace(choices, units=units)
-
-
-def _with_column(choices: Choices, quantity: str, column: str) -> Choices:
-    if quantity == "time":
-        return replace(choices, time=column)
-    if quantity == "position":
-        return replace(choices, position=column)
-    if quantity == "actuator_force":
-        return replace(choices, actuator_force=column)
-    return replace(choices, interaction_force=column)

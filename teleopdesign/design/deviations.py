@@ -32,6 +32,8 @@ _MOST = 3
 #: quantities of parameters that give a law its shape; all others are strengths
 _SHAPE = ("angle", "position", "velocity", "time")
 ZERO = "zero"
+#: part of a command by which another is the same: what a reader sees as the same figure
+_SAME = 0.02
 #: parts of the shortest period, or of the travel, at which a fit of a zero starts
 _PLACES = np.linspace(-0.45, 0.45, 10)
 
@@ -115,7 +117,7 @@ class _Channel:
         while len(groups) < _MOST and (left := _rms(here)) > self.enough:
             attempts = [self._fit(n, accepted, values) for n in self.numbers if n not in accepted]
             most = left**2 - CRITERIA.mostly * (left**2 - self.enough**2)
-            able = [a for a in attempts if a.score >= CRITERIA.sure and a.rms**2 <= most]
+            able = [a for a in attempts if a.score >= CRITERIA.significance and a.rms**2 <= most]
             if not able:
                 break
             able.sort(key=lambda a: a.rms)
@@ -130,7 +132,8 @@ class _Channel:
         if self.shared and one.number.key[0] != best.number.key[0]:
             return True
         behind = gain_score(one.residual, best.residual, self.blocks)
-        return behind < CRITERIA.close or one.rms <= (1.0 + CRITERIA.near) * best.rms
+        near = (1.0 + CRITERIA.relative_improvement) * best.rms**2
+        return behind < CRITERIA.indistinguishable or one.rms**2 <= near
 
     def _fit(
         self, number: _Number, accepted: list[_Number], values: Mapping[Key, float]
@@ -180,7 +183,7 @@ def deviations_of(
         def at_command(values: Mapping[Key, float]) -> Array:
             return np.concatenate(_apart(on, recorded, values, logged))
 
-        known = _Channel(_of_computer(on), at_command, blocks, CRITERIA.near * size).deviations
+        known = _Channel(_of_computer(on), at_command, blocks, _SAME * size).deviations
         numbers = _of_device(on)
     else:
         logged, known, numbers = 0.0, (), (*_of_computer(on), *_of_device(on))
@@ -222,7 +225,10 @@ def _lateness_of_log(on: SecondRecording, blocks: NDArray[np.intp]) -> float:
     written = [s.motion.command for s in on.stretches]
     delay = on.sampling.delay
     now, later = (np.concatenate(on.left(written, late=late)) for late in (0.0, delay))
-    if abs(gain_score(now, later, blocks) - gain_score(later, now, blocks)) >= CRITERIA.sure:
+    if (
+        abs(gain_score(now, later, blocks) - gain_score(later, now, blocks))
+        >= CRITERIA.significance
+    ):
         return 0.0 if _rms(later) < _rms(now) else delay
     ends = (0.0, delay)
     return min(ends, key=lambda late: _rms(np.concatenate(_apart(on, recorded, {}, late))))

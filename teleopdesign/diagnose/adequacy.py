@@ -13,7 +13,7 @@ from typing import Protocol
 
 import numpy as np
 
-from .criteria import CRITERIA, Criteria
+from .criteria import CRITERIA
 from .evidence import check_squares
 from .fit import Fit
 from .noise_floor import NoiseFloor
@@ -38,10 +38,7 @@ class Errors(Protocol):
 
 
 def limit_noise_floor(
-    drawn: NoiseFloor,
-    here: Fit,
-    ranking: Ranking,
-    without: Collection[tuple[str, str]] = (),
+    drawn: NoiseFloor, here: Fit, ranking: Ranking, without: Collection[tuple[str, str]] = ()
 ) -> NoiseFloor:
     """The noise floor, at most the error of the model or of any candidate that counts.
 
@@ -60,28 +57,28 @@ def limit_noise_floor(
     return replace(drawn, value=min(drawn.value, *left))
 
 
-def is_noise(check_error: float, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+def is_noise(check_error: float, floor: NoiseFloor) -> bool:
     """Whether an error of this size on the check records counts as noise."""
-    return check_error <= criteria.adequate * floor.value
+    return check_error <= CRITERIA.adequate * floor.value
 
 
-def is_a_tone(fit: Fit, tone: Tone, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+def is_a_tone(fit: Fit, tone: Tone, floor: NoiseFloor) -> bool:
     """Whether a single sine explains all of a fit's error except noise."""
     squares = check_squares(fit)
     left = fit.check_error * float(np.sqrt(tone.squares / squares)) if squares > 0.0 else 0.0
-    return is_noise(left, floor, criteria=criteria)
+    return is_noise(left, floor)
 
 
-def is_adequate(errors: Errors, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+def is_adequate(errors: Errors, floor: NoiseFloor) -> bool:
     """Whether the check error counts as noise, both of the force and referred to the command.
 
     A model that is blind in much of the motion is not adequate: there its command shows nothing.
     """
     at_command = (
-        errors.check_error_at_command <= criteria.adequate * floor.value_at_command
-        and errors.blind <= criteria.blind
+        errors.check_error_at_command <= CRITERIA.adequate * floor.value_at_command
+        and errors.blind <= CRITERIA.blind
     )
-    return is_noise(errors.check_error, floor, criteria=criteria) and at_command
+    return is_noise(errors.check_error, floor) and at_command
 
 
 def floors_left(errors: Errors, floor: NoiseFloor) -> float:
@@ -95,6 +92,6 @@ def floors_left(errors: Errors, floor: NoiseFloor) -> float:
     return max(errors.check_error / floor.value, at_command)
 
 
-def records_differ(errors: Errors, *, criteria: Criteria = CRITERIA) -> bool:
+def records_differ(errors: Errors) -> bool:
     """Whether the relative error on the check records is much larger than on the fit records."""
-    return errors.check_error >= criteria.differ * errors.fit_error > 0.0
+    return errors.check_error >= CRITERIA.differ * errors.fit_error > 0.0

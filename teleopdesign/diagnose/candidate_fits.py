@@ -1,4 +1,4 @@
-"""Rough fits of all candidates of a ranking, on all cores."""
+"""Rough fits of all candidates of a ranking, on all cores, and how many of them have begun."""
 
 from __future__ import annotations
 
@@ -6,20 +6,41 @@ from collections.abc import Callable, Sequence
 
 from ..effects import Effect
 from ..measurement.prepare import Prepared
-from ..model import Model
 from .candidates import Candidate, make_starts
 from .cores import map_on_cores
 from .fit import Fit
-from .progress import ProgressLine
 from .promise import Promises
 from .search import Base, estimate_from_starts
+
+
+class ProgressLine(str):
+    """A line of text with a count, such as "step 2: stribeck at device (14 of 38)".
+
+    stage: the stage that the line belongs to, such as "step 2"; "": none
+    begun, total: parts of this stage: those that have started, and all
+    """
+
+    stage: str
+    begun: int
+    total: int
+
+    def __new__(cls, text: str, *, begun: int, total: int, stage: str = "") -> ProgressLine:
+        head = f"{stage}: " if stage else ""
+        line = super().__new__(cls, f"{head}{text} ({begun} of {total})")
+        line._text, line.stage, line.begun, line.total = text, stage, begun, total
+        return line
+
+    _text: str
+
+    def within(self, stage: str) -> ProgressLine:
+        """The same line as part of a stage."""
+        return ProgressLine(self._text, begun=self.begun, total=self.total, stage=stage)
 
 
 def fit_each(
     possible: Sequence[Candidate],
     base: Base,
     prepared: Prepared,
-    stated: Model | None,
     *,
     worth: float,
     progress: Callable[[ProgressLine], None] | None,
@@ -27,7 +48,6 @@ def fit_each(
     """Candidates with their rough fits, in the order of the candidates.
 
     base: the fitted model to which each is added
-    stated: the model as its user gave it; its values are used as starts too
     worth: part of the base's squares on the fit records below which a gain is not pursued
     progress: called before each candidate
     """
@@ -36,7 +56,7 @@ def fit_each(
 
     def fit_candidate(candidate: Candidate) -> Fit:
         added = base.fit.model.with_effect(candidate.effect, at=candidate.at)
-        return estimate_from_starts(added, prepared, base, stated, worth=worth)
+        return estimate_from_starts(added, prepared, base, worth=worth)
 
     def begun(i: int) -> None:
         if progress is not None:

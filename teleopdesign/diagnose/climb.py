@@ -18,13 +18,12 @@ from .transmission import add_transmission
 def climb(search: LadderSearch, state: LadderState) -> tuple[LadderState, tuple[Rung, ...]]:
     """The state where the ladder ends, and its rungs with their final errors.
 
-    By these errors an effect may be set aside; the ladder then continues without it.
+    By these errors an effect may be set aside; the ladder then continues without it, once. What
+    comes in its place is often as little there.
     """
+    removed = len(state.set_aside)  # those that all joints of an arm together did not support
     while True:
-        while (
-            len(state.set_aside) <= search.plan.searched_on
-            and (moved := make_next_move(search, state)) is not None
-        ):
+        while removed <= 1 and (moved := make_next_move(search, state, pairs=not removed)):
             barred = bar_what_explains_nothing(search, state, moved)
             if barred is None:
                 state = look(search, moved.rungs, moved)
@@ -37,7 +36,7 @@ def climb(search: LadderSearch, state: LadderState) -> tuple[LadderState, tuple[
         less = remove_doubtful_rung(search, state, rungs)
         if less is None:
             return state, rungs
-        state = look(search, less.rungs, less)
+        state, removed = look(search, less.rungs, less), removed + 1
 
 
 def bar_what_explains_nothing(
@@ -56,12 +55,12 @@ def bar_what_explains_nothing(
     if moved.fit.check_error >= state.fit.check_error:
         return None
     last = replace(new[-1], fit=moved.fit)
-    prepared, criteria = search.prepared, search.criteria
+    prepared = search.prepared
     drawn = noise_floor(moved.fit.model, prepared, search.generator())
     barred = (
-        stands_in_for_readings(state.fit, state.floor, last, drawn, criteria=criteria)
-        or stands_in_for_values(state.fit, last, prepared, state.floor, criteria=criteria)
-        or stands_in_for_moments(state.fit, last, prepared, criteria=criteria)
+        stands_in_for_readings(state.fit, state.floor, last, drawn)
+        or stands_in_for_values(state.fit, last, prepared, state.floor)
+        or stands_in_for_moments(state.fit, last, prepared)
     )
     if barred is None:
         return None
@@ -70,25 +69,27 @@ def bar_what_explains_nothing(
     state = replace(
         state,
         supported=tuple(r for r in state.supported if r.candidate.key not in gone),
-        barred=(*state.barred, barred),
+        set_aside=(*state.set_aside, barred),
     )
     return state.with_floor_limited() if barred.of_readings else state
 
 
-def make_next_move(search: LadderSearch, state: LadderState) -> LadderState | None:
+def make_next_move(search: LadderSearch, state: LadderState, *, pairs: bool) -> LadderState | None:
     """The state after the next move; None: the ladder ends here.
 
     First, a supported effect is added. Where there is none, another effect takes the place of one
     that the records do not tell from it. Where more than a tone is left, two effects are tried that
     mask each other, and a transmission with friction behind it, because a search with one of the
     two does not lead to the other.
+
+    pairs: whether two effects may be added at once
     """
     moves = [straighten] if state.step > search.plan.most_effects else [add, straighten, swap]
     for move in moves:
         if (moved := move(search, state)) is not None:
             return moved
-    if state.step > search.plan.most_effects or state.set_aside:
+    if state.step > search.plan.most_effects or not pairs:
         return None
-    if is_a_tone(state.fit, state.tone, state.floor, criteria=search.criteria):
+    if is_a_tone(state.fit, state.tone, state.floor):
         return None
     return add_two(search, state) or add_transmission(search, state)

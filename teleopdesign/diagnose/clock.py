@@ -27,7 +27,7 @@ from ..measurement.prepare import Prepared
 from ..model import Model
 from .adequacy import is_adequate
 from .candidates import bodies_with_measured_force, make_starts
-from .criteria import CRITERIA, Criteria
+from .criteria import CRITERIA
 from .decision import is_better
 from .evidence import check_score, check_squares
 from .fit import Fit, estimate, fit_squares, rough_fit
@@ -87,12 +87,7 @@ def with_paying_shift(fit: Fit, prepared: Prepared) -> Fit:
 
 
 def with_late_hand(
-    fit: Fit,
-    supported: Sequence[Ranked],
-    floor: NoiseFloor,
-    prepared: Prepared,
-    *,
-    criteria: Criteria = CRITERIA,
+    fit: Fit, supported: Sequence[Ranked], floor: NoiseFloor, prepared: Prepared
 ) -> Fit | None:
     """The fit with the low-pass of a hand's force sensor estimated; None where it is not accepted.
 
@@ -102,7 +97,7 @@ def with_late_hand(
     supported: effects that the records support in addition to the fit
     """
     least = min((check_squares(r.fit) for r in supported), default=float("inf"))
-    if is_adequate(fit, floor, criteria=criteria):
+    if is_adequate(fit, floor):
         return None
     touched = {
         s.motion.body
@@ -115,7 +110,7 @@ def with_late_hand(
         late = _with_shift(fit, hand, Value(0.0), prepared)
         if late.model.log_late(hand) <= 0.0:  # a sensor cannot be early
             continue
-        if check_squares(late) < least and is_better(fit, late, floor, criteria=criteria):
+        if check_squares(late) < least and is_better(fit, late, floor):
             return late
     return None
 
@@ -129,7 +124,7 @@ def _with_shift(fit: Fit, place: str, shift: Value, prepared: Prepared) -> Fit:
 def _stands_for_a_delay(fit: Fit, place: str, prepared: Prepared) -> bool:
     """Whether a dead time in place of a shift at its bound surely leaves less on check records."""
     late = _with_dead_time(fit.model, place, prepared)
-    return late is not None and check_score(fit, estimate(late, prepared)) > CRITERIA.sure
+    return late is not None and check_score(fit, estimate(late, prepared)) > CRITERIA.significance
 
 
 def _with_dead_time(model: Model, place: str, prepared: Prepared) -> Model | None:

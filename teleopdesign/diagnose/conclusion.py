@@ -52,10 +52,9 @@ def conclude(
     rungs: of the state, with the reading error removed from the last fit; None: it is removed here
     beside: of each stretch, the motions of an arm's other joints, from which trees learn too
     """
-    prepared, floor, criteria = search.prepared, state.floor, search.criteria
+    prepared, floor = search.prepared, state.floor
     estimated = state.fit
     rungs = with_last_corrected(search, state) if rungs is None else rungs
-    set_aside = (*state.barred, *state.set_aside)
     if prepared is not search.whole:
         search.progress("errors on the whole records")
         rungs = tuple(replace(r, fit=_evaluate_on_all(r.fit, search.whole)) for r in rungs)
@@ -68,7 +67,7 @@ def conclude(
     repeats = repeatability(last.model, whole, beside=beside)
     end = LadderEnd(
         search=search,
-        verdict=verdict(rungs, floor, criteria=criteria),
+        verdict=verdict(rungs, floor),
         beliefs=_beliefs(rungs, prepared),
         rungs=rungs,
         last=state.ranking,
@@ -78,13 +77,13 @@ def conclude(
         near_reversals=error_near_reversals(last.model, whole),
         repeats=repeats,
         undetermined=find_undetermined(rungs, whole),
-        set_aside=_select_left_out(set_aside, rungs),
+        set_aside=_select_left_out(state.set_aside, rungs),
         on_all_records=check_error_on_all(last, prepared) if records_differ(last) else None,
         silence=why_silent(whole, rungs[0].fit.model),
     )
     if end.silence:
         return replace(end, verdict="undecided")
-    named = probable(end, criteria=criteria)
+    named = probable(end)
     end = replace(end, rungs=tuple(_leave_unnamed(r, named) for r in rungs))
     if end.verdict == "effects_missing" and not named:
         return replace(end, verdict="undecided")
@@ -229,6 +228,5 @@ def _evaluate_on_all(fit: Fit, whole: Prepared) -> Fit:
         fit.at_command,
         error=command_error.error,
         blind=command_error.blind,
-        weak=command_error.weak,
     )
     return replace(fit, fit_error=fit_error, check_error=error, at_command=on_whole)

@@ -19,9 +19,10 @@ class Criteria:
     #: neither explains enough alone. Half: less is rather something else. Lower: stand-ins are
     #: accepted; higher: one pair of two is not
     mostly: float = 0.5
-    #: standard deviations of its chance part from which a gain counts (one in 30 000 by a normal
-    #: law; residuals are not quite normal). Lower: chance gains; higher: short records say nothing
-    sure: float = 4.0
+    #: standard deviations from which a gain is more than chance, and a parameter that makes an
+    #: effect what it is differs from zero (one in 30 000 by a normal law; residuals are not quite
+    #: normal). Lower: chance gains; higher: short records say nothing
+    significance: float = 4.0
     #: probability by chance up to which moments of one log that agree on an effect count: six agree
     #: once in 64, seven once in 128. Higher: what acts at a few starts is named; lower: short logs
     #: say nothing
@@ -35,35 +36,28 @@ class Criteria:
     #: beside each other: by more, what is left in floors must not rise. Higher: true effects are
     #: refused; lower: a tip that moves less at high frequencies is named
     weakened: float = 0.8
-    #: part of the squares before from which a gain counts: less is no answer to where a model fails
-    relevant: float = 0.03
+    #: part of the squares before from which a gain counts, and by which two equal fits may differ:
+    #: less is no answer to where a model fails
+    relative_improvement: float = 0.03
     #: standard deviations of a difference below which two fits explain the records equally well.
     #: Three: one in 700 by chance. Lower: look-alikes are distinguished by chance; higher: more is
     #: undecided
-    close: float = 3.0
-    #: relative difference of two check errors below which they may be equal (with `close`): what a
-    #: reader sees as the same figure
-    near: float = 0.02
-    #: noise floors (in quadrature) by which the check errors of two models must differ, or they are
-    #: left open: a right model's error lies between one and about one and a half floors
-    open: float = 1.0
+    indistinguishable: float = 3.0
     #: share of the samples where the body slides that may be blind. A quarter: of more, a model
     #: says too little; less would refuse every saturation that was really reached
     blind: float = 0.25
     #: part of a new parameter's column that must lie outside the span of the model's columns:
     #: below, rounding and noise in the tangents make the difference
     least_unique_share: float = 0.02
-    #: standard errors by which a parameter that makes an effect what it is must differ from zero.
-    #: Lower: a gap is named that noise alone asks for; higher: a small one is missed
-    surely: float = 5.0
-    #: standard errors by which a strength must differ from the value at which its effect is absent:
-    #: with less, its interval of 95 % holds absence. Of the effects accepted on simulated cases the
-    #: true ones differ by 2.6 and more, three false ones by 0.4 to 1.7. Higher: weak effects are
-    #: missed; lower: what absence explains as well is named
-    strong: float = 2.0
-    #: times its value, and part of it, at which such a parameter must leave more (by `close`), all
-    #: others fitted again. Four: where the squares are a parabola, a quarter of what is `surely`
-    #: there is 3.75 standard errors off. Higher: any gap is named; lower: a coarse one is not
+    #: standard errors of an interval of 95 %, which must not hold the value at which an effect is
+    #: absent. Of the effects accepted on simulated cases the true ones differ by 2.6 and more,
+    #: three false ones by 0.4 to 1.7. Higher: weak effects are missed; lower: what absence explains
+    #: as well is named
+    interval: float = 2.0
+    #: times its value, and part of it, at which such a parameter must leave more (by
+    #: `indistinguishable`), all others fitted again. Four: where the squares are a parabola, a
+    #: quarter of what differs by `significance` is three standard errors off. Higher: any gap is
+    #: named; lower: a coarse one is not
     times: float = 4.0
     #: part of the squares that one linear step must promise, from which a start is worth a step.
     #: Higher: faster, and effects that are linear in no strength are missed

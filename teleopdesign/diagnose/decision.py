@@ -8,38 +8,33 @@ from __future__ import annotations
 
 from .adequacy import is_adequate
 from .candidates import Candidate
-from .criteria import CRITERIA, Criteria
-from .evidence import (
-    check_score,
-    check_squares,
-    gain_at_command,
-    score_at_command,
-)
+from .criteria import CRITERIA
+from .evidence import check_score, check_squares, gain_at_command, score_at_command
 from .fit import Fit
 from .noise_floor import NoiseFloor
 from .ranking import REFUSALS, Ranked
 
 
-def lowers_check_squares(base: Fit, other: Fit, *, criteria: Criteria = CRITERIA) -> bool:
+def lowers_check_squares(base: Fit, other: Fit) -> bool:
     """Whether `other` leaves clearly fewer squares on the check records."""
-    return check_squares(other) < (1.0 - criteria.relevant) * check_squares(base)
+    return check_squares(other) < (1.0 - CRITERIA.relative_improvement) * check_squares(base)
 
 
-def refusal(base: Fit, other: Fit, *, criteria: Criteria = CRITERIA) -> str:
+def refusal(base: Fit, other: Fit) -> str:
     """Why an addition to `base` does not count (a key of `REFUSALS`); "" where it may count.
 
     An addition that makes the recorded force unpredictable has not explained it.
     """
-    already = base.at_command.blind if base.at_command.blind > criteria.blind else 0.0
-    if other.at_command.blind - already > criteria.blind:
+    already = base.at_command.blind if base.at_command.blind > CRITERIA.blind else 0.0
+    if other.at_command.blind - already > CRITERIA.blind:
         return "blind"
-    if other.at_command.weak and not base.at_command.weak:
-        return "weak"
-    less = lowers_check_squares(base, other, criteria=criteria)
-    return "hides" if less and not gain_at_command(base, other) > criteria.relevant else ""
+    less = lowers_check_squares(base, other)
+    return (
+        "hides" if less and not gain_at_command(base, other) > CRITERIA.relative_improvement else ""
+    )
 
 
-def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> bool:
+def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
     """Whether `other` has the smaller check error by more than chance and by enough to matter.
 
     Both the error of the force and the error referred to the command must fall. At the command, a
@@ -53,38 +48,34 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor, *, criteria: Criteria = 
     def is_enough(gain: float, score: float) -> bool:
         """Whether a gain of this share of the squares, at this score, is more than chance."""
         return (
-            score > criteria.sure
-            and gain > criteria.relevant
-            and gain > criteria.of_floor * (floor.value / base.check_error) ** 2
+            score > CRITERIA.significance
+            and gain > CRITERIA.relative_improvement
+            and gain > CRITERIA.of_floor * (floor.value / base.check_error) ** 2
         )
 
     return (
-        not refusal(base, other, criteria=criteria)
+        not refusal(base, other)
         and is_enough(of_force, check_score(base, other))
         and is_enough(gain_at_command(base, other), score_at_command(base, other))
     )
 
 
-def _makes_adequate(base: Fit, other: Fit, floor: NoiseFloor, criteria: Criteria) -> bool:
+def _makes_adequate(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
     """Whether `other` is an adequate model and the base is not."""
-    adequate = is_adequate(other, floor, criteria=criteria)
-    return adequate and not is_adequate(base, floor, criteria=criteria)
+    adequate = is_adequate(other, floor)
+    return adequate and not is_adequate(base, floor)
 
 
-def is_supported(
-    base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
-) -> bool:
+def is_supported(base: Fit, ranked: Ranked, floor: NoiseFloor) -> bool:
     """Whether a candidate is identifiable, lowers the check error enough, and no rule bars it."""
     return (
         ranked.is_identifiable
-        and not objection(base, ranked, floor, criteria=criteria)
-        and is_better(base, ranked.fit, floor, criteria=criteria)
+        and not objection(base, ranked, floor)
+        and is_better(base, ranked.fit, floor)
     )
 
 
-def objection(
-    base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
-) -> str:
+def objection(base: Fit, ranked: Ranked, floor: NoiseFloor) -> str:
     """The rule that excludes a candidate whatever it explains, in words; "" where none does.
 
     A candidate with a parameter at a bound is another effect, unless it makes the model adequate.
@@ -94,22 +85,20 @@ def objection(
     driven = sorted(set(ranked.fit.at_bound) - set(base.at_bound))
     added = [n for n in driven if n not in base.model.parameters]
     needed = [n for n in added if not ranked.fit.model.declared(n).optional]
-    if needed and not _makes_adequate(base, ranked.fit, floor, criteria):
+    if needed and not _makes_adequate(base, ranked.fit, floor):
         return f"fits only with {', '.join(needed)} at a bound, where it is another effect"
     return ""
 
 
-def helps_but_is_barred(
-    base: Fit, ranked: Ranked, floor: NoiseFloor, *, criteria: Criteria = CRITERIA
-) -> str:
+def helps_but_is_barred(base: Fit, ranked: Ranked, floor: NoiseFloor) -> str:
     """The rule that excludes a candidate that lowers the check error by enough.
 
     returns: "" where no rule does, or the candidate does not lower the error enough
     """
-    less = ranked.fit.check_error**2 < (1.0 - criteria.relevant) * base.check_error**2
-    if not (less or lowers_check_squares(base, ranked.fit, criteria=criteria)):
+    less = ranked.fit.check_error**2 < (1.0 - CRITERIA.relative_improvement) * base.check_error**2
+    if not (less or lowers_check_squares(base, ranked.fit)):
         return ""
-    return objection(base, ranked, floor, criteria=criteria)
+    return objection(base, ranked, floor)
 
 
 def list_displaced_parameters(base: Fit, fit: Fit, *, least: float = 1.0) -> list[str]:
@@ -120,25 +109,6 @@ def list_displaced_parameters(base: Fit, fit: Fit, *, least: float = 1.0) -> lis
     """
     driven = set(fit.at_bound) - set(base.at_bound)
     return sorted(n for n in driven if n in base.model.parameters and _is_there(base, n, least))
-
-
-def displaces(base: Fit, fit: Fit, *, least: float) -> bool:
-    """Whether a fit drives an effect of the base to its absence.
-
-    An effect of several elements is there as long as one of them is.
-
-    least: as in `list_displaced_parameters`
-    """
-    for name in list_displaced_parameters(base, fit, least=least):
-        place, *of_effect = name.split(".")
-        if len(of_effect) == 1:  # of the body itself
-            return True
-        effect = of_effect[0]
-        strengths = base.model.body(place).effect(effect).absent
-        ended = {f"{place}.{effect}.{n}" for n in strengths} <= set(fit.at_bound)
-        if len(strengths) == 1 or ended:
-            return True
-    return False
 
 
 def _is_there(base: Fit, name: str, least: float) -> bool:
@@ -157,9 +127,7 @@ def _is_there(base: Fit, name: str, least: float) -> bool:
     )
 
 
-def find_superfluous_effect(
-    base: Fit, fit: Fit, candidate: Candidate, *, criteria: Criteria = CRITERIA
-) -> Candidate | None:
+def find_superfluous_effect(base: Fit, fit: Fit, candidate: Candidate) -> Candidate | None:
     """The one effect of the base that a candidate at its place makes superfluous.
 
     The strength of this effect surely differed from zero, and beside the candidate it lies at its
@@ -178,7 +146,7 @@ def find_superfluous_effect(
         ):
             ended.append(effect)
         elif all(
-            criteria.surely * base.model.parameters[n].stderr < base.model.from_absence(n)
+            CRITERIA.significance * base.model.parameters[n].stderr < base.model.from_absence(n)
             and fit.model.parameters[n].stderr >= fit.model.from_absence(n)
             for n in strengths
         ):
@@ -187,7 +155,7 @@ def find_superfluous_effect(
     if len(superfluous) != 1:
         return None
     start = f"{candidate.at}.{superfluous[0].name}."
-    sure = list_displaced_parameters(base, fit, least=criteria.close)
+    sure = list_displaced_parameters(base, fit, least=CRITERIA.indistinguishable)
     left = [n for n in sure if not n.startswith(start)]
     return None if left else Candidate(superfluous[0], candidate.at)
 
@@ -200,13 +168,13 @@ def _is_near_absence(fit: Fit, name: str, absent: float) -> bool:
     return absent == (declared.lower if near_lower else declared.upper)
 
 
-def worth_pursuing(base: Fit, floor: NoiseFloor, *, criteria: Criteria = CRITERIA) -> float:
+def worth_pursuing(base: Fit, floor: NoiseFloor) -> float:
     """Predicted gain, as a share of the base's squares, from which a search continues.
 
     The floor is never above a candidate's error. So if the base leaves little more than its floor,
     a candidate is better only if it removes of_floor / (1 + of_floor) of the squares. A start whose
     first step promises less than a third of that is not followed.
     """
-    least = criteria.of_floor / (1.0 + criteria.of_floor)
-    only_noise = criteria.of_floor * floor.value**2 >= least * base.check_error**2
-    return least / 3.0 if only_noise else criteria.worth
+    least = CRITERIA.of_floor / (1.0 + CRITERIA.of_floor)
+    only_noise = CRITERIA.of_floor * floor.value**2 >= least * base.check_error**2
+    return least / 3.0 if only_noise else CRITERIA.worth

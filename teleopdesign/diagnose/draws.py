@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -22,18 +23,13 @@ from .cores import map_on_cores
 from .fit import Fit, fit_squares, free_parameters
 from .linear_start import span_of
 from .search import Base, estimate_best_start, is_rugged
-from .search_plan import PLAN, SearchPlan
-from .stated import has_moved, reset_to_stated
-from .without_derivatives import minimise_nearby
+from .search_plan import PLAN
 
 
 def search_among_draws(
     attempts: Sequence[tuple[Candidate, Fit]],
     base: Base,
     prepared: Prepared,
-    stated: Model | None = None,
-    *,
-    plan: SearchPlan = PLAN,
 ) -> list[tuple[Candidate, Fit]]:
     """The attempts of a ranking; where none explains the records, gaps start from draws, too.
 
@@ -49,12 +45,12 @@ def search_among_draws(
         if not is_rugged(candidate.effect) or candidate.key in fit.model.absent:
             return attempt
         new = base.coarse.model.with_effect(candidate.effect, at=candidate.at)
-        starts = best_draws(new, prepared.coarse, base.coarse, stated, plan=plan)
-        best = estimate_best_start(starts, [candidate.key], prepared)
+        starts = best_draws(new, prepared.coarse, base.coarse)
+        best = estimate_best_start(starts, prepared)
         return candidate, min((fit, best), key=order)
 
     least = min((fit_squares(fit) for _, fit in attempts), default=0.0)
-    if least < plan.unexplained * fit_squares(base.fit):
+    if least < PLAN.unexplained * fit_squares(base.fit):
         return list(attempts)
     return map_on_cores(search, attempts)
 
@@ -63,35 +59,25 @@ def best_draws(
     model: Model,
     prepared: Prepared,
     base: Fit,
-    stated: Model | None = None,
-    *,
-    plan: SearchPlan = PLAN,
 ) -> list[Model]:
     """The best few starts of the absent effects of a model, among draws of their free parameters.
 
     returns: the best draws, and the values near them that leave less; the model itself where no
         parameter is free
     base: the fit of the model without these effects, on the same samples
-    stated: the model as its user gave it; where the base is far from it, every second draw is made
-        beside its values
     """
-    names, ranges = _ranges_of(model, prepared, plan)
+    names, ranges = _ranges_of(model, prepared)
     if not names:
         return [model]
     places = {place for _, place in model.absent}
     squares = _Squares(prepared, base, {model.holder(place) for place in places})
-    beside = [model]
-    if stated is not None and has_moved(base, stated):
-        for place in places:
-            model = reset_to_stated(model, stated, place)
-        beside.append(model)
     draws = []
-    for i, point in enumerate(_spread_evenly(plan.draws, len(names))):
-        around, x = beside[i % len(beside)], ranges[0] + point * (ranges[1] - ranges[0])
-        draws.append((squares.of(_with_logarithms(around, names, x)), i, around, x))
-    best = sorted(draws, key=lambda draw: draw[:2])[: plan.draws_kept]
-    improved = [_improve(around, names, x, squares, plan) for _, _, around, x in best]
-    return [*(_with_logarithms(around, names, x) for _, _, around, x in best), *improved]
+    for i, point in enumerate(_spread_evenly(PLAN.draws, len(names))):
+        x = ranges[0] + point * (ranges[1] - ranges[0])
+        draws.append((squares.of(_with_logarithms(model, names, x)), i, x))
+    best = sorted(draws, key=lambda draw: draw[:2])[: PLAN.draws_kept]
+    improved = [_improve(model, names, x, squares) for _, _, x in best]
+    return [*(_with_logarithms(model, names, x) for _, _, x in best), *improved]
 
 
 class _Squares:
@@ -116,9 +102,7 @@ class _Squares:
         return float(left @ left)
 
 
-def _ranges_of(
-    model: Model, prepared: Prepared, plan: SearchPlan
-) -> tuple[list[str], tuple[Array, Array]]:
+def _ranges_of(model: Model, prepared: Prepared) -> tuple[list[str], tuple[Array, Array]]:
     """Names of the parameters to draw, and logarithms of their least and largest values.
 
     The ranges are those of the usual starts and beyond; of an essential parameter, such as the
@@ -134,10 +118,10 @@ def _ranges_of(
             low, high = min(values), max(values)
             if name not in free or low <= 0.0:  # a zero has no logarithm
                 continue
-            low = math.sqrt(low * high) if declared.search.essential else low / plan.draws_beyond
+            low = math.sqrt(low * high) if declared.search.essential else low / PLAN.draws_beyond
             names.append(name)
             least.append(max(low, declared.lower))
-            most.append(min(high * plan.draws_beyond, declared.upper))
+            most.append(min(high * PLAN.draws_beyond, declared.upper))
     return names, (np.log(least), np.log(most))
 
 
@@ -159,13 +143,16 @@ def _with_logarithms(model: Model, names: Sequence[str], logarithms: Array) -> M
     return model.with_values(values)
 
 
-def _improve(
-    around: Model, names: Sequence[str], x: Array, squares: _Squares, plan: SearchPlan
-) -> Model:
-    """The model at the best values near a draw."""
-    best = minimise_nearby(
-        lambda y: squares.of(_with_logarithms(around, names, y)),
+def _improve(model: Model, names: Sequence[str], x: Array, squares: _Squares) -> Model:
+    """The model at the best values near a draw, by the simplex of Nelder and Mead (1965)."""
+    from scipy.optimize import minimize  # takes half a second: imported only for a gap or a gear
+
+    corners = np.vstack([x, x + PLAN.simplex * np.eye(len(x))])
+    options: Any = {"maxfev": PLAN.draw_evaluations, "initial_simplex": corners}
+    best = minimize(
+        lambda y: squares.of(_with_logarithms(model, names, y)),
         x,
-        evaluations=plan.draw_evaluations,
+        method="Nelder-Mead",
+        options=options,
     )
-    return _with_logarithms(around, names, best)
+    return _with_logarithms(model, names, np.asarray(best.x))

@@ -37,14 +37,12 @@ class AtCommand:
     error: rms residual over rms measured force, both over the rows that are not blind; NaN: there
         are none
     blind: share of blind samples among those where the body slides
-    weak: whether an actuator cannot deliver the force that its model needs to slide, at any command
     """
 
     residual: tuple[Array, ...]
     sighted: tuple[NDArray[np.bool_], ...]
     error: float
     blind: float
-    weak: bool
 
 
 def refer_to_command(
@@ -85,7 +83,6 @@ def refer_to_command(
         tuple(sighted),
         float(np.sqrt(left / whole)) if whole > 0.0 else float("nan"),
         blind_share(command_errors, [s.motion for s in stretches]) if stretches else 0.0,
-        any(one.weak for one in command_errors),
     )
 
 
@@ -93,7 +90,7 @@ def _map_back(body: Body, motion: Motion, along: Residual) -> ResidualAtCommand:
     if is_between(body):
         return residual_at_command(body, motion, along)
     none = np.zeros(len(motion.time), dtype=bool)
-    return ResidualAtCommand(along.residual.value, none, motion.interaction, False)
+    return ResidualAtCommand(along.residual.value, none, motion.interaction)
 
 
 def _scale_to_command(

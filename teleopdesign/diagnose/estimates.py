@@ -6,6 +6,7 @@ from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .adequacy import is_adequate, limit_noise_floor
+from .criteria import CRITERIA
 from .effort import EFFORTS
 from .evidence import check_squares
 from .fit import Fit, estimate, fit_squares
@@ -52,12 +53,11 @@ def correct_fit(search: LadderSearch, fit: Fit, floor: NoiseFloor) -> Fit:
     The standard errors are widened too where the corrected fit leaves clearly more
     (`Criteria.of_floor`). Then the simulated readings do not describe the recorded ones.
     """
-    criteria = search.criteria
     fit = _with_parts_in_order(fit, search.prepared)
-    most = (1.0 + criteria.of_floor) * check_squares(fit)
+    most = (1.0 + CRITERIA.of_floor) * check_squares(fit)
 
     def leaves_noise(other: Fit) -> bool:
-        return is_adequate(other, floor, criteria=criteria) and check_squares(other) <= most
+        return is_adequate(other, floor) and check_squares(other) <= most
 
     return with_reading_error(fit, search.prepared, search.generator(), adequate=leaves_noise)
 

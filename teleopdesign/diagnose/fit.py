@@ -29,14 +29,13 @@ class CommandError(ByValue):
     """Residual of a model on the check records, as an error at the command.
 
     residual: on the rows of `Fit.check_residual`;  sighted: the rows that are not blind
-    error, blind, weak: as in `AtCommand`
+    error, blind: as in `AtCommand`
     """
 
     residual: Array
     sighted: NDArray[np.bool_]
     error: float
     blind: float
-    weak: bool
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -229,7 +228,7 @@ def command_error_of(
 def _join_command_errors(stretches: Sequence[Stretch], error: AtCommand) -> CommandError:
     sighted = np.concatenate(error.sighted) if error.sighted else np.zeros(0, dtype=bool)
     residual = weigh_residuals(stretches, error.residual)
-    return CommandError(residual, sighted, error.error, error.blind, error.weak)
+    return CommandError(residual, sighted, error.error, error.blind)
 
 
 def _fit_held_out(
@@ -259,7 +258,6 @@ def _fit_held_out(
         tuple(t for one in command_errors for t in one.sighted),
         float(np.sqrt(at_commands / whole)),
         float(np.mean([one.blind for one in command_errors])),
-        any(one.weak for one in command_errors),
     )
     return tuple(held), parts, float(np.sqrt(squares / whole)), _join_command_errors(held, together)
 

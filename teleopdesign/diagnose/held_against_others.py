@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import takewhile
 
+from .criteria import CRITERIA
 from .decision import is_better
 from .ladder_state import look
 from .noise_floor import noise_floor
@@ -50,7 +51,7 @@ def hold_against_others(
             break
         # of two effects that mask each other only the second helps, when both are in the model
         before, after = longer[-1].fit.fits[joint.name], fit.fits[joint.name]
-        if is_better(before, after, joint.state.floor, criteria=joint.search.criteria):
+        if is_better(before, after, joint.state.floor):
             longer, waiting, kept = [*longer, *waiting], [], i + 1
     if waiting:
         joint = _cut_ladder(joint, kept, waiting, why or NO_HELP)
@@ -74,17 +75,17 @@ def refusal(joint: PartSearch, before: PartsFit, after: PartsFit) -> str:
     """
     if after.check_error > before.check_error:
         return NO_HELP
-    records, name, criteria = joint.search.prepared, joint.name, joint.search.criteria
+    records, name = joint.search.prepared, joint.name
     sensors, there = (
         noise_floor(fit.fits[name].model, records, joint.search.generator()).drawn ** 2
         for fit in (before, after)
     )
-    kept = 1.0 - criteria.relevant
+    kept = 1.0 - CRITERIA.relative_improvement
     if there >= kept * sensors:
         return ""
     left, leaves = (fit.check_errors[name] ** 2 for fit in (before, after))
-    of_readings = sensors > 0.0 and is_of_readings((left / sensors) ** 0.5, criteria)
-    most = criteria.weakened**2 if of_readings else kept
+    of_readings = sensors > 0.0 and is_of_readings((left / sensors) ** 0.5)
+    most = CRITERIA.weakened**2 if of_readings else kept
     explains = leaves * sensors <= most * there * left
     return "" if explains else NO_MORE_THAN_NOISE
 
@@ -97,10 +98,7 @@ def _cut_ladder(joint: PartSearch, kept: int, refused: Sequence[PartsRung], why:
     state = joint.state
     aside = [
         SetAside(
-            r.added,
-            r.fit.check_errors[joint.name],
-            why,
-            of_readings=why == NO_MORE_THAN_NOISE,
+            r.added, r.fit.check_errors[joint.name], why, of_readings=why == NO_MORE_THAN_NOISE
         )
         for r in refused
         if r.added is not None

@@ -15,7 +15,6 @@ from ..model import Model
 from .adequacy import is_noise, limit_noise_floor
 from .candidates import Candidate
 from .clock import with_late_hand, with_late_starts, with_paying_shift
-from .criteria import CRITERIA, Criteria
 from .decision import is_supported, worth_pursuing
 from .fit import Fit
 from .noise_floor import NoiseFloor, noise_floor
@@ -43,7 +42,6 @@ class LadderSearch:
     prepared: Prepared
     stated: Model
     seed: int = 0
-    criteria: Criteria = CRITERIA
     plan: SearchPlan = PLAN
     progress: Callable[[str], None] = lambda _: None
 
@@ -60,23 +58,18 @@ class LadderSearch:
         body: str | None = None,
         worth: float | None = None,
         widely: bool = False,
-        misled: bool = True,
     ) -> Ranking:
         """`rank_candidates` on top of a fit.
 
         step: number of the rung that is searched
-        misled: whether a missing effect may have led the fit's values astray: candidates then start
-            from the user's values too
         """
         return rank_candidates(
             base,
             self.prepared,
             among=among,
             body=body,
-            stated=self.stated if misled else None,
             worth=worth,
             widely=widely,
-            criteria=self.criteria,
             progress=lambda line: self.progress(line.within(f"step {step}")),
         )
 
@@ -91,9 +84,8 @@ class LadderState:
     floor: noise floor of the last rung, at most the error that the records themselves leave
     ranking: all candidates beside the last rung;  tone: the best external tone in its residual
     supported: candidates that the records support, in the order of the ranking
-    set_aside: accepted effects that the final errors do not support: none is added again
-    barred: supported effects that explain nothing: other values of the model do as much, or the
-        effect only weakens errors of the readings. None is added again
+    set_aside: effects that are not added again: the final errors did not support them, other values
+        of the model explain as much, or they only weaken errors of the readings
     visited: effects of all earlier models: no move leads to such a set again
     """
 
@@ -103,7 +95,6 @@ class LadderState:
     tone: Tone
     supported: tuple[Ranked, ...]
     set_aside: tuple[SetAside, ...] = ()
-    barred: tuple[SetAside, ...] = ()
     visited: frozenset[frozenset[tuple[str, str]]] = frozenset()
 
     @property
@@ -114,13 +105,12 @@ class LadderState:
     @property
     def gone(self) -> frozenset[tuple[str, str]]:
         """Effects, with their places, that are not added again."""
-        return frozenset(one.candidate.key for one in (*self.set_aside, *self.barred))
+        return frozenset(one.candidate.key for one in self.set_aside)
 
     @property
     def weakening(self) -> frozenset[tuple[str, str]]:
         """Effects, with their places, that were removed because they only weaken reading errors."""
-        removed = (*self.set_aside, *self.barred)
-        return frozenset(one.candidate.key for one in removed if one.of_readings)
+        return frozenset(one.candidate.key for one in self.set_aside if one.of_readings)
 
     def with_floor_limited(self) -> LadderState:
         """The state with the noise floor that its candidates allow, without `weakening`."""
@@ -196,14 +186,14 @@ def look(
     Where a low-pass of the hand's force sensor explains more than every effect and every external
     tone, the rung is fitted with this low-pass, and all candidates are ranked again.
     """
-    prepared, criteria = search.prepared, search.criteria
+    prepared = search.prepared
     here = with_paying_shift(rungs[-1].fit, prepared)
     rungs = (*rungs[:-1], replace(rungs[-1], fit=here))
     drawn = noise_floor(here.model, prepared, search.generator())
-    worth = worth_pursuing(here, drawn, criteria=criteria)
-    more = not is_noise(here.check_error, drawn, criteria=criteria)
+    worth = worth_pursuing(here, drawn)
+    more = not is_noise(here.check_error, drawn)
     widely = more and search.plan.draws > 0
-    ranking = search.rank(here, step=len(rungs), worth=worth, widely=widely, misled=more)
+    ranking = search.rank(here, step=len(rungs), worth=worth, widely=widely)
     weakening = () if before is None else before.weakening
     floor = limit_noise_floor(drawn, here, ranking, weakening)
     tone = best_tone(here, prepared)
@@ -212,10 +202,10 @@ def look(
         r
         for r in ranking.ranked
         if r.candidate.key not in gone
-        and is_supported(here, r, floor, criteria=criteria)
+        and is_supported(here, r, floor)
         and (tone.is_beaten_by(r.fit) or depends_on_time(r.candidate.effect))
     )
-    late = with_late_hand(here, supported, floor, prepared, criteria=criteria)
+    late = with_late_hand(here, supported, floor, prepared)
     if late is not None and tone.is_beaten_by(late):
         # a late log is no effect: all effects are ranked again with it
         return look(search, (*rungs[:-1], replace(rungs[-1], fit=late)), before)

@@ -13,6 +13,7 @@ from dataclasses import replace
 
 from .adequacy import is_adequate
 from .candidates import Candidate, list_look_alikes
+from .criteria import CRITERIA
 from .decision import is_better, is_supported
 from .evidence import check_squares, whole_score
 from .fit import Fit, fit_squares
@@ -40,7 +41,7 @@ def add(search: LadderSearch, state: LadderState) -> LadderState | None:
     """
     supported = list(state.supported)
     while supported:
-        best = select_simplest(supported, criteria=search.criteria)
+        best = select_simplest(supported)
         moved = _add_candidate(search, state, best)
         if moved is not None and moved.effects not in state.visited:
             return _without_superfluous(search, state, moved)
@@ -49,9 +50,8 @@ def add(search: LadderSearch, state: LadderState) -> LadderState | None:
 
 
 def _add_candidate(search: LadderSearch, state: LadderState, best: Ranked) -> LadderState | None:
-    criteria = search.criteria
-    alternatives = alternatives_of(best, state.ranking, state.fit, state.floor, criteria=criteria)
-    noise = is_adequate(state.fit, state.floor, criteria=criteria)
+    alternatives = alternatives_of(best, state.ranking, state.fit, state.floor)
+    noise = is_adequate(state.fit, state.floor)
     rung = Rung(
         best.candidate,
         best.fit,
@@ -83,7 +83,7 @@ def add_two(search: LadderSearch, state: LadderState) -> LadderState | None:
     Each of two effects may mask the other, so that neither is supported alone. The best candidates
     are followed (`SearchPlan.beam`), and all candidates at their body are ranked again beside each.
     """
-    if state.step > 1 or is_adequate(state.fit, state.floor, criteria=search.criteria):
+    if state.step > 1 or is_adequate(state.fit, state.floor):
         return None
     first = [
         r
@@ -104,7 +104,7 @@ def _best_beside(
     search: LadderSearch, state: LadderState, first: Ranked
 ) -> tuple[Rung, ...] | None:
     """The ladder with a candidate and the best one beside it; None where both are not needed."""
-    here, floor, criteria = state.fit, state.floor, search.criteria
+    here, floor = state.fit, state.floor
     # bodies do not act on each other along measured motions: effects of two never mask another
     body = here.model.holder(first.candidate.at)
     beside = search.rank(first.fit, step=state.step, body=body)
@@ -114,7 +114,7 @@ def _best_beside(
             for r in beside.ranked
             if r.candidate.key not in state.gone
             and r.instead_of != first.candidate
-            and is_supported(first.fit, r, floor, criteria=criteria)
+            and is_supported(first.fit, r, floor)
         ),
         None,
     )
@@ -125,14 +125,14 @@ def _best_beside(
             first.candidate,
             first.fit,
             state.ranking,
-            look_alikes_of(first, state.ranking, criteria=criteria),
+            look_alikes_of(first, state.ranking),
             replaced=make_replaced(first, here.model),
         ),
         Rung(
             second.candidate,
             second.fit,
             beside,
-            alternatives_of(second, beside, first.fit, floor, criteria=criteria),
+            alternatives_of(second, beside, first.fit, floor),
             replaced=make_replaced(second, first.fit.model),
         ),
     )
@@ -143,16 +143,16 @@ def _best_beside(
 
 def _needs_both(search: LadderSearch, state: LadderState, pair: tuple[Rung, Rung]) -> bool:
     """Whether two effects together explain most of the missing force and both are needed."""
-    here, both, floor, criteria = state.fit, pair[-1].fit, state.floor, search.criteria
+    here, both, floor = state.fit, pair[-1].fit, state.floor
     if (
-        not is_better(here, both, floor, criteria=criteria)
-        or explained_share(here, both, floor) < criteria.mostly
+        not is_better(here, both, floor)
+        or explained_share(here, both, floor) < CRITERIA.mostly
         or not state.tone.is_beaten_by(both)
     ):
         return False
     without = estimate_without(both.model, pair[0], search.prepared)
     # None: the second effect needs the first
-    return without is None or is_better(without, both, floor, criteria=criteria)
+    return without is None or is_better(without, both, floor)
 
 
 def _without_superfluous(
@@ -167,7 +167,7 @@ def remove(search: LadderSearch, state: LadderState) -> LadderState | None:
     """Remove one effect that later effects made superfluous, and fit the others again."""
     for rung in state.rungs[1:-1]:
         without = estimate_without(state.fit.model, rung, search.prepared)
-        if without is None or is_better(without, state.fit, state.floor, criteria=search.criteria):
+        if without is None or is_better(without, state.fit, state.floor):
             continue
         return _in_order(search, state, [r for r in state.rungs if r is not rung], without)
     return None
@@ -197,8 +197,7 @@ def swap(search: LadderSearch, state: LadderState) -> LadderState | None:
         supported = [
             r
             for r in ranking.ranked
-            if r.instead_of is None
-            and is_supported(without, r, state.floor, criteria=search.criteria)
+            if r.instead_of is None and is_supported(without, r, state.floor)
         ]
         new = _in_place(search, state, rung, preferred, replace(ranking, ranked=tuple(supported)))
         if new is None:
@@ -222,12 +221,11 @@ def _in_place(
     preferred: candidates that take the place where the records do not tell them from the effect
     supported: the effect, its alternatives and these, as far as the records support them
     """
-    criteria = search.criteria
     for r in supported.ranked:
-        if r.candidate in preferred and whole_score(r.fit, state.fit) < criteria.close:
+        if r.candidate in preferred and whole_score(r.fit, state.fit) < CRITERIA.indistinguishable:
             return Rung(r.candidate, r.fit, supported)
     equal = [r for r in supported.ranked if r.candidate not in preferred]
-    equal = select_equals(equal, criteria=criteria)
+    equal = select_equals(equal)
     if not 0 < len(equal) < 1 + len(rung.alternatives):
         return None
     kept = next((r for r in equal if r.candidate == rung.added), equal[0])
@@ -243,7 +241,7 @@ def _list_preferred(
     None where the file of the effect says that the motion tells it from them.
     """
     alike = [c for c in list_look_alikes(added, state.fit.model) if c.key not in state.gone]
-    if is_adequate(state.fit, state.floor, criteria=search.criteria):
+    if is_adequate(state.fit, state.floor):
         alike = [c for c in alike if c.effect.commoner == added.effect.name]
         alike = [c for c in alike if simplicity(c) < simplicity(added)]
     else:

@@ -17,7 +17,7 @@ from ..measurement.bandwidth import LOWEST
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .adequacy import Errors
-from .criteria import CRITERIA, Criteria
+from .criteria import CRITERIA
 from .diagnosis import Diagnosis
 from .fit import estimate
 
@@ -44,9 +44,7 @@ class NarrowerBand:
         )
 
 
-def narrower_band(
-    model: Model, prepared: Prepared, *, criteria: Criteria = CRITERIA
-) -> NarrowerBand | None:
+def narrower_band(model: Model, prepared: Prepared) -> NarrowerBand | None:
     """The widest narrower band in which a model leaves far less than in the band of the comparison.
 
     A half and a quarter of the bandwidth are compared.
@@ -64,15 +62,13 @@ def narrower_band(
         except ExperimentError:
             return best
         there = _error(estimate(model, narrower))
-        if not criteria.falls * there < here:
+        if not CRITERIA.falls * there < here:
             break
         best = NarrowerBand(part * chosen, there, chosen, here)
     return best
 
 
-def narrower_to_search(
-    diagnosis: Diagnosis, *, criteria: Criteria = CRITERIA
-) -> NarrowerBand | None:
+def narrower_to_search(diagnosis: Diagnosis) -> NarrowerBand | None:
     """The band for a second search, where the first search leaves more than noise.
 
     returns: None where only noise is left, or the user's model leaves no less in a narrower band;
@@ -80,16 +76,16 @@ def narrower_to_search(
     """
     if diagnosis.joints or not diagnosis.more_is_missing:
         return None
-    return narrower_band(diagnosis.before.model, diagnosis.prepared, criteria=criteria)
+    return narrower_band(diagnosis.before.model, diagnosis.prepared)
 
 
-def choose_band(wide: Diagnosis, narrow: Diagnosis, *, criteria: Criteria = CRITERIA) -> Diagnosis:
+def choose_band(wide: Diagnosis, narrow: Diagnosis) -> Diagnosis:
     """The diagnosis in the narrower band if its final model leaves far less; else the first one.
 
     Where the final model explains the high frequencies, such as a resonance, its error is small in
     the wide band too.
     """
-    if not criteria.falls * _error(narrow.after) < _error(wide.after):
+    if not CRITERIA.falls * _error(narrow.after) < _error(wide.after):
         return wide
     words = (
         f"all that is faster than {narrow.bandwidth:.3g} Hz: the final model of the "

@@ -1,8 +1,8 @@
 """Answers of earlier versions: their content in the keys of this version, as far as it goes.
 
 Versions before the models of each row were written hold the parameters of the final model alone.
-They state neither axes nor fixed parameters: these come from the experiment, else the axes follow
-from the units of the inertias, and only chosen parameters are fixed.
+They state neither axes nor fixed parameters: the axes follow from the units of the inertias, and
+what is fixed from the experiment; without one only chosen parameters are.
 """
 
 from __future__ import annotations
@@ -11,12 +11,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
-from ..base.codec import At, Error, Filled, Size, from_data
+from ..base.codec import Error, Filled, Size, from_data
 from ..base.errors import ExperimentError, quote
 from ..base.units import AXES, unit_of
 from ..blocks import CONTACT
-from ..effects import Effect, are_alike
-from ..measurement.bandwidth import bandwidth_of
+from ..effects import Effect
 from ..measurement.experiment import Experiment
 from ..measurement.logger_clock import CLOCK
 from ..model import Model
@@ -59,11 +58,6 @@ class _Shift:
 
 
 @dataclass(frozen=True)
-class _OfRecord:
-    record: str
-
-
-@dataclass(frozen=True)
 class _Answer:
     """What every version has written, and what is needed of it here."""
 
@@ -76,9 +70,6 @@ class _Answer:
     model_parameters: Mapping[str, _Parameter]
     record_shift: Mapping[str, _Shift] = field(default_factory=dict)
     check: str = ""
-    offsets: Annotated[tuple[_OfRecord, ...], At("own")] = ()
-    one_moment: _OfRecord | None = None
-    bandwidth: Annotated[float, At("bandwidth.value")] = float("nan")
 
 
 def upgrade_content(
@@ -98,16 +89,14 @@ def upgrade_content(
     old: _Answer = from_data(_Answer, content, at.rstrip("."), {}, whole=whole)
     new = {"noise_floor_source": "as the answer says", **content}
     if "models" not in content:
-        if experiment is not None and (differs := _difference(old, content, experiment)):
-            raise ExperimentError(
-                f"is not an answer to {experiment.folder.name} but to another experiment: {differs}"
-            )
+        if experiment is not None and "experiment" not in content:
+            _require_parameters_of(experiment, old, known)
         last = _bodies(old, experiment, known)
         new["models"] = {"ladder": [*([None] * (len(old.ladder) - 1)), last]}
         new["bandwidth"] = content.get("bandwidth", {"value": None})
     new.setdefault("held_out", old.check == "blocks of fit")
     new["floor"] = content.get("floor", {"drawn": old.noise_floor})
-    new["ladder"] = [_row(row, i, old, known) for i, row in enumerate(content["ladder"])]
+    new["ladder"] = [_row(row, i, old) for i, row in enumerate(content["ladder"])]
     new["record_shift"] = {
         log: _shift(log, old.record_shift[log]) | data
         for log, data in content.get("record_shift", {}).items()
@@ -125,9 +114,7 @@ def upgrade_content(
     return new
 
 
-def _row(
-    row: dict[str, Any], number: int, old: _Answer, known: Mapping[str, Effect]
-) -> dict[str, Any]:
+def _row(row: dict[str, Any], number: int, old: _Answer) -> dict[str, Any]:
     """A row of the ladder with its look-alikes, and whether its effect is named.
 
     Where no error at the command was written, no effect lay between command and force.
@@ -136,16 +123,9 @@ def _row(
     row = {"check_error_at_command": row["check_error"], **row}
     if added is None:
         return row
-    groups = (g for g in old.indistinguishable if g[:1] == (added,) and not _is_named(g, known))
-    alike = [{"effect": one.effect, "at": one.at} for one in next(groups, ())[1:]]
-    return {"alternatives": alike, "named": added in old.missing, **row}
-
-
-def _is_named(group: tuple[Place, ...], known: Mapping[str, Effect]) -> bool:
-    """Whether a group is a pair that leaves no verdict open: one of the two is the commoner."""
-    effects = [known.get(place.effect) for place in group]
-    one, other = effects[0], effects[-1]
-    return len(group) == 2 and one is not None and other is not None and are_alike(one, other)
+    alike = next((group[1:] for group in old.indistinguishable if group[:1] == (added,)), ())
+    places = [{"effect": one.effect, "at": one.at} for one in alike]
+    return {"alternatives": places, "named": added in old.missing, **row}
 
 
 def _shift(log: str, old: _Shift) -> dict[str, Any]:
@@ -169,30 +149,28 @@ def _bodies(
     """
     parameters = _parameters(old)
     stated = {} if experiment is None else Model.from_experiment(experiment, known).parameters
-    fixed = {name for name, value in stated.items() if value.fixed}
-    places = list(dict.fromkeys(name.partition(".")[0] for name in parameters))
-    bodies = [place for place in places if place != CONTACT.name]
     tables: dict[str, Any] = {}
-    for place in bodies:
-        name = f"{place}.inertia"
-        if name not in parameters:
-            raise ExperimentError(f'model_parameters: no key "{name}"')
-        axis = experiment.axis(place) if experiment else _axis_of(name, parameters[name].unit)
-        inertia = _value(parameters[name], name in fixed)
-        tables[place] = {"axis": axis, "inertia": inertia, "effects": {}}
     for name, parameter in parameters.items():
         place, _, local_name = name.partition(".")
-        if local_name == "inertia" or not bodies:
-            continue
         effect, _, key = local_name.rpartition(".")
+        holder = place
         if place == CONTACT.name:
             effect = effect or place  # environment.stiffness belongs to the contact
-        if not effect:
+            holder = list(tables)[-1] if tables else place
+        if holder not in tables:
+            if (inertia := f"{holder}.inertia") not in parameters:
+                raise ExperimentError(f'model_parameters: no key "{inertia}"')
+            axis = _axis_of(inertia, parameters[inertia].unit)
+            tables[holder] = {"axis": axis, "effects": {}}
+        is_fixed = name in stated and stated[name].fixed
+        value = _value(parameter, is_fixed or _is_chosen(known.get(effect), key))
+        if local_name == "inertia":
+            tables[holder]["inertia"] = value
+        elif not effect:
             raise ExperimentError(f"model_parameters: no body has a {quote(name)}")
-        holder = bodies[-1] if place == CONTACT.name else place
-        row = tables[holder]["effects"].setdefault(effect, {})
-        if parameter.value == parameter.value:
-            row[key] = _value(parameter, name in fixed or _is_chosen(known.get(effect), key))
+        else:
+            row = tables[holder]["effects"].setdefault(effect, {})
+            row |= {key: value} if parameter.value == parameter.value else {}
     return tables
 
 
@@ -238,34 +216,18 @@ def _axis_of(name: str, unit: str) -> str:
     )
 
 
-def _difference(old: _Answer, content: Mapping[str, Any], experiment: Experiment) -> str | None:
-    """How an answer without a fingerprint contradicts this experiment; None where it does not."""
-    if "experiment" in content:
-        return None
-    places = dict.fromkeys(name.partition(".")[0] for name in old.model_parameters)
-    bodies = [place for place in places if place != CONTACT.name]
-    if bodies != list(experiment.bodies):
-        return f"bodies {', '.join(bodies) or 'none'}, found {', '.join(experiment.bodies)}"
-    for place in bodies:
-        unit, inertia = unit_of("inertia", experiment.axis(place)), f"{place}.inertia"
-        if inertia in old.model_parameters and old.model_parameters[inertia].unit != unit:
-            return f"{inertia} in {quote(old.model_parameters[inertia].unit)}, found {quote(unit)}"
-    stated = {place: set(body.effects) for place, body in experiment.bodies.items()}
-    touched = experiment.environment
-    stated[CONTACT.name] = set() if touched is None else set(touched.effects)
-    for name in old.model_parameters:
-        place, _, local_name = name.partition(".")
-        effect = local_name.partition(".")[0] if "." in local_name else ""
-        if effect and effect not in stated[place]:
-            return f"a model with {effect} at {place}, found {', '.join(stated[place]) or 'none'}"
-    check = "records" if experiment.check_records else "blocks of fit"
-    if old.check not in ("", check):
-        return f"check by {old.check}, found {check}"
-    files = {r.file for r in experiment.records}
-    named_records = [*old.offsets, *([old.one_moment] if old.one_moment else [])]
-    if others := [one.record for one in named_records if one.record not in files]:
-        return f"a record {quote(others[0])}, found {', '.join(sorted(files))}"
-    stated_band = experiment.bandwidth is not None and old.bandwidth == old.bandwidth
-    if stated_band and old.bandwidth != (now := bandwidth_of(experiment)):
-        return f"bandwidth {old.bandwidth:g} Hz, found {now:g} Hz"
-    return None
+def _require_parameters_of(
+    experiment: Experiment, old: _Answer, known: Mapping[str, Effect]
+) -> None:
+    """Refuse the answer to an experiment whose model has other parameters.
+
+    raises ExperimentError: with the first one that differs
+    """
+    model = Model.from_experiment(experiment, known)
+    units = {name: model.unit(name) for name in model.parameters}
+    for name, one in old.model_parameters.items():
+        if units.get(name) != one.unit:
+            raise ExperimentError(
+                f"is not an answer to {experiment.folder.name} but to another experiment: {name} "
+                f"in {quote(one.unit)}, found {quote(units.get(name, 'no such parameter'))}"
+            )

@@ -20,7 +20,7 @@ def open_questions(end: LadderEnd) -> tuple[OpenQuestion, ...]:
     effect that would be added next, where the verdict is undecided or more than noise is left.
     """
     questions = [_question_of_rung(end, rung) for rung in end.rungs if rung.added is not None]
-    if end.verdict == "undecided" or _is_short(end):
+    if end.verdict == "undecided" or end.more_is_missing:
         questions.append(OpenQuestion(None, _rivals(possible_next(end))))
     return tuple(q for q in questions if q.others)
 
@@ -31,11 +31,6 @@ def _rivals(ranked: list[Ranked]) -> tuple[OpenRival, ...]:
         OpenRival(r.candidate, r.fit.model, finite(r.fit.check_error))
         for r in ranked[: PLAN.rivals - 1]
     )
-
-
-def _is_short(end: LadderEnd) -> bool:
-    """Whether more than noise is surely left."""
-    return end.more_is_missing
 
 
 def _question_of_rung(end: LadderEnd, rung: Rung) -> OpenQuestion:
@@ -55,7 +50,7 @@ def _is_open(ranked: Ranked, rung: Rung, end: LadderEnd) -> bool:
     assert rung.ranking is not None and rung.added is not None
     added = next(r for r in rung.ranking.ranked if r.candidate.key == rung.added.key)
     more = ranked.fit.check_error**2 - added.fit.check_error**2
-    near = more < (CRITERIA.open * end.floor.value) ** 2
+    near = more < end.floor.value**2
     return near and is_supported(rung.ranking.base, ranked, end.floor)
 
 
@@ -66,6 +61,11 @@ def possible_next(end: LadderEnd) -> list[Ranked]:
     return [r for r in helpful if not objection(last.base, r, end.floor)]
 
 
+def _clearly_less(end: LadderEnd) -> float:
+    """The squared check error below which a candidate leaves less than the final model."""
+    return (1.0 - CRITERIA.relative_improvement) * end.after.check_error**2
+
+
 def nearest(end: LadderEnd) -> Nearest | None:
     """The candidate with the least error where none is supported; None: none helps.
 
@@ -73,8 +73,7 @@ def nearest(end: LadderEnd) -> Nearest | None:
     """
     listed = [c for r in end.rungs if r.alternatives for c in (r.added, *r.alternatives)]
     best = next((r for r in possible_next(end) if r.candidate not in listed), None)
-    least = (1.0 - CRITERIA.relevant) * end.after.check_error**2
-    if best is None or not best.fit.check_error**2 < least:
+    if best is None or not best.fit.check_error**2 < _clearly_less(end):
         return None
     return Nearest(
         best.candidate, finite(best.fit.check_error), end.reason_set_aside(best.candidate.key)
@@ -93,7 +92,7 @@ def not_accepted(end: LadderEnd) -> tuple[NotAccepted, ...]:
 def _list_refused(end: LadderEnd) -> Iterator[NotAccepted]:
     for r in end.last.ranked:
         why = helps_but_is_barred(end.last.base, r, end.floor)
-        if why and r.fit.check_error < (1.0 - CRITERIA.near) * end.after.check_error:
+        if why and r.fit.check_error**2 < _clearly_less(end):
             yield _state(r, "refused", why)
 
 

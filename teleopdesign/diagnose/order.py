@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from .candidates import Candidate
-from .criteria import CRITERIA, Criteria
+from .criteria import CRITERIA
 from .decision import is_supported
 from .evidence import check_squares, whole_score
 from .fit import Fit
@@ -27,58 +27,52 @@ def rank_key(ranked: Ranked) -> tuple[bool, float]:
     return not ranked.counts, float(f"{check_squares(ranked.fit):.6g}")
 
 
-def select_equals(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> list[Ranked]:
+def select_equals(supported: Sequence[Ranked]) -> list[Ranked]:
     """The supported candidates, in order, that explain the records as well as the best one."""
     best = supported[:1]
-    return [r for r in supported if r is best[0] or _is_equal(r, best[0], criteria)]
+    return [r for r in supported if r is best[0] or _is_equal(r, best[0])]
 
 
-def _is_equal(one: Ranked, best: Ranked, criteria: Criteria) -> bool:
+def _is_equal(one: Ranked, best: Ranked) -> bool:
     """Whether the records cannot distinguish a candidate from the best one."""
-    near = abs(one.fit.check_error - best.fit.check_error) < criteria.near * best.fit.check_error
-    return near and whole_score(one.fit, best.fit) < criteria.close
+    least = best.fit.check_error**2
+    differ = abs(one.fit.check_error**2 - least) >= CRITERIA.relative_improvement * least
+    return not differ and whole_score(one.fit, best.fit) < CRITERIA.indistinguishable
 
 
-def select_simplest(supported: Sequence[Ranked], *, criteria: Criteria = CRITERIA) -> Ranked:
+def select_simplest(supported: Sequence[Ranked]) -> Ranked:
     """The simplest supported candidate that explains the records as well as the best one.
 
     supported: in the order of the ranking
     A candidate that replaces an effect of the model is preferred only where it is better.
     """
-    equal = select_equals(supported, criteria=criteria)
+    equal = select_equals(supported)
     return min(equal, key=lambda r: (r.instead_of is not None, *simplicity(r.candidate)))
 
 
 def alternatives_of(
-    best: Ranked,
-    ranking: Ranking,
-    base: Fit,
-    floor: NoiseFloor,
-    *,
-    criteria: Criteria = CRITERIA,
+    best: Ranked, ranking: Ranking, base: Fit, floor: NoiseFloor
 ) -> tuple[Candidate, ...]:
     """Supported candidates that the records cannot distinguish from this one.
 
     Only candidates with as many necessary parameters count: one that needs more is no simpler
     explanation.
     """
-    supported = [r for r in ranking.ranked if is_supported(base, r, floor, criteria=criteria)]
+    supported = [r for r in ranking.ranked if is_supported(base, r, floor)]
     return tuple(
         r.candidate
-        for r in select_equals(supported, criteria=criteria)
+        for r in select_equals(supported)
         if r is not best and simplicity(r.candidate)[0] == simplicity(best.candidate)[0]
     )
 
 
-def look_alikes_of(
-    one: Ranked, ranking: Ranking, *, criteria: Criteria = CRITERIA
-) -> tuple[Candidate, ...]:
+def look_alikes_of(one: Ranked, ranking: Ranking) -> tuple[Candidate, ...]:
     """Candidates that explain as much as this one, whether or not it is the best, or supported."""
     parameters = simplicity(one.candidate)[0]
     return tuple(
         r.candidate
         for r in ranking.ranked
-        if r is not one and r.counts and _is_equal(r, one, criteria)
+        if r is not one and r.counts and _is_equal(r, one)
         if simplicity(r.candidate)[0] == parameters
     )
 

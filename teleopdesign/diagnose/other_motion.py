@@ -19,6 +19,7 @@ from ..effects import Effect
 from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
+from .criteria import CRITERIA
 from .fit import Fit
 from .linear_start import linear_starts
 from .parts import PreparedParts
@@ -87,11 +88,11 @@ def _asks(effect: Effect, model: Model, joint: str) -> bool:
 
 
 def undetermined_coupling(
-    rung: PartsRung, last: PartsFit, prepared: PreparedParts, *, relevant: float
+    rung: PartsRung, last: PartsFit, prepared: PreparedParts
 ) -> Undetermined | None:
     """A statement where the records do not determine the direction of an added coupling; else None.
 
-    last: the fit with all added effects;  relevant: part of the squares that counts as a difference
+    last: the fit with all added effects
     """
     added, other = rung.added, rung.follows
     if added is None or other is None:
@@ -102,7 +103,7 @@ def undetermined_coupling(
     models[added.at] = models[added.at].without_effect(added.effect.name, at=added.at)
     models[other] = models[other].with_effect(added.effect, at=other)
     turned = estimate_parts(models, with_other_motions(prepared, {other: added.at}))
-    if turned.check_error**2 > (1.0 + relevant) * last.check_error**2:
+    if turned.check_error**2 > (1.0 + CRITERIA.relative_improvement) * last.check_error**2:
         return None
     there = Candidate(added.effect, other)
     return Undetermined(

@@ -50,7 +50,10 @@ class Tone:
         """Whether a fit leaves less than the tone by more than chance."""
         if self.residual is None:
             return True
-        return gain_score(self.residual, fit.check_residual, fit.check_blocks) > CRITERIA.close
+        return (
+            gain_score(self.residual, fit.check_residual, fit.check_blocks)
+            > CRITERIA.indistinguishable
+        )
 
 
 def best_tone(fitted: Fit, prepared: Prepared) -> Tone:
@@ -76,7 +79,7 @@ def best_tone(fitted: Fit, prepared: Prepared) -> Tone:
                 for s, r in zip(check, after, strict=True)
             ]
             tones = [least, Tone(np.concatenate(left))]
-            if tones[-1].squares < (1 - CRITERIA.relevant) * whole:
+            if tones[-1].squares < (1 - CRITERIA.relative_improvement) * whole:
                 tones.append(Tone(_fit_beside_tone(fitted, prepared, body, frequency)))
             least = min(tones, key=lambda tone: tone.squares)
     return least

@@ -16,11 +16,10 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 from .climb import climb
 from .conclusion import conclude
-from .fit import Fit, fit_squares
+from .fit import Fit
 from .held_against_others import hold_against_others
 from .ladder_end import LadderEnd
 from .ladder_state import LadderSearch, begin, search_for
-from .moves import add
 from .other_motion import undetermined_coupling, with_other_motions
 from .part_search import (
     PartSearch,
@@ -127,9 +126,6 @@ def climb_parts(
             fresh = with_known(records, {n: x.state.fit for n, x in joints.items()}, beside, j)
             joints[j] = begin_part(j, here.search, fresh, here.state.fit.model, prepared)
             continue
-        astray = _astray(here)
-        if astray is not None:
-            here = _begin_joint_again(joints, astray, prepared, j)
         beside = with_other_motions(prepared, others_of(joints))
         joints[j], rungs = _climb_part(here, rungs, beside, report)
         waiting.remove(j)
@@ -164,45 +160,6 @@ def _climb_part(
             return replace(part, rungs=part.state.rungs), rungs
 
 
-def _astray(joint: PartSearch) -> Model | None:
-    """The model with the joint's first effect, if it removes most squares: the links were misled.
-
-    returns: None where it does not, or where no base parameters are estimated
-    """
-    if len(joint.state.rungs) > 1 or not joint.state.fit.model.links:
-        return None
-    moved = add(joint.search, joint.state)
-    if moved is None or fit_squares(moved.fit) > (1.0 - joint.search.plan.astray) * fit_squares(
-        joint.state.fit
-    ):
-        return None
-    return moved.fit.model
-
-
-def _begin_joint_again(
-    joints: dict[str, PartSearch], model: Model, prepared: PreparedParts, joint: str
-) -> PartSearch:
-    """A joint whose ladder starts anew, with the information on the links beside its first effect.
-
-    joints: those that wait get their models of these fits, in place;  model: from `_astray`
-    Before, the base parameters had to imitate that effect. Shifts of records that were held at zero
-    then are estimated again.
-    """
-    models = {n: x.state.fit.model.with_record_shift({}) for n, x in joints.items()}
-    beside = with_other_motions(prepared, others_of(joints))
-    arm = estimate_parts({**models, joint: model.with_record_shift({})}, beside)
-    for n, other in joints.items():
-        if n != joint and len(other.state.rungs) == 1:
-            rungs = [replace(other.state.rungs[0], fit=arm.fits[n])]
-            joints[n] = replace(other, state=other.state.with_rungs(rungs))
-    here = joints[joint]
-    records = {**arm.prepared, joint: here.search.prepared}
-    fresh = with_known(records, {**arm.fits, joint: here.state.fit}, beside, joint)
-    late = arm.fits[joint].model.record_shift
-    model = here.state.fit.model.with_record_shift(late)
-    return begin_part(joint, here.search, fresh, model, prepared)
-
-
 def conclude_parts(
     prepared: PreparedParts, joints: dict[str, PartSearch], rungs: tuple[PartsRung, ...]
 ) -> tuple[PreparedParts, tuple[PartsRung, ...], dict[str, LadderEnd]]:
@@ -219,8 +176,7 @@ def conclude_parts(
         if rung.added is None or rung.follows is None:
             continue
         at = rung.added.at
-        relevant = joints[at].search.criteria.relevant
-        coupling = undetermined_coupling(rung, last, prepared, relevant=relevant)
+        coupling = undetermined_coupling(rung, last, prepared)
         if coupling is not None:
             more = (*ends[at].undetermined, coupling)
             ends[at] = replace(ends[at], undetermined=more)

@@ -18,8 +18,8 @@ import numpy as np
 
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate
-from .criteria import CRITERIA, Criteria
-from .decision import displaces, helps_but_is_barred
+from .criteria import CRITERIA
+from .decision import helps_but_is_barred
 from .evidence import chance
 from .free_functions import Belief
 from .ladder_end import LadderEnd
@@ -55,20 +55,20 @@ class CandidateEvidence:
     from_noise: bool = False
     at_most: float = 1.0
 
-    def probability(self, *, criteria: Criteria = CRITERIA) -> float:
+    def probability(self) -> float:
         """Probability that the effect is missing, 0 to 1."""
         real = self.share * (1.0 - chance(self.ranked.score))
         if not np.isfinite(real):  # a model that runs away has no error: nothing speaks for it
             return 0.0
         if not (self.accepted or self.as_good):
-            return criteria.true_of_others * real * self.explained
+            return CRITERIA.true_of_others * real * self.explained
         trusted = 1.0
-        if self.left > criteria.adequate:
+        if self.left > CRITERIA.adequate:
             # more than noise is left: is the form of the effect right?
-            trusted = 0.0 if self.belief is None else self.belief.share**criteria.believing
+            trusted = 0.0 if self.belief is None else self.belief.share**CRITERIA.believing
         if self.from_noise:  # a true effect explains nearly all force above the noise
             trusted *= self.explained
-        return float(np.clip(criteria.true_of_accepted * real * trusted, 0.0, self.at_most))
+        return float(np.clip(CRITERIA.true_of_accepted * real * trusted, 0.0, self.at_most))
 
 
 def evidence_of(end: LadderEnd) -> list[CandidateEvidence]:
@@ -129,12 +129,12 @@ def _evidence_alone(end: LadderEnd) -> list[CandidateEvidence]:
     return evidence
 
 
-def probable(end: LadderEnd, *, criteria: Criteria = CRITERIA) -> tuple[Candidate, ...]:
+def probable(end: LadderEnd) -> tuple[Candidate, ...]:
     """The accepted effects that are at least as likely as not, in the order added."""
     likely = {
         one.ranked.candidate.key
         for one in evidence_of(end)
-        if one.accepted and one.probability(criteria=criteria) >= criteria.named
+        if one.accepted and one.probability() >= CRITERIA.named
     }
     return select_independent(end, likely)
 
@@ -159,8 +159,7 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     """Share of each candidate among those that the ranking cannot distinguish; they sum to one.
 
     The accepted effect shares with those as good, and with a rarer look-alike at its weight. A
-    candidate that drives an effect of the base to its absence has no share, nor has one that was
-    not accepted and drives any parameter to a bound.
+    candidate that was not accepted and drives a parameter to a bound has no share.
     returns: all zero where no candidate has a share
     """
     accepted = rung is not None and rung.added is not None
@@ -176,9 +175,7 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
     for r in ranking.ranked:
         driven = set(r.fit.at_bound) - bound
         # an accepted effect may have a parameter at its bound, because it was supported with it
-        least = CRITERIA.close
-        gone = displaces(ranking.base, r.fit, least=least) if accepted else bool(driven)
-        serious = r.counts and r.candidate.key in alike | rarer and not gone
+        serious = r.counts and r.candidate.key in alike | rarer and (accepted or not driven)
         weight = CRITERIA.rarer if r.candidate.key in rarer else 1.0
         weights[r.candidate.key] = (
             weight * math.exp(-0.5 * max(r.behind - first, 0.0) ** 2) if serious else 0.0

@@ -11,30 +11,20 @@ from dataclasses import replace
 
 from ..base.errors import ModelError
 from ..measurement.prepare import Prepared
-from ..model import Model
-from .candidate_fits import fit_each
+from .candidate_fits import ProgressLine, fit_each
 from .candidates import Candidate, bodies_with_measured_force, candidates
 from .cores import map_on_cores, one_thread_of_algebra
-from .criteria import CRITERIA, Criteria
+from .criteria import CRITERIA
 from .decision import find_superfluous_effect, lowers_check_squares, refusal
 from .draws import search_among_draws
 from .evidence import check_score, check_squares, whole_score
-from .fit import Fit, estimate, fit_squares, rough_fit
-from .identifiability import is_identifiable
+from .fit import Fit, estimate, fit_squares
+from .identifiability import OpenWidths, is_identifiable
 from .order import rank_key
 from .plausibility import implausible_effects
-from .progress import ProgressLine
 from .ranking import Ranked, Ranking
-from .search import base_of, from_stated, keep_absent
+from .search import base_of, keep_absent
 from .search_plan import PLAN
-from .width import OpenWidths
-
-
-def _is_part_of(small: Candidate, large: Candidate) -> bool:
-    """Whether the large effect has all parameters of the small one, at the same place, and more."""
-    ours, theirs = ({n: p.quantity for n, p in c.effect.parameters.items()} for c in (small, large))
-    alike = small.at == large.at and small.effect.role == large.effect.role
-    return alike and ours.items() < theirs.items()
 
 
 def _absent_if_it_runs_away(attempt: tuple[Candidate, Fit], base: Fit) -> tuple[Candidate, Fit]:
@@ -45,37 +35,13 @@ def _absent_if_it_runs_away(attempt: tuple[Candidate, Fit], base: Fit) -> tuple[
     return candidate, keep_absent(base.model.with_effect(candidate.effect, at=candidate.at), base)
 
 
-def _from_kin(
-    attempt: tuple[Candidate, Fit], attempts: Collection[tuple[Candidate, Fit]], prepared: Prepared
-) -> tuple[Candidate, Fit]:
-    """The fit, started again from a larger effect that contains this one and has a smaller error.
-
-    The larger effect may avoid a local minimum: a gap that closes leads to the compliance behind
-    it.
-    """
-    candidate, rough = attempt
-    kin = [(c, f) for c, f in attempts if _is_part_of(candidate, c)]
-    larger, kin_fit = min(kin, key=lambda cf: fit_squares(cf[1]), default=attempt)
-    if fit_squares(kin_fit) >= fit_squares(rough):
-        return attempt
-    (there, other) = (f"{c.at}.{c.effect.name}." for c in (candidate, larger))
-    values = {
-        n: kin_fit.model.parameters[n.replace(there, other, 1)].value
-        for n in rough.model.parameters
-    }
-    again = rough_fit(rough.model.with_values(values), prepared)
-    return candidate, min((rough, again), key=fit_squares)
-
-
 def _refine_candidate(
-    attempt: tuple[Candidate, Fit], worthless: float, prepared: Prepared, stated: Model | None
+    attempt: tuple[Candidate, Fit], worthless: float, prepared: Prepared
 ) -> tuple[Candidate, Fit]:
     """A fine fit for a candidate that is present and leaves at most `worthless` squares."""
     candidate, rough = attempt
     if (candidate.effect.name, candidate.at) in rough.model.absent:
         return attempt
-    if stated is not None:
-        rough = from_stated(rough, prepared, stated, candidate.at)
     if fit_squares(rough) > worthless:
         return candidate, rough
     return candidate, estimate(rough.model, prepared)
@@ -87,7 +53,6 @@ def _contenders_refined(
     worthless: float,
     prepared: Prepared,
     *,
-    stated: Model | None,
     widths: OpenWidths,
 ) -> list[tuple[Candidate, Fit]]:
     """The attempts, with fine fits of the best ones.
@@ -102,9 +67,7 @@ def _contenders_refined(
             for i, (_, fit) in enumerate(attempts)
             if i not in refined and fit_squares(fit) <= most
         ]
-        finer = map_on_cores(
-            lambda i: _refine_candidate(attempts[i], worthless, prepared, stated), chosen
-        )
+        finer = map_on_cores(lambda i: _refine_candidate(attempts[i], worthless, prepared), chosen)
         for i, attempt in zip(chosen, finer, strict=True):
             attempts[i] = attempt
         refined.update(chosen)
@@ -119,11 +82,10 @@ def _least_squares_that_count(
     An attempt does not count if it is refused, not identifiable or implausible, or leaves more on
     the check records.
     """
-    criteria = widths.criteria
     for candidate, fit in sorted(attempts, key=lambda attempt: fit_squares(attempt[1])):
         if (
-            not refusal(base, fit, criteria=criteria)
-            and is_identifiable(fit, base, criteria=criteria)
+            not refusal(base, fit)
+            and is_identifiable(fit, base)
             and check_squares(fit) < check_squares(base)
             and not _implausible(base, candidate, fit, widths.prepared)
             and not widths.explain(fit, candidate)
@@ -139,10 +101,8 @@ def rank_candidates(
     *,
     among: Collection[Candidate] | None = None,
     body: str | None = None,
-    stated: Model | None = None,
     worth: float | None = None,
     widely: bool = False,
-    criteria: Criteria = CRITERIA,
     progress: Callable[[ProgressLine], None] | None = None,
 ) -> Ranking:
     """Add every candidate in turn to a fitted model, and rank the fits.
@@ -150,13 +110,12 @@ def rank_candidates(
     base: the fitted model that may lack an effect
     among: the candidates to rank; None: all that the model could take
     body: the body whose candidates are ranked; None: all bodies
-    stated: the model as its user gave it; its values are used as starts too
     worth: part of the base's squares on the fit records below which a gain is not pursued; None:
         that of the criteria
     widely: where no candidate explains the records, draw further starts of gaps
     progress: called before each candidate
     """
-    worth = criteria.worth if worth is None else worth
+    worth = CRITERIA.worth if worth is None else worth
     possible = candidates(
         base.model,
         [s.motion for s in prepared.stretches],
@@ -167,14 +126,13 @@ def rank_candidates(
     here = {body} if body is not None else set(base.model.bodies)
     possible = tuple(c for c in possible if c.key in wanted and base.model.holder(c.at) in here)
     start = base_of(base, prepared)
-    fits = fit_each(possible, start, prepared, stated, worth=worth, progress=progress)
+    fits = fit_each(possible, start, prepared, worth=worth, progress=progress)
     if widely:
-        fits = search_among_draws(fits, start, prepared, stated)
+        fits = search_among_draws(fits, start, prepared)
     fits = [_absent_if_it_runs_away(cf, base) for cf in fits]
-    fits = [_from_kin(cf, fits, prepared) for cf in fits]
     worthless = (1.0 - worth) * fit_squares(base)
-    widths = OpenWidths(prepared, criteria)
-    fits = _contenders_refined(fits, base, worthless, prepared, stated=stated, widths=widths)
+    widths = OpenWidths(prepared)
+    fits = _contenders_refined(fits, base, worthless, prepared, widths=widths)
     fits = [_absent_if_it_runs_away(cf, base) for cf in fits]
     results = sorted((_ranked_best(base, cf, widths) for cf in fits), key=rank_key)
     entries = [
@@ -191,7 +149,6 @@ def make_ranked(
     *,
     prepared: Prepared,
     instead_of: Candidate | None = None,
-    criteria: Criteria = CRITERIA,
     widths: OpenWidths | None = None,
 ) -> Ranked:
     """A candidate that was added to a base, as the first of a ranking.
@@ -201,7 +158,7 @@ def make_ranked(
         check
     """
     implausible = _implausible(base, candidate, fit, prepared)
-    gains = lowers_check_squares(base, fit, criteria=criteria)
+    gains = lowers_check_squares(base, fit)
     if widths is not None and gains and not implausible:
         implausible = widths.explain(fit, candidate)
     return Ranked(
@@ -209,8 +166,8 @@ def make_ranked(
         fit=fit,
         score=check_score(base, fit),
         behind=0.0,
-        is_identifiable=is_identifiable(fit, base, criteria=criteria),
-        refused=refusal(base, fit, criteria=criteria),
+        is_identifiable=is_identifiable(fit, base),
+        refused=refusal(base, fit),
         implausible=implausible,
         instead_of=instead_of,
     )
@@ -238,35 +195,15 @@ def _select_new(
     return {key: reason for key, reason in stands_for.items() if key not in before}
 
 
-def _find_discredited_effect(
-    base: Fit, fit: Fit, candidate: Candidate, prepared: Prepared
-) -> Candidate | None:
-    """The one effect of the base, at the candidate's place, that is implausible beside it.
-
-    This effect may have imitated the candidate: for example a bristle instead of friction beyond a
-    transmission; beside that friction the bristle becomes too stiff to be identified.
-    returns: None where there is no such effect, or more than one is implausible
-    """
-    new = _select_new(implausible_effects(fit.model, prepared), base, prepared)
-    if len(new) != 1:
-        return None
-    ((name, at),) = new
-    if at != candidate.at or name == candidate.effect.name:
-        return None
-    return Candidate(base.model.body(at).effect(name), at)
-
-
 def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], widths: OpenWidths) -> Ranked:
     """The candidate added to the base, or in place of an effect that it makes superfluous."""
     candidate, fit = fitted
-    prepared, criteria = widths.prepared, widths.criteria
-    beside = make_ranked(base, candidate, fit, prepared=prepared, criteria=criteria, widths=widths)
-    gains = lowers_check_squares(base, fit, criteria=criteria)
+    prepared = widths.prepared
+    beside = make_ranked(base, candidate, fit, prepared=prepared, widths=widths)
+    gains = lowers_check_squares(base, fit)
     if candidate.key in fit.model.absent or beside.refused or not gains:
         return beside
-    superfluous = find_superfluous_effect(base, fit, candidate, criteria=criteria)
-    if superfluous is None and beside.implausible:
-        superfluous = _find_discredited_effect(base, fit, candidate, prepared)
+    superfluous = find_superfluous_effect(base, fit, candidate)
     if superfluous is None:
         return beside
     name, at = superfluous.key
@@ -275,14 +212,8 @@ def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], widths: OpenWidths) -
     except ModelError:  # another effect needs it
         return beside
     alone = estimate(less, prepared)
-    if check_squares(alone) > (1.0 + criteria.relevant) * check_squares(fit):
+    if check_squares(alone) > (1.0 + CRITERIA.relative_improvement) * check_squares(fit):
         return beside
     return make_ranked(
-        base,
-        candidate,
-        alone,
-        prepared=prepared,
-        instead_of=superfluous,
-        criteria=criteria,
-        widths=widths,
+        base, candidate, alone, prepared=prepared, instead_of=superfluous, widths=widths
     )

@@ -12,7 +12,6 @@ from .fit import Fit
 #: reasons for which an effect does not count, in words
 REFUSALS = {
     "blind": "the command has no influence in more than a quarter of the motion",
-    "weak": "the actuator could not supply the force that the model needs to slide",
     "hides": "explains no more of the command: the error is smaller only because less force acts",
 }
 

@@ -127,7 +127,7 @@ def repeatability(
         return None
     # were all that is left noise, as much more of it is alike as it is larger than what differs
     deviation = np.sqrt(by_chance) / (0.5 * squares[0]) if squares[0] > 0.0 else 0.0
-    chance = left * np.sqrt(CRITERIA.strong * deviation)
+    chance = left * np.sqrt(CRITERIA.interval * deviation)
     part = left_there / every if every > 0.0 else 1.0
     return Repeatability(float(error), float(left), compared / whole, part, float(chance))
 

@@ -9,27 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 
 from ..effects import Effect
 from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import make_starts
 from .criteria import CRITERIA
-from .effort import EFFORTS
+from .effort import EFFORTS, Effort
 from .fit import Fit, estimate, fit_of, fit_squares, free_parameters
-from .further_starts import (
-    follow_start,
-    from_smaller_strengths,
-    squares_of,
-    strength_of_new,
-    with_what_they_need,
-)
+from .least_squares import sum_of_squares
 from .linear_start import linear_starts
 from .promise import Promises
 from .search_plan import PLAN
 from .solve import Solution, solve
-from .stated import has_moved, is_at_stated, reset_to_stated
 
 
 @dataclass(frozen=True)
@@ -75,7 +67,6 @@ def estimate_from_starts(
     model: Model,
     prepared: Prepared,
     base: Fit | Base | None = None,
-    stated: Model | None = None,
     *,
     worth: float = CRITERIA.worth,
 ) -> Fit:
@@ -85,8 +76,6 @@ def estimate_from_starts(
 
     base: a fit of the model without these effects; the best fit is then a rough one, for a ranking;
         None: it is a fine one
-    stated: the model as its user gave it; further starts use its values where the base is far from
-        them
     worth: part of the base's squares that one linear step must promise to remove
     """
     coarse = prepared.coarse
@@ -102,8 +91,6 @@ def estimate_from_starts(
     if base is not None:
         curved = strength_of_new(model) is None
         kept = kept if curved else 1
-        if curved and stated is not None and has_moved(base.coarse, stated):
-            models += [reset_to_stated(m, stated) for m in models]
         most = PLAN.wide if wide else PLAN.curved_predicted
         others = with_what_they_need(model, models, prepared) if curved else []
         models = _select_promising(model, models, coarse, base, most=most, worth=worth)
@@ -118,52 +105,22 @@ def estimate_from_starts(
     best = min((follow_start(m, coarse, EFFORTS.rough) for m in models), key=squares_of)
     if base is not None and squares_of(best) > fit_squares(base.coarse):
         best = from_smaller_strengths(model, models, best, coarse)
-    if rugged and base is not None and squares_of(best) < PLAN.jolted * fit_squares(base.coarse):
-        best = _jolt(best, model.absent, coarse)
     best = _sort_elements(best, coarse)
     if base is not None and coarse is prepared:
         return fit_of(best, prepared)
     return estimate(best.model, prepared, effort=EFFORTS.fine if base is None else EFFORTS.near)
 
 
-def estimate_best_start(
-    models: Sequence[Model], new: Sequence[tuple[str, str]], prepared: Prepared
-) -> Fit:
-    """A rough fit from the best of these starts, which are followed on few samples.
-
-    new: (effect, place) whose sum of squares has many local minima: better values are searched
-        nearby
-    """
+def estimate_best_start(models: Sequence[Model], prepared: Prepared) -> Fit:
+    """A rough fit from the best of these starts, which are followed on few samples."""
     coarse = prepared.coarse
     best = min((follow_start(m, coarse, EFFORTS.rough) for m in models), key=squares_of)
-    return estimate(_jolt(best, new, coarse).model, prepared, effort=EFFORTS.near)
+    return estimate(best.model, prepared, effort=EFFORTS.near)
 
 
 def is_rugged(effect: Effect) -> bool:
     """Whether the squares of an effect have many local minima: its hidden bodies part and meet."""
     return bool(effect.corrections()) and not effect.linear
-
-
-def from_stated(fit: Fit, prepared: Prepared, stated: Model, at: str) -> Fit:
-    """The fit, or the fit that starts from the user's values, if this one leaves less.
-
-    An effect stated without values may have been misled by a missing effect: it starts anew as
-    well. A fit that is close to the user's values is not started again. Only a fit that is better
-    on few samples is estimated on all samples.
-
-    at: place of a new effect; only its body is reset: the other bodies do not depend on it
-    """
-    if is_at_stated(fit, stated, at):
-        return fit
-    coarse = prepared.coarse
-    models = make_starts(reset_to_stated(fit.model, stated, at), prepared.scales)
-    if len(models) > PLAN.curved_stepped + 1:
-        models = _best_stepped(models, coarse, PLAN.curved_stepped, promised=False)
-    other = min((follow_start(m, coarse, EFFORTS.rough) for m in models), key=squares_of)
-    here = follow_start(fit.model, coarse, EFFORTS.rough)
-    if squares_of(other) > (1.0 - PLAN.elsewhere) * squares_of(here):
-        return fit
-    return min((fit, estimate(other.model, prepared, effort=EFFORTS.rough)), key=fit_squares)
 
 
 def _sort_elements(best: Solution, prepared: Prepared) -> Solution:
@@ -181,6 +138,69 @@ def _sort_elements(best: Solution, prepared: Prepared) -> Solution:
 def with_parameters_of(model: Model, other: Model) -> Model:
     """The model with the parameters and record shifts of a model that has some of its effects."""
     return model.with_values(dict(other.parameters)).with_record_shift(other.record_shift)
+
+
+def with_what_they_need(model: Model, models: Sequence[Model], prepared: Prepared) -> list[Model]:
+    """The same starts with strengths of the size of the force, where the new effects need others.
+
+    Without the new effect, a fit may have taken the effect that it needs away: rigid friction does
+    not describe a bristle in which most of the motion takes place, and its level falls to zero.
+    """
+    values: dict[str, float] = {}
+    for name, at in model.absent:
+        body = model.body(at)
+        for needed in body.effect(name).needs:
+            strength = body.effect(needed).strength if body.has(needed) else None
+            full = f"{at}.{needed}.{strength}"
+            # another effect of its role may stand in for it; a contact's needs no start
+            value = model.parameters.get(full)
+            if value is None or value.fixed:
+                continue
+            size = prepared.scales[model.declared(full).quantity]
+            if value.value < PLAN.taken_away * size:
+                values[full] = size
+    return [m.with_values(values) for m in models] if values else []
+
+
+def from_smaller_strengths(
+    model: Model, models: Sequence[Model], best: Solution, prepared: Prepared
+) -> Solution:
+    """The best solution from starts at parts of the strengths that one linear step gave.
+
+    A search that leaves more than the model without the effect has gone astray, because this model
+    is a special case: the strength was too large for the other values, which the step left behind.
+    """
+    linear = strength_of_new(model)
+    if linear is None:
+        return best
+    strength = f"{linear[1]}.{linear[0].name}.{linear[0].strength}"
+    starts = [
+        m.with_values({strength: part * m.parameters[strength].value})
+        for m in models
+        for part in PLAN.smaller
+    ]
+    others = (follow_start(m, prepared, EFFORTS.rough) for m in starts)
+    return min((best, *others), key=squares_of)
+
+
+def follow_start(model: Model, prepared: Prepared, effort: Effort) -> Solution:
+    """The rough optimum that a search from this start reaches."""
+    return solve(model, free_parameters(model), prepared, prepared.of("fit"), effort)
+
+
+def squares_of(solution: Solution) -> float:
+    """Sum of squares that a solution leaves; inf where its motion grows beyond all numbers."""
+    return sum_of_squares(solution.residual)
+
+
+def strength_of_new(model: Model) -> tuple[Effect, str] | None:
+    """The only absent effect and its place, if it has a strength that is free; else None."""
+    absent = [(model.body(place).effect(name), place) for name, place in model.absent]
+    if len(absent) != 1 or absent[0][0].strength is None:
+        return None
+    effect, place = absent[0]
+    strength = f"{place}.{effect.name}.{effect.strength}"
+    return absent[0] if not model.parameters[strength].fixed else None
 
 
 def keep_absent(model: Model, base: Fit) -> Fit:
@@ -261,23 +281,3 @@ def _best_stepped(
     solutions.sort(key=lambda f: f[:2])
     best = solutions[:kept] + [f for f in solutions[kept:] if promised and f[1] == 0]
     return [there for _, _, there in best]
-
-
-def _jolt(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) -> Solution:
-    """The best solution nearby, where the sum of squares has many shallow minima.
-
-    new: (effect, place) whose parameters are changed by factors, one at a time
-    """
-    free = free_parameters(best.model)
-    names = [n for effect, at in new for n in free if n.startswith(f"{at}.{effect}.")]
-    model, least = best.model, squares_of(best)
-    for _ in range(PLAN.sweeps):
-        before = least
-        for name, factor in product(names, PLAN.jolts):
-            jolted = model.with_values({name: model.parameters[name].value * factor})
-            solution = follow_start(jolted, prepared, EFFORTS.first_steps)
-            if squares_of(solution) < least:
-                least, model = squares_of(solution), solution.model
-        if least > (1.0 - PLAN.onward) * before:
-            break
-    return best if model is best.model else follow_start(model, prepared, EFFORTS.rough)

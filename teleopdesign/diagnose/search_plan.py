@@ -31,12 +31,6 @@ class SearchPlan:
     stand_ins: bool = True
     #: parameters of an effect from which it is searched from more starts. Five: `maxwell_slip`
     many_parameters: int = 5
-    #: part of the squares of an arm's joint that its first effect takes away where the links were
-    #: led astray by its absence: what is left is partly theirs. Lower: more joints are ranked twice
-    astray: float = 0.75
-    #: effects that may be set aside with the search going on without them. One: each asks for all
-    #: candidates to be ranked again, and what comes in its place is often as little there
-    searched_on: int = 1
     #: starts kept after the prediction by one linear step, of an effect linear in its strength; of
     #: these one is kept after the first real steps
     predicted: int = 2
@@ -59,18 +53,6 @@ class SearchPlan:
     #: parts of the time by which a log may be late at which the user's model begins, too: 12 and
     #: 35 ms of 50. From none alone, a log late by 8 rows of 2 ms ended at one row
     late_starts: tuple[float, ...] = (0.25, 0.7)
-    #: part by which a user's value may be wrong: what moved further may have been led astray, and
-    #: starts from the user's value too
-    moved: float = 0.25
-    #: factors on each parameter of an effect with rugged squares, from which a better place is
-    #: sought
-    jolts: tuple[float, ...] = (0.85, 1.18)
-    #: most sweeps of such jolts over the parameters
-    sweeps: int = 2
-    #: part of the squares that a sweep must take away for another to follow
-    onward: float = 0.1
-    #: part of the squares before that such an effect leaves at most where jolts are worth the time
-    jolted: float = 0.5
     #: part of the squares before that the best candidate leaves at least where a gap is also sought
     #: among draws: there nothing explains the records. A lower limit searches more records twice
     unexplained: float = 0.1
@@ -95,25 +77,6 @@ class SearchPlan:
     #: rough one left at most, in 136 fits on simulated and real records, but for four: those of the
     #: candidates that led
     contending: float = 0.15
-    #: courses of a tip that friction holds: widths of the gap; rates at which it swings, and
-    #: slowings by friction, of each as many. The true course must lie within some 40 % of one of
-    #: them. 588 courses of 15 s take 0.3 s
-    tip_gaps: int = 12
-    tip_grid: int = 7
-    #: rates over the bandwidth (in rad/s) between which a tip swings: slower ones are a second body
-    #: that hardly follows, of faster ones the band shows nothing
-    tip_swings: tuple[float, float] = (0.03, 1.0)
-    #: slowings over the rms acceleration: by less friction does next to nothing, by more it holds
-    tip_slowings: tuple[float, float] = (0.05, 3.0)
-    #: damping ratio of a tip where its search begins: a fit moves it easily
-    tip_damping: float = 0.15
-    #: courses that are followed by a search, each the best near by after so many more. 0: none is
-    #: sought, as at the joints of an arm, where it was not measured
-    tip_starts: int = 2
-    tip_refined: int = 60
-    #: factor within which the best near by is sought: neighbours on the grid are 2.0 apart at most.
-    #: Without one a search that nothing holds ran off to tips that swing at 1e9 rad/s
-    tip_near: float = 4.0
     #: frequencies evaluated for a tone per inverse of the longest stretch: four, so that none falls
     #: between two
     tone_fineness: int = 4
@@ -135,7 +98,6 @@ class SearchPlan:
             beam=self.beam if count <= self.beam else min(self.beam, 1),
             corrected=False,
             stand_ins=False,
-            tip_starts=0,
             draws=0,
         )
 
@@ -166,7 +128,6 @@ QUICK = SearchPlan(
     long=8_000,
     windows=8_000,
     beam=0,
-    tip_starts=0,
     draws=0,
 )
 

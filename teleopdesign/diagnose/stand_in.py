@@ -21,16 +21,12 @@ from dataclasses import replace
 import numpy as np
 
 from ..measurement.prepare import Prepared
-from .criteria import CRITERIA, Criteria
+from .criteria import CRITERIA
 from .decision import is_better
 from .fit import Fit, estimate
 from .noise_floor import NoiseFloor, say_floors
 from .rung import Rung
 from .statements import SetAside
-
-#: blocks of the check records in fewer of which an effect may follow errors of the readings. Lower:
-#: a lag is named on a motor that sticks and slips; higher: a weak spring is not
-MOMENTS = 10
 
 
 def estimable_on_all(prepared: Prepared) -> Prepared | None:
@@ -52,12 +48,7 @@ def check_error_on_all(fit: Fit, prepared: Prepared) -> float | None:
 
 
 def stands_in_for_values(
-    base: Fit,
-    rung: Rung,
-    prepared: Prepared,
-    floor: NoiseFloor,
-    *,
-    criteria: Criteria = CRITERIA,
+    base: Fit, rung: Rung, prepared: Prepared, floor: NoiseFloor
 ) -> SetAside | None:
     """The effect of a rung that other values of the base explain as well, with the reason.
 
@@ -67,7 +58,7 @@ def stands_in_for_values(
     if together is None or rung.added is None:
         return None
     without, with_it = (estimate(fit.model, together) for fit in (base, rung.fit))
-    if is_better(without, with_it, floor, criteria=criteria):
+    if is_better(without, with_it, floor):
         return None
     reason = (
         "a fit to all records leaves "
@@ -78,12 +69,7 @@ def stands_in_for_values(
 
 
 def stands_in_for_readings(
-    base: Fit,
-    before: NoiseFloor,
-    rung: Rung,
-    after: NoiseFloor,
-    *,
-    criteria: Criteria = CRITERIA,
+    base: Fit, before: NoiseFloor, rung: Rung, after: NoiseFloor
 ) -> SetAside | None:
     """The effect of a rung that only weakens the error of sensor readings, with the reason.
 
@@ -96,18 +82,12 @@ def stands_in_for_readings(
     if rung.added is None or not (before.drawn and after.drawn):
         return None
     left, leaves = base.check_error / before.drawn, rung.fit.check_error / after.drawn
-    if not is_of_readings(left, criteria):
+    if not is_of_readings(left):
         return None
-    if leaves < criteria.weakened and acts_at_few_moments(base, rung.fit):
-        reason = (
-            f"leaves {leaves:.2g} noise floors, less than the readings alone would leave, and acts "
-            f"at few moments: it only follows their errors ({left:.2g} floors are left without it)"
-        )
-        return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)
-    if after.drawn < criteria.weakened * before.drawn:
-        explains = leaves <= criteria.weakened * left
+    if after.drawn < CRITERIA.weakened * before.drawn:
+        explains = leaves <= CRITERIA.weakened * left
     else:
-        explains = leaves <= criteria.adequate or criteria.weakened * leaves <= left
+        explains = leaves <= CRITERIA.adequate or CRITERIA.weakened * leaves <= left
     if explains:
         return None
     floors, without = say_floors(leaves, ".2g"), say_floors(left, ".2g")
@@ -119,9 +99,7 @@ def stands_in_for_readings(
     return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)
 
 
-def stands_in_for_moments(
-    base: Fit, rung: Rung, prepared: Prepared, *, criteria: Criteria = CRITERIA
-) -> SetAside | None:
+def stands_in_for_moments(base: Fit, rung: Rung, prepared: Prepared) -> SetAside | None:
     """The effect of a rung that so few moments of one log show that they may agree by chance.
 
     Chance alone lets N moments agree once in 2^N; a check record would repeat them elsewhere.
@@ -130,23 +108,13 @@ def stands_in_for_moments(
     if rung.added is None or prepared.of("check"):
         return None
     moments = acting_moments(base, rung.fit)
-    if 0.5**moments < criteria.by_chance:
+    if 0.5**moments < CRITERIA.by_chance:
         return None
     reason = (
         f"explains about {max(moments, 1.0):.0f} moments of this log, such as starts and stops: "
         "without a check record so few may agree by chance, or share an error of their time"
     )
     return SetAside(rung.added, rung.fit.check_error, reason)
-
-
-def acts_at_few_moments(base: Fit, fit: Fit) -> bool:
-    """Whether fewer than `MOMENTS` blocks of the check records hold what an effect explains.
-
-    15 to 23 of 30 for a weak spring, 4 and 7 for a lag and a delay that followed errors of
-    readings. In shorter records it is small whatever acts: there the doubt counts against the
-    effect.
-    """
-    return acting_moments(base, fit) < MOMENTS
 
 
 def acting_moments(base: Fit, fit: Fit) -> float:
@@ -159,10 +127,10 @@ def acting_moments(base: Fit, fit: Fit) -> float:
     return float(falls.sum()) ** 2 / squares if squares > 0.0 else 0.0
 
 
-def is_of_readings(floors: float, criteria: Criteria) -> bool:
+def is_of_readings(floors: float) -> bool:
     """Whether the readings alone explain an error of so many noise floors.
 
     A floor is known to a fifth. Where even less is left, the values of the model make more of the
     readings' errors than these can contain, and say nothing.
     """
-    return criteria.weakened <= floors <= criteria.adequate
+    return CRITERIA.weakened <= floors <= CRITERIA.adequate

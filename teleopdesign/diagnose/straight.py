@@ -70,11 +70,11 @@ def _with_line(
     fit = _exchange_for_line(state.fit.model, bent, line, search)
     if fit is None:
         return None
-    floor, criteria = state.floor, search.criteria
+    floor = state.floor
     if saved > 0:
-        as_good = not is_better(fit, state.fit, floor, criteria=criteria)
+        as_good = not is_better(fit, state.fit, floor)
     else:
-        as_good = is_better(state.fit, fit, floor, criteria=criteria)
+        as_good = is_better(state.fit, fit, floor)
     if not as_good:
         return None
     first = next(i for i, r in enumerate(state.rungs) if r is bent[0])

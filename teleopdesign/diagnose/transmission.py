@@ -1,8 +1,9 @@
 """A move of a ladder: add a transmission with friction behind it, as most gears have.
 
-This is a pair like others (`pairs`), but a search with one of the two effects does not lead to the
-other: friction does not help a gap that was fitted without friction. So the search starts at
-simulated motions of the tip (`tip_start`).
+This is a pair as in `moves.add_two`, but a search with one of the two effects does not lead to the
+other: friction does not help a gap that was fitted without friction. So both are drawn together
+(`draws`). Three simulated gears are named whole; without this move two are slipping springs, and
+one a spring with 12 % left.
 
 A soft transmission with friction behind it also imitates the friction of the actuator. So the pair
 is added only beside that friction (`Effect.after`), whether the user stated it or it was accepted.
@@ -10,17 +11,21 @@ is added only beside that friction (`Effect.after`), whether the user stated it 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
 from ..base.errors import ModelError
+from ..effects import Effect
+from ..model import Model
 from .adequacy import is_adequate
-from .candidates import Candidate, comes_too_early
-from .cores import map_on_cores
+from .candidates import Candidate, comes_too_early, make_starts
+from .criteria import CRITERIA
 from .decision import is_better, is_supported, objection
+from .draws import best_draws
 from .evidence import check_squares
 from .fit import Fit, estimate
+from .identifiability import OpenWidths
 from .ladder_state import LadderSearch, LadderState
 from .outside_tone import best_tone
 from .rank import make_ranked
@@ -28,9 +33,7 @@ from .ranking import Ranking
 from .rung import Rung
 from .rungs import estimate_without, order_by_falling_error, reorder_and_refit
 from .search import base_of, estimate_best_start
-from .tip_start import tip_starts
 from .verdict import explained_share
-from .width import OpenWidths
 
 
 def add_transmission(search: LadderSearch, state: LadderState) -> LadderState | None:
@@ -40,7 +43,7 @@ def add_transmission(search: LadderSearch, state: LadderState) -> LadderState | 
     except those that the two could imitate.
     returns: None where no such pair is supported
     """
-    if is_adequate(state.fit, state.floor, criteria=search.criteria) or not search.plan.tip_starts:
+    if is_adequate(state.fit, state.floor) or not search.plan.draws:
         return None
     staying = _rungs_to_stay(search, state)
     for rungs in (staying, state.rungs) if len(staying) < state.step else (state.rungs,):
@@ -84,31 +87,25 @@ def _best_pair(
     ranking: of the candidates added to the base; None: not known
     """
     alone = {r.candidate.key: r.fit for r in ranking.ranked} if ranking is not None else {}
-    possible = list(_possible_pairs(base))
-
-    def begun(i: int) -> None:
-        transmission, friction = possible[i]
+    pairs: list[tuple[Rung, ...]] = []
+    for transmission, friction in _possible_pairs(base):
         search.progress(f"trying {transmission} with {friction.effect.name}")
-
-    def fit(both: tuple[Candidate, Candidate]) -> tuple[Rung, Rung] | None:
-        return _fit_pair(search, base, *both, alone.get(both[0].key))
-
-    pairs = map_on_cores(fit, possible, begun=begun)
-    supported = [
-        pair for pair in pairs if pair is not None and _is_supported(search, state, base, pair)
-    ]
+        both = _fit_both(search, base, transmission, friction, [p[-1].fit for p in pairs])
+        pairs += _as_rungs(search, base, transmission, friction, both, alone)
+    supported = [pair for pair in pairs if _is_supported(search, state, base, pair)]
     return min(supported, key=lambda pair: check_squares(pair[-1].fit), default=None)
 
 
 def _possible_pairs(base: Fit) -> Iterator[tuple[Candidate, Candidate]]:
     """Each transmission that a body can take, with each friction that then can act at its tip.
 
-    None where the body lacks the friction that the pair could imitate.
+    The one with the fewest parameters first. None where the body lacks the friction that the pair
+    could imitate.
     """
+    known = sorted(base.model.known.values(), key=lambda e: len(e.parameters))
     for place, body in base.model.bodies.items():
         if any(e.role == "structure" for e in body.effects):
             continue
-        known = base.model.known.values()
         for transmission in (e for e in known if e.role == "structure" and e.led is not None):
             whole = base.model.with_effect(transmission, at=place).body(place)
             for friction in (e for e in known if e.role == "tip_level"):
@@ -118,42 +115,77 @@ def _possible_pairs(base: Fit) -> Iterator[tuple[Candidate, Candidate]]:
                     yield Candidate(transmission, place), Candidate(friction, place)
 
 
-def _fit_pair(
+def _fit_both(
     search: LadderSearch,
     base: Fit,
     transmission: Candidate,
     friction: Candidate,
-    ranked_alone: Fit | None,
-) -> tuple[Rung, Rung] | None:
-    """Two rungs: the transmission alone, and both effects; None: no start, or not separable.
+    fitted: Sequence[Fit],
+) -> Fit:
+    """A rough fit of both effects, from draws or from a transmission that this one contains.
 
-    ranked_alone: fit of the transmission as a single candidate. A fit that starts from the values
-        of both effects may leave more than the base
+    fitted: the fits of other pairs. Draws of a gap with friction end at a light tip that follows
+        the machine whatever its friction is; from the spring behind it the gap opens
     """
-    prepared = search.prepared
-    coarse = base_of(base, prepared).coarse
-    starts = tip_starts(coarse, prepared.coarse, transmission, friction, plan=search.plan)
-    if not starts:
-        return None
-    new = (transmission.key, friction.key)
-    both = estimate_best_start([one.model for one in starts], new, prepared)
-    alone = estimate_without(both.model, Rung(friction, both), prepared)
+    coarse = base_of(base, search.prepared).coarse
+    model = coarse.model
+    for one in (transmission, friction):
+        model = model.with_effect(one.effect, at=one.at)
+    starts = [m for fit in fitted for m in _starts_from_kin(model, transmission, fit, search)]
+    starts = starts or best_draws(model, search.prepared.coarse, coarse)
+    return estimate_best_start(starts, search.prepared)
+
+
+def _starts_from_kin(
+    model: Model, transmission: Candidate, fit: Fit, search: LadderSearch
+) -> list[Model]:
+    """Starts at the values of a transmission that this one contains; none: the fit has no such one.
+
+    model: with the transmission;  fit: of another pair
+    """
+    effects = fit.model.body(transmission.at).effects
+    kin = next((e for e in effects if _is_part_of(e, transmission.effect)), None)
+    if kin is None:
+        return []
+    ours, theirs = (f"{transmission.at}.{e.name}." for e in (transmission.effect, kin))
+    known = fit.model.parameters
+    shared = {n: m for n in model.parameters if (m := n.replace(ours, theirs, 1)) in known}
+    values = {n: known[m].value for n, m in shared.items()}
+    each = [m.with_values(values) for m in make_starts(model, search.prepared.scales)]
+    return list({tuple(v.value for v in m.parameters.values()): m for m in each}.values())
+
+
+def _is_part_of(small: Effect, large: Effect) -> bool:
+    """Whether the large effect has all parameters of the small one, and more."""
+    ours, theirs = ({n: p.quantity for n, p in e.parameters.items()} for e in (small, large))
+    return small.role == large.role and ours.items() < theirs.items()
+
+
+def _as_rungs(
+    search: LadderSearch,
+    base: Fit,
+    transmission: Candidate,
+    friction: Candidate,
+    both: Fit,
+    ranked_alone: Mapping[tuple[str, str], Fit],
+) -> list[tuple[Rung, ...]]:
+    """Two rungs: the transmission alone, and both effects; none where they are not separable.
+
+    ranked_alone: fits of single candidates by their keys. A fit of the transmission that starts
+        from the values of both effects may leave more than the base
+    """
+    alone = estimate_without(both.model, Rung(friction, both), search.prepared)
     if alone is None:
-        return None
-    if ranked_alone is not None:
-        alone = min((alone, ranked_alone), key=check_squares)
-    rank = partial(
-        make_ranked,
-        prepared=prepared,
-        criteria=search.criteria,
-        widths=OpenWidths(prepared, search.criteria),
-    )
+        return []
+    alone = min((alone, ranked_alone.get(transmission.key, alone)), key=check_squares)
+    rank = partial(make_ranked, prepared=search.prepared, widths=OpenWidths(search.prepared))
     # alone, a transmission explains little and may have no gap: it is judged together with friction
     first = replace(rank(base, transmission, both), fit=alone)
-    return (
+    rungs = (
         Rung(transmission, alone, Ranking(base, (first,))),
         Rung(friction, both, Ranking(alone, (rank(alone, friction, both),))),
     )
+    return [rungs]
 
 
 def _is_supported(
@@ -163,17 +195,17 @@ def _is_supported(
 
     Effects that were set aside are not supported again.
     """
-    criteria, floor, both = search.criteria, state.floor, pair[-1].fit
+    floor, both = state.floor, pair[-1].fit
     added = {rung.added.key for rung in pair if rung.added is not None}
     if added & {one.candidate.key for one in state.set_aside}:
         return False
     first, second = (rung.ranking.ranked[0] for rung in pair if rung.ranking is not None)
     return (
-        not objection(base, replace(first, fit=both), floor, criteria=criteria)
+        not objection(base, replace(first, fit=both), floor)
         and first.is_identifiable
-        and is_supported(pair[0].fit, second, floor, criteria=criteria)
-        and is_better(base, both, floor, criteria=criteria)
-        and is_better(state.fit, both, floor, criteria=criteria)
-        and explained_share(state.fit, both, floor) >= criteria.mostly
+        and is_supported(pair[0].fit, second, floor)
+        and is_better(base, both, floor)
+        and is_better(state.fit, both, floor)
+        and explained_share(state.fit, both, floor) >= CRITERIA.mostly
         and best_tone(base, search.prepared).is_beaten_by(both)
     )

@@ -11,16 +11,19 @@ from collections.abc import Sequence
 
 from ..base.errors import ModelError
 from ..measurement.prepare import Prepared
+from ..model import Model
 from .candidates import Candidate, list_look_alikes
-from .criteria import CRITERIA, Criteria
+from .criteria import CRITERIA
 from .evidence import whole_score
 from .fit import Fit, estimate
-from .open_parameters import OPEN
 from .plausibility import undetermined_of
 from .products import product_of
 from .rung import Rung
 from .statements import Undetermined
 
+#: standard error over value from which a parameter counts as open: then zero and twice the value
+#: both lie within two standard errors
+OPEN = 0.5
 #: a product of open parameters is known far better than each of them, if its relative error is
 #: below this part of the least relative error of the parameters
 PRODUCT = 0.5
@@ -43,9 +46,7 @@ def find_undetermined(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Undete
     return tuple(sentences)
 
 
-def alike_on_records(
-    fit: Fit, candidate: Candidate, prepared: Prepared, *, criteria: Criteria = CRITERIA
-) -> str:
+def alike_on_records(fit: Fit, candidate: Candidate, prepared: Prepared) -> str:
     """A sentence where the records hardly distinguish an effect from its look-alike; else "".
 
     For example gravity, and a spring with its rest position (`spring` and `bias`): over much of a
@@ -64,7 +65,7 @@ def alike_on_records(
         except ModelError:  # another effect needs it
             return ""
         instead = estimate(model, prepared)
-        if whole_score(instead, fit) >= criteria.close:
+        if whole_score(instead, fit) >= CRITERIA.indistinguishable:
             continue
         return (
             f"these records hardly distinguish it from {' and '.join(f'`{n}`' for n in names)}, "
@@ -85,3 +86,16 @@ def known_together(fit: Fit, candidate: Candidate) -> str:
         return ""
     each = ", ".join(f"{100 * error:.2g} %" for error in product.errors)
     return f"{product} is known within {100 * product.known:.2g} %, each factor only within {each}"
+
+
+def open_parameters_line(model: Model) -> str | None:
+    """A sentence where every estimated parameter of a model is open; else None."""
+    estimated = [value for value in model.parameters.values() if not value.fixed]
+    known = [v for v in estimated if not v.stderr >= OPEN * abs(v.value)]
+    if not estimated or known:
+        return None
+    return (
+        "records: no parameter of the model is determined, each standard error is more than half "
+        "of its value: a small error then says nothing of the machine. Record a motion that "
+        "reverses and changes its speed"
+    )

@@ -12,7 +12,6 @@ import numpy as np
 
 from .adequacy import Errors, is_adequate
 from .candidates import Candidate
-from .criteria import CRITERIA, Criteria
 from .noise_floor import NoiseFloor
 
 #: how a diagnosis ends
@@ -52,15 +51,10 @@ def removed_share(errors: Sequence[float], floor: float) -> float:
     return gain / (gain + left) if gain > 0.0 and np.isfinite(left) else 0.0
 
 
-def verdict(
-    rungs: Sequence[Step],
-    floor: NoiseFloor,
-    *,
-    criteria: Criteria = CRITERIA,
-) -> VerdictName:
+def verdict(rungs: Sequence[Step], floor: NoiseFloor) -> VerdictName:
     """The verdict by the rungs alone, whatever the probabilities of their effects."""
     added = [r for r in rungs if r.added is not None]
     if not added:
-        adequate = is_adequate(rungs[-1].errors, floor, criteria=criteria)
+        adequate = is_adequate(rungs[-1].errors, floor)
         return "model_adequate" if adequate else "undecided"
     return "undecided" if all(r.alternatives for r in added) else "effects_missing"

@@ -60,7 +60,7 @@ class Proposal(Shown, ByValue):
     determined: parameters that become determinable
     remedies: pair of rivals (numbers) that the motion does not separate -> simulated changes
     limits: body -> limits that the motion keeps
-    bench, plan: for simulated records of the motion (`in_simulation`)
+    bench, plan: for simulated records of the motion (`show_in_simulation`)
     """
 
     diagnosis: Diagnosis

@@ -194,13 +194,8 @@ _JIT = """from numba import njit
 
 jitted = njit(cache=True, nogil=True, error_model="numpy")
 """
-_NO_JIT = """
-
-def jitted(function):
-    return function
-"""
 
 
-def head(text: str, *, jit: bool = True) -> str:
+def head(text: str) -> str:
     """First lines of a generated module: its docstring, its imports, and `jitted`."""
-    return f'"""{text}"""\nfrom math import *\n\nimport numpy as np\n{_JIT if jit else _NO_JIT}\n'
+    return f'"""{text}"""\nfrom math import *\n\nimport numpy as np\n{_JIT}\n'

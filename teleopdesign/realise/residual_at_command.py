@@ -40,10 +40,6 @@ from .traced import Along, for_numpy, numpy_function, slope
 SLIGHT = 0.1
 #: least divisor of dynamics, as a part of their value at rest: below it the division is rounding
 LEAST = 1e-3
-#: commands, as multiples of the largest recorded one, at which the strongest force of an actuator
-#: is searched: a law may be strongest at a small command
-COMMANDS = tuple(10.0 ** (0.25 * k) for k in range(-6, 13))
-
 _COMMAND, _ACTING = SIGNALS["command"], SIGNALS["acting_force"]
 _CARRIED, _INTERACTION = SIGNALS["carried_force"], SIGNALS["interaction_force"]
 
@@ -55,14 +51,11 @@ class ResidualAtCommand:
     residual: mapped back, SI; in blind samples divided by the largest gain
     blind: samples in which the command has almost no influence on the moving force
     passed: part of the interaction force that reaches the body, with its sign
-    weak: whether the actuator cannot deliver, at any command, the force that the model needs to
-        slide
     """
 
     residual: Array
     blind: NDArray[np.bool_]
     passed: Array
-    weak: bool
 
 
 @dataclass(frozen=True)
@@ -105,8 +98,7 @@ def residual_at_command(
     passed = motion.interaction
     if passed.any():
         passed = _transmit(passed, _net(body, motion, known, _INTERACTION), motion)
-    weak = bool(blind.any()) and _is_weak(body, motion, model, known)
-    return ResidualAtCommand(residual, blind, passed, weak)
+    return ResidualAtCommand(residual, blind, passed)
 
 
 def _effects_that_take(body: Body, signal: sp.Symbol) -> list[Effect]:
@@ -258,28 +250,6 @@ def _transmit(force: Array, way: _Way, motion: Motion) -> Array:
         static = 1.0
     varying = gain / static if static else np.ones(len(force))
     return np.asarray(force * np.clip(varying, -1.0, 1.0))
-
-
-def _is_weak(body: Body, motion: Motion, model: Residual, along: Along) -> bool:
-    """Whether no command would make the body slide as it does, during most of the time.
-
-    The force needed to slide is that of friction and other forces, without inertia.
-    """
-    inertia = body.parameters["inertia"].value * motion.acceleration
-    needed = model.acting.value - model.residual.value - inertia
-    largest = float(np.max(np.abs(motion.command)))
-    forces: list[Array] = []
-    for part in COMMANDS:
-        for sign in (1.0, -1.0):
-            held = along.constant(np.full(len(motion.time), sign * part * largest))
-            stages = stages_along(body, motion, along.with_signals({_COMMAND: held}))
-            forces.append(motion.at_rows(stages[-1].output.value if stages else held.value))
-    short: list[Array] = []
-    for way in (1.0, -1.0):
-        best = np.max([way * force for force in forces], axis=0)
-        short.append((way * needed - best)[motion.direction == way])
-    whole = np.concatenate(short)
-    return bool(len(whole)) and float(np.median(whole)) > 0.0
 
 
 def blind_share(stretches: Sequence[ResidualAtCommand], motions: Sequence[Motion]) -> float:

@@ -28,6 +28,9 @@ from .shared_units import BatchResult, SharedUnits, Sink, Workers
 _START_TIME = 2.5
 #: s: for which this process computes alone, to estimate the time of the whole study
 _TRIAL = 1.0
+#: points that are computed to measure their time, so many that what each block needs beside its
+#: points, 10 ms, counts little; from units of `_MANY` points, of which they are an eighth at most
+_MEASURED, _MANY = 64, 512
 #: s between two looks of a worker whether the process that asked is still there
 _BETWEEN_LOOKS = 1.0
 #: s: duration of a task of a cluster, long against the milliseconds of the scheduler for each
@@ -46,15 +49,21 @@ def run_on_this_machine(
         cannot be sent is computed in this process
     raises ModelError: a task that cannot be sent to that many processes
     """
-    count = workers or count_cores()
-    if workers is None and count > 1:
+    count, is_compiled = workers or count_cores(), True
+    if len(units) == 1 and (workers is None or len(units[0]) > 1):
+        count = 1
+    if count > 1 and len(units[0]) >= _MANY:
+        seconds = _compile_and_measure(task, units[0]) * sum(map(len, units))
+    elif count > 1 and workers is None:
         # the first unit alone compiles what the others find in the cache
         units = units[_run_here(task, units[:1], sink) :]
         start = time.monotonic()
         done = _run_here(task, units, sink, until=_TRIAL)
         units, seconds = units[done:], (time.monotonic() - start) * len(units[done:]) / max(done, 1)
-        if seconds * (1 - 1 / count) < _START_TIME:
-            count = 1
+    else:  # a function of the user, which could end this process
+        is_compiled, seconds = False, 0.0
+    if workers is None and seconds * (1 - 1 / count) < _START_TIME:
+        count = 1
     try:
         payload = b"" if count == 1 else pack_task(task)
     except ModelError:
@@ -64,7 +73,7 @@ def run_on_this_machine(
     if count == 1 or not units:
         _run_here(task, units, sink)
         return
-    SharedUnits(units, sink, is_compiled=workers is None).run(
+    SharedUnits(units, sink, is_compiled=is_compiled).run(
         lambda: _processes(payload, min(count, len(units)))
     )
 
@@ -82,6 +91,17 @@ def _run_here(
             if time.monotonic() - start > until:
                 break
     return count
+
+
+def _compile_and_measure(task: StudyTask, unit: Unit) -> float:
+    """Compile the code of points side by side; returns the time of a point, s. Nothing is kept."""
+    from ..realise.side_by_side import LANES
+
+    with one_thread():
+        evaluate_unit(task, unit[:LANES])
+        start = time.monotonic()
+        evaluate_unit(task, unit[:_MEASURED])
+    return (time.monotonic() - start) / _MEASURED
 
 
 @contextmanager

@@ -193,11 +193,9 @@ def is_real(dependence: Dependence, whole: float, floor_squares: float) -> bool:
     method. A gain above all that the sensors leave must only exceed chance.
     """
     gain = float(dependence.before @ dependence.before) - dependence.squares
-    return (
-        dependence.probability < ALARM
-        and gain > CRITERIA.relevant * whole
-        and gain > (CRITERIA.of_floor if dependence.score > CRITERIA.sure else 1.0) * floor_squares
-    )
+    of_floor = CRITERIA.of_floor if dependence.score > CRITERIA.significance else 1.0
+    least = max(CRITERIA.relative_improvement * whole, of_floor * floor_squares)
+    return dependence.probability < ALARM and gain > least
 
 
 def dependences(
@@ -236,7 +234,7 @@ def dependences(
 def _simplest(real: list[Dependence]) -> Dependence:
     """The first in `SHAPES` of those that explain as much as the best one."""
     best = max(t.explained for t in real)
-    alike = [t for t in real if t.explained > (1.0 - CRITERIA.relevant) * best]
+    alike = [t for t in real if t.explained > (1.0 - CRITERIA.relative_improvement) * best]
     return replace(alike[0], alike=tuple(t.shape.name for t in alike[1:]))
 
 
@@ -260,7 +258,7 @@ class Contrast:
     @property
     def differs(self) -> bool:
         """Whether the sides differ by more than chance."""
-        return bool(abs(np.diff(self.sizes)[0]) > CRITERIA.sure * np.hypot(*self.errors))
+        return bool(abs(np.diff(self.sizes)[0]) > CRITERIA.significance * np.hypot(*self.errors))
 
     @property
     def only(self) -> str:

@@ -181,7 +181,7 @@ def _checked_formula(
     after = predict_held_out(rows, together)
     before = float(dependence.before @ dependence.before)
     share = (before - float(after @ after)) / (before - dependence.squares)
-    sure = gain_score(dependence.before, after, rows.blocks[rows.checked]) > CRITERIA.sure
+    sure = gain_score(dependence.before, after, rows.blocks[rows.checked]) > CRITERIA.significance
     learnt, k = rows.learnt, columns.values.shape[1]
     target = rows.residual * rows.root
     value = together.solve(target, learnt)

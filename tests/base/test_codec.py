@@ -103,29 +103,16 @@ PLAIN = {"verdict": "a", "rows": [{"name": "x"}]}
     ("changed", "message"),
     [
         ({"verdict": "c"}, 'w.verdict: found "c", expected "a" or "b"'),
-        ({"verdict": ["a"]}, "w.verdict: found a list"),
         ({"rows": []}, "w.rows: found 0 entries, expected 1 or more"),
-        ({"rows": None}, "w.rows: found null, expected a list"),
         ({"rows": [{}]}, r'w.rows\[1\]: no key "name"'),
         ({"rows": [{"name": 1}]}, r"w.rows\[1\].name: found a whole number, expected a text"),
         ({"rows": [{"name": "x", "error": -1}]}, r"error: found -1, expected a finite number, 0"),
-        ({"rows": [{"name": "x", "error": "1"}]}, 'found "1", expected a finite .* or null'),
         ({"left": 10**400}, "w.left: found inf, expected a finite number"),
-        ({"left": True}, "w.left: found true, expected a finite number"),
         ({"left": 1, "box": 3}, "w.box: found a whole number, expected a table"),
         ({"limit": {}}, 'w.limit: no key "value"'),
-        ({"limit": {"value": "60"}}, 'w.limit.value: found "60"'),
-        ({"parts": {"p": 1}}, "w.parts.p: found a whole number, expected a table"),
     ],
 )
 def test_what_is_wrong_is_one_line_with_its_place(changed, message):
     with pytest.raises(ExperimentError, match=message) as caught:
         from_data(Whole, PLAIN | changed, "w", FORMS)
     assert "\n" not in str(caught.value)
-
-
-def test_a_missing_key_of_the_whole_says_what_the_file_should_be():
-    with pytest.raises(ExperimentError, match='^no key "verdict", expected an answer$'):
-        from_data(Whole, {}, "", FORMS, whole="an answer")
-    with pytest.raises(ExperimentError, match="^found a list, expected an answer$"):
-        from_data(Whole, [], "", FORMS, whole="an answer")

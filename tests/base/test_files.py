@@ -5,9 +5,6 @@ import math
 import os
 import stat
 import sys
-from dataclasses import dataclass
-from pathlib import Path
-from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -24,12 +21,6 @@ DATA = st.recursive(
 )
 
 
-@dataclass(frozen=True)
-class Part:
-    second: object
-    first: object
-
-
 def numbers_of(data):
     if isinstance(data, dict):
         data = list(data.values())
@@ -43,34 +34,6 @@ def test_whatever_is_written_is_read_back_as_its_plain_data(data):
     assert read == make_plain(data) and text.endswith("\n")
     assert make_plain(read) == read
     assert all(math.isfinite(n) for n in numbers_of(read) if isinstance(n, float))
-
-
-def test_each_kind_of_value_has_one_form():
-    data = MappingProxyType(
-        {
-            "part": Part(np.float64(1.5), np.array([[1, 2]])),
-            "path": Path("a") / "b",
-            "set": frozenset("ba"),
-            "flag": np.True_,
-            "none": (math.nan, np.inf, np.array(2.0)),
-        }
-    )
-    assert make_plain(data) == {
-        "part": {"second": 1.5, "first": [[1, 2]]},
-        "path": str(Path("a/b")),
-        "set": ["a", "b"],
-        "flag": True,
-        "none": [None, None, 2.0],
-    }
-    assert list(make_plain(data)["part"]) == ["second", "first"], "in the order of the fields"
-    assert make_plain(data)["flag"] is True
-
-
-def test_arrays_may_be_shortened_and_single_numbers_are_not():
-    assert make_plain({"x": np.array([math.pi, np.nan]), "y": math.pi}, digits=3) == {
-        "x": [3.14, None],
-        "y": math.pi,
-    }
 
 
 def test_what_has_no_form_is_refused_by_its_type():
@@ -89,12 +52,6 @@ def test_a_file_that_fails_half_way_leaves_the_old_one_and_nothing_beside_it(tmp
         raise OSError(28, "No space left on device")
     assert json.loads(path.read_text()) == {"a": 1}
     assert list(tmp_path.iterdir()) == [path]
-
-
-def test_the_part_has_the_ending_of_the_file_and_lies_beside_it(tmp_path):
-    with write_beside(tmp_path / "a.csv.gz") as part:
-        assert part.name.endswith(".csv.gz") and part.parent == tmp_path
-        part.write_text("")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="links and modes of POSIX")

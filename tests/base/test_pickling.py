@@ -7,13 +7,13 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Mapping
+from xml.etree import ElementTree
 
 import pytest
 from example_objects import BODY, LAW, QUICK, SLOW
 
 import teleopdesign as td
-from teleopdesign.base.finding import Finding
-from teleopdesign.base.frozen import Catalogue, Frozen, is_same
+from teleopdesign.base.frozen import Frozen, is_same
 
 EVERY = [
     *(pytest.param(make, id=name) for name, make in QUICK.items()),
@@ -29,31 +29,30 @@ def test_what_was_pickled_is_the_same_again(make):
 
 
 @pytest.mark.parametrize("make", EVERY)
-def test_a_deep_copy_is_equal_and_prints_alike(make):
+def test_a_copy_is_equal_and_it_prints_in_a_few_lines_and_in_a_notebook(make):
     thing = make()
-    copied = copy.deepcopy(thing)
-    assert copied == thing and repr(copied) == repr(thing)
-
-
-@pytest.mark.parametrize("make", EVERY)
-def test_what_is_equal_has_the_same_hash(make):
-    thing = make()
-    try:
-        value = hash(thing)
-    except TypeError:
-        pytest.skip("holds a mapping that can be changed: no hash")
-    assert hash(pickle.loads(pickle.dumps(thing))) == value
-
-
-@pytest.mark.parametrize("make", EVERY)
-def test_it_prints_in_a_few_lines(make):
-    thing = make()
-    text = repr(thing)
+    text, copied = repr(thing), copy.deepcopy(thing)
+    assert copied == thing and repr(copied) == text
     # a design says its reasons and predictions: a page of sentences, everything else is a table
     # of which the ranking's has a line for each effect of the catalogue
     most = 6000 if isinstance(thing, td.Design) else 3500
     assert 0 < len(text) < most and len(text.splitlines()) < most / 50
     assert "array(" not in text and " object at 0x" not in text
+    if has_a_hash(thing):
+        assert hash(pickle.loads(pickle.dumps(thing))) == hash(thing)
+    shown = getattr(thing, "_repr_html_", lambda: None)()
+    if shown is not None:
+        ElementTree.fromstring(shown.replace("<br>", "<br/>"))
+        assert len(shown) < 15_000
+
+
+def has_a_hash(thing):
+    """What holds a mapping that can be changed has none."""
+    try:
+        hash(thing)
+    except TypeError:
+        return False
+    return True
 
 
 def test_what_differs_in_one_number_is_not_equal():
@@ -140,67 +139,6 @@ def test_a_frozen_mapping_cannot_be_changed_and_equals_a_dictionary():
         frozen.other = 2
     with pytest.raises(KeyError):
         frozen["b"]
-
-
-def test_a_catalogue_says_the_nearest_name():
-    catalogue = Catalogue({"alpha": 1}, "letter")
-    for error in (KeyError, td.ModelError):
-        with pytest.raises(error) as caught:
-            catalogue["alhpa"]
-        assert str(caught.value) == 'letters: no letter "alhpa", has alpha; did you mean "alpha"?'
-    assert catalogue.get("beta") is None and catalogue.get([]) is None and "beta" not in catalogue
-    assert pickle.loads(pickle.dumps(caught.value)).args == caught.value.args
-
-
-SHOWN = [e for e in EVERY if "record" != e.id]
-
-
-@pytest.mark.parametrize("make", EVERY)
-def test_what_a_notebook_shows_is_small_and_well_formed(make):
-    import xml.etree.ElementTree as ElementTree
-
-    text = getattr(make(), "_repr_html_", lambda: None)()
-    if text is None:
-        pytest.skip("shows its repr")
-    ElementTree.fromstring(text.replace("<br>", "<br/>"))
-    assert len(text) < 15_000
-
-
-NEEDED = ("experiment", "model", "comparison", "ranking", "diagnosis", "diagram", "body", "effect")
-
-
-@pytest.mark.parametrize("name", [*NEEDED, "simulation", "proved claim", "controller"])
-def test_these_have_a_table_in_notebooks(name):
-    make = {**QUICK, "model": QUICK["model from an experiment"]}.get(name)
-    kinds = {"comparison": td.Comparison, "ranking": td.Ranking, "diagnosis": td.Diagnosis}
-    assert hasattr(kinds[name] if name in kinds else make(), "_repr_html_")
-
-
-@pytest.mark.parametrize(
-    ("thing", "shown"),
-    [
-        (td.Value(0.25, stderr=0.013), ["0.25", "0.013", "free"]),
-        (td.Value(0.25, fixed=True), ["0.25", "-", "fixed"]),
-        (
-            Finding("sample <clock>", "note", "Stamps are late.", {"jitter": 0.002}, "fit.csv"),
-            ["note: sample &lt;clock&gt;, fit.csv", "jitter", "0.002", "Stamps are late."],
-        ),
-        (Finding("hum", "fine", "There is none."), ["fine: hum", "There is none."]),
-        (
-            td.load_experiment(td.example("rod")).records[0],
-            ["Record fit.csv.gz (fit)", "device.position", "device.actuator_force"],
-        ),
-    ],
-)
-def test_what_lies_inside_of_results_has_a_table_in_notebooks_too(thing, shown):
-    text = thing._repr_html_()
-    assert all(part in text for part in shown)
-    assert text.startswith("<div>") and "<clock>" not in text
-
-
-@pytest.mark.parametrize("name", ["transfer functions", "all transfers", "two-port functions"])
-def test_transfer_functions_are_formulas_in_notebooks(name):
-    assert QUICK[name]()._repr_latex_().startswith("$$")
 
 
 def test_names_are_escaped_in_notebooks():

@@ -4,14 +4,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.base.errors import ExperimentError, nearest
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.base.units import (
     AXES,
     QUANTITIES,
     converting_factor,
     si_factor,
     to_si,
-    unit_after_number,
     unit_of,
 )
 
@@ -35,31 +34,20 @@ def test_every_unit_that_a_message_proposes_is_accepted(quantity, axis):
     ("value", "unit", "quantity", "axis", "expected"),
     [
         (1.5, "mm", "position", "prismatic", 1.5e-3),
-        (180, "deg", "position", "revolute", math.pi),
         (90, "°", "angle", "prismatic", math.pi / 2),
         (60, "rpm", "velocity", "revolute", 2 * math.pi),
         (60, "rpm", "frequency", "revolute", 1),
-        (2 * math.pi, "rad/s", "frequency", "prismatic", 1),
         (2, "min", "time", "prismatic", 120),
         (3, "mNm", "force", "revolute", 3e-3),
-        (3, "N m", "force", "revolute", 3),
-        (3, "Nmm", "force", "revolute", 3e-3),
         (2, "g*cm^2", "inertia", "revolute", 2e-7),
-        (2, "kg·m²", "inertia", "revolute", 2),
-        (2, "kg m**2", "inertia", "revolute", 2),
         (2, "N*s^2/m", "inertia", "prismatic", 2),
         (4, "Nm/(rad/s)", "damping", "revolute", 4),
-        (4, "Nms/rad", "damping", "revolute", 4),
-        (4, "N*m*s", "damping", "revolute", 4),
         (4, "N/(mm/s)", "damping", "prismatic", 4e3),
         (5, "N/mm", "stiffness", "prismatic", 5e3),
-        (5, "N*mm^-1", "stiffness", "prismatic", 5e3),
         (math.pi, "N*m/deg", "stiffness", "revolute", 180),
         (6, "N/mm^3", "cubic_stiffness", "prismatic", 6e9),
-        (7, "N*s^2/m^2", "drag", "prismatic", 7),
         (20, "%", "dimensionless", "prismatic", 0.2),
         (0.2, None, "dimensionless", "revolute", 0.2),
-        (0.2, None, "angle", "revolute", 0.2),
     ],
 )
 def test_a_laboratorys_unit_is_converted(value, unit, quantity, axis, expected):
@@ -76,9 +64,7 @@ def test_a_laboratorys_unit_is_converted(value, unit, quantity, axis, expected):
             "prismatic",
             'x: found "mmm", expected a length such as "m" or "mm"; did you mean "mm"?',
         ),
-        ("rad", "position", "prismatic", 'x: found "rad", expected a length such as "m" or "mm"'),
         ("m", "position", "revolute", 'x: found "m", expected an angle such as "rad" or "deg"'),
-        ("N", "force", "revolute", 'x: found "N", expected a torque such as "N*m" or "mNm"'),
         (None, "force", "prismatic", 'x: no unit, expected a force such as "N" or "mN"'),
     ],
 )
@@ -94,20 +80,6 @@ def test_a_unit_that_does_not_fit_is_named(unit, quantity, axis, message):
 def test_what_is_no_unit_is_refused(unit):
     with pytest.raises(ExperimentError):
         si_factor(unit, quantity="position")
-
-
-@pytest.mark.parametrize(
-    ("quantity", "shown"), [("force", "3 N"), ("dimensionless", "3"), ("velocity", "3 m/s")]
-)
-def test_a_number_without_dimension_is_shown_without_a_unit(quantity, shown):
-    assert f"3{unit_after_number(unit_of(quantity, 'prismatic'))}" == shown
-
-
-def test_a_quantity_or_axis_that_does_not_exist_is_named():
-    with pytest.raises(ExperimentError, match='did you mean "force"?'):
-        unit_of("forse", "prismatic")
-    with pytest.raises(ExperimentError, match='did you mean "revolute"?'):
-        unit_of("force", "revolut")
 
 
 #: "Mm" and "Grad" are words of something else
@@ -156,12 +128,6 @@ def test_any_text_is_a_unit_or_refused_in_one_line(unit, value, quantity, axis):
     except ExperimentError as error:
         assert str(error).isprintable()
         assert str(error).startswith("here: ")
-
-
-def test_the_nearest_name_respects_the_case_if_it_can():
-    assert nearest("mmm", ["Mm", "mm"]) == "mm"
-    assert nearest("COULOMB", ["viscous", "coulomb"]) == "coulomb"
-    assert nearest("xyz", ["viscous", "coulomb"]) is None
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ it may take; what it does not take must never end in an AttributeError from insi
 """
 
 import inspect
-import typing
 from importlib import import_module
 
 import example_objects as objects
@@ -222,63 +221,22 @@ SAYS = {
         lambda: td.EFFECTS["viscouss"],
         'effects: no effect "viscouss"; did you mean "viscous"? (see `teleopdesign effects`)',
     ),
-    "an effect that is there": (
-        lambda: BODY.with_effect(td.EFFECTS["viscous"]),
-        'body: effect "viscous" is there already: with_values changes its values',
-    ),
-    "an effect that the model has": (
-        lambda: td.Model({"device": BODY}).with_effect("viscous"),
-        'with_effect: effect "viscous" is there already at device: with_values changes its values',
-    ),
     "an effect by its name": (
         lambda: BODY.with_effect("spring"),
         'Body.with_effect: effect: found the text "spring", expected an Effect',
-    ),
-    "a misspelt axis": (
-        lambda: td.Body("prismatik", {"inertia": 1.0}),
-        'Body: axis: found "prismatik", expected "prismatic" or "revolute"; did you mean '
-        '"prismatic"?',
     ),
     "a text for a number": (
         lambda: td.Body("prismatic", {"inertia": "heavy"}),
         'body: inertia: found the text "heavy", expected a number (SI)',
     ),
-    "True for a number": (
-        lambda: td.Value(True),
-        "Value: value: found True, expected a number (SI)",
-    ),
     "no number": (
         lambda: td.sine(amplitude=float("nan"), frequency=1.0),
         "sine: amplitude: found the number nan, expected a number (SI), not NaN",
-    ),
-    "a misspelt input": (
-        lambda: td.simulate_diagram(
-            td.haptic_interface(BODY), duration=0.1, inputs={"R_DD": 1.0}, jit=False
-        ),
-        'haptic interface: "R_DD" is not from outside, inputs are R_V, R_D; did you mean "R_D"?',
     ),
     "a misspelt choice": (
         lambda: td.Sampling(velocity="filterd"),
         'Sampling: velocity: found the text "filterd", expected "difference" or "filtered" or '
         '"observer"; did you mean "filtered"?',
-    ),
-    "a value deep inside": (
-        lambda: td.controller("low_pass", {"bandwidth": "20 Hz"}),
-        'controller: values["bandwidth"]: found the text "20 Hz", expected a number (SI)',
-    ),
-    "a text for several": (
-        lambda: td.haptic_interface(BODY, analog="C"),
-        'haptic_interface: analog: found the text "C", expected several, as a tuple or list',
-    ),
-    "a class of a package that is not imported": (
-        lambda: td.from_control("1/s"),
-        'from_control: system: found the text "1/s", expected an InputOutputSystem of '
-        "python-control",
-    ),
-    "a law that is not there": (
-        lambda: td.CONTROLLERS["low_pas"],
-        f'control laws: no control law "low_pas", has {", ".join(td.CONTROLLERS)}; did you mean '
-        '"low_pass"?',
     ),
 }
 
@@ -289,29 +247,3 @@ def test_a_refusal_states_the_value_and_what_was_expected(case):
     with pytest.raises(td.ModelError) as caught:
         call()
     assert str(caught.value) == message
-
-
-def test_a_mistake_about_an_experiment_is_an_experiment_error():
-    with pytest.raises(td.ExperimentError, match="load_experiment: folder: found the number 5"):
-        td.load_experiment(5)
-
-
-@pytest.mark.parametrize(
-    ("annotation", "accepted_values", "refused"),
-    [
-        (float, [1, 2.5, np.float32(1), np.int64(3), sp.Rational(1, 2), float("inf")],
-         [True, np.True_, "1", None, float("nan"), 1j, [1.0], np.zeros(1), sp.Symbol("x")]),
-        (int, [1, np.int64(3)], [True, 1.0, "1", None]),
-        (bool, [True, np.False_], [1, 0, None, "yes"]),
-        (typing.Literal["a", 2], ["a", 2], ["b", 2.0, True, None]),
-        (tuple[str, ...], [(), ("a",)], ["a", ["a"], (1,)]),
-        (tuple[str, float], [("a", 1.0)], [("a",), ("a", "b"), "ab"]),
-        (dict[str, float], [{}, {"a": 1}], [{"a": "b"}, {1: 1.0}, [("a", 1)]]),
-        (np.ndarray, [np.zeros(3), np.zeros((2, 2))], [[0.0], np.array(["a"]), np.float64(1)]),
-        (float | None, [None, 1.0], ["a", True]),
-    ],
-)  # fmt: skip
-def test_an_annotation_takes_and_refuses(annotation, accepted_values, refused):
-    check = arguments.check_of(annotation)
-    assert [v for v in accepted_values if check(v) is not None] == []
-    assert all(check(v) is not None for v in refused)

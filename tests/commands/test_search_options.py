@@ -9,7 +9,7 @@ from teleopdesign.cli import main
 from teleopdesign.commands import _terminal
 from teleopdesign.commands._progress import BETWEEN_LINES, Reporter
 from teleopdesign.commands._terminal import PrintableStream, print_styled
-from teleopdesign.diagnose.progress import ProgressLine
+from teleopdesign.diagnose.candidate_fits import ProgressLine
 from teleopdesign.diagnose.search_plan import PLAN, QUICK
 
 

@@ -8,7 +8,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-import sympy as sp
 
 import teleopdesign as td
 from teleopdesign.blocks import compose_equation
@@ -144,12 +143,3 @@ def test_passivity_of_cancelled_friction_is_proved_as_for_the_law_of_that_name(m
     law = td.cancel({"coulomb": {"level": 0.27}, **more}, smoothing_velocity=smoothing)
     claims = td.diagram_claims(td.haptic_interface(body, cancellation=law)).claims
     assert any(c.claim.status == "proved" for c in claims if c.topic == "friction of Z_M with C")
-
-
-def test_linear_effects_have_a_linear_form():
-    law = td.cancel({"viscous": {"damping": 0.2}, "spring": {"stiffness": 3.0}})
-    s = sp.Symbol("s")
-    form = law.linear_form("C", s, sp.S(0))
-    numbers = {"C_cancel_viscous_damping": 0.2, "C_cancel_spring_stiffness": 3.0}
-    form = form.subs({sp.Symbol(n, real=True): value for n, value in numbers.items()})
-    assert sp.simplify(form - (0.2 * s + 3.0)) == 0

@@ -1,7 +1,5 @@
 """A measured frequency response is a block where a response is enough, and nowhere else."""
 
-import pickle
-
 import control
 import numpy as np
 import pytest
@@ -11,10 +9,6 @@ from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.diagrams import controller_parts, haptic_interface, plant_parts
 from teleopdesign.frequency import bode, delay_margin, loop_gain, matrix_response
-from teleopdesign.passivity import diagram_claims
-from teleopdesign.realise.iosystem import to_iosystem
-from teleopdesign.realise.lti import linear_blocks
-from teleopdesign.simulate import simulate
 
 W = np.geomspace(1.0, 1000.0, 61)
 FILTER = control.tf([30.0], [1.0, 30.0])
@@ -43,29 +37,6 @@ def test_in_series_it_is_a_factor_and_between_two_frequencies_a_line():
     between = 1j * np.sqrt(W[1:] * W[:-1])
     response, known = (loop_gain(interface(law))(between) for law in (both, from_control(FILTER)))
     np.testing.assert_allclose(response / known, 2.0, rtol=0.01)
-
-
-def test_it_is_left_out_by_name_of_what_is_exact():
-    linear = linear_blocks(interface(MEASURED))
-    assert linear.left_out == ("H",)
-    claims = diagram_claims(interface(MEASURED), rng=np.random.default_rng(1))
-    assert "H" in claims.nonlinear
-    assert all(c.claim.status != "proved" or "friction" in c.topic for c in claims.claims)
-
-
-def test_what_it_cannot_be_is_reported_in_one_line():
-    diagram = interface(MEASURED)
-    for make, words in (
-        (lambda: simulate(diagram, duration=0.01), "takes part in frequency responses alone"),
-        (lambda: to_iosystem(diagram), "takes part in frequency responses alone"),
-        (lambda: bode(diagram, frequency=np.array([500.0])), "measured from 1 to 1000 rad/s"),
-        (lambda: loop_gain(diagram)(1.0 + 5.0j), "and off it"),
-        (lambda: loop_gain(diagram).transfer_function(), "is no rational function"),
-        (lambda: pickle.dumps(MEASURED), "not sent to another process"),
-    ):
-        with pytest.raises(ModelError) as caught:
-            make()
-        assert words in str(caught.value) and "\n" not in str(caught.value)
 
 
 def test_a_delay_margin_is_that_of_the_system_that_was_measured():

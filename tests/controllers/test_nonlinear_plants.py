@@ -126,11 +126,3 @@ def test_nothing_is_derived_of_a_plant_that_is_code(use):
     with pytest.raises(ModelError, match="is a plant known as code only") as caught:
         use(held(False))
     assert "\n" not in str(caught.value)
-
-
-def test_what_is_no_plant_is_refused():
-    at_once = control.nlsys(None, lambda t, x, u, p: 2 * u, inputs=1, outputs=1)
-    with pytest.raises(ModelError, match="a position follows a force at once"):
-        plant_parts(at_once, name="P", motion="x", command="u", driver="f")
-    with pytest.raises(ModelError, match="others are for a law that is known as code alone"):
-        Control("K", from_control(LAW), "e", "u", others=("x",))

@@ -9,10 +9,10 @@ from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.derive import transfer_function
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_interface
-from teleopdesign.frequency import delay_margin, describing_function, loop_gain
+from teleopdesign.frequency import delay_margin, loop_gain
 from teleopdesign.passivity import diagram_claims
 from teleopdesign.realise.iosystem import to_iosystem
-from teleopdesign.simulate import Sampling, simulate, simulate_many, sine
+from teleopdesign.simulate import Sampling, simulate, sine
 
 MOTION = {"L": sine(amplitude=0.01, frequency=3.0)}
 
@@ -61,20 +61,6 @@ def test_an_analog_system_is_the_same_through_the_kernel_and_through_python_cont
     assert "plain Python" in simulation.data.attrs["scheme"]
 
 
-def test_a_computer_carries_a_continuous_system_over_a_sample_with_its_input_held():
-    """A linear one written as code, against its exact step; 1e-8: the integrator's 1e-10."""
-    linear = control.nlsys(
-        lambda t, x, u, p: np.array([-50 * x[0] + x[1] + u[0], -30 * x[1] + 2 * u[0]]),
-        lambda t, x, u, p: 3e3 * x[0] + 7 * u[0],
-        inputs=1,
-        outputs=1,
-        states=2,
-    )
-    exact = control.ss([[-50.0, 1.0], [0.0, -30.0]], [[1.0], [2.0]], [[3e3, 0.0]], [[7.0]])
-    forces, expected = (along(from_control(s))["R_MBC"].values for s in (linear, exact))
-    assert np.abs(forces - expected).max() < 1e-8 * np.ptp(expected)
-
-
 @pytest.mark.parametrize("dt", [1e-3, True])
 def test_a_discrete_system_is_stepped_as_python_control_steps_it(dt):
     """An integrator that saturates, with a gain that follows time: to rounding."""
@@ -93,16 +79,6 @@ def test_a_discrete_system_is_stepped_as_python_control_steps_it(dt):
         expected.append(100.0 * x * (1.0 + 5.0 * t) + value**3)
         x = float(np.clip(x + 0.2 * value, -4e-3, 4e-3))
     np.testing.assert_allclose(forces["R_MBC"].values, expected, rtol=0, atol=1e-15)
-
-
-def test_a_discrete_system_needs_a_computer_of_its_period():
-    made = from_control(cubic(dt=1e-3), name="cubic")
-    with pytest.raises(ModelError, match="cubic: is sampled every 1 ms, the computer every 2 ms"):
-        along(made, computer=Sampling(period=2e-3))
-    with pytest.raises(ModelError, match="C: cubic has no form in continuous time"):
-        along(made, computer="continuous")
-    with pytest.raises(ModelError, match="C: cubic has no form in continuous time"):
-        to_iosystem(haptic_interface(body(0.1), cancellation=made))
 
 
 def behind_a_sum(made):
@@ -171,21 +147,3 @@ def test_no_claim_and_no_margin_leaves_it_out_unsaid():
     for one in whole:
         assert one.claim.status == "unknown"
         assert "C is known as code only" in str(one.claim.verdict)
-
-
-@pytest.mark.parametrize(
-    "use",
-    [
-        lambda made: describing_function(made, amplitude=0.01, frequency=1.0),
-        lambda made: simulate_many(
-            haptic_interface(body(0.1), cancellation=made),
-            {"Z_M.inertia": [0.1, 0.2]},
-            duration=0.01,
-            inputs={"R_V": 1.0},
-        ),
-    ],
-)
-def test_what_needs_an_equation_refuses_it_in_one_line(use):
-    with pytest.raises(ModelError, match="nonlinear python-control system") as caught:
-        use(from_control(cubic()))
-    assert "\n" not in str(caught.value)

@@ -31,14 +31,13 @@ class Leaves(SimpleNamespace):
         return self.at_command.blind
 
 
-def fit(error, *, blind=0.0, weak=False, at_command=None, residual=None, known=("device",)):
+def fit(error, *, blind=0.0, at_command=None, residual=None, known=("device",)):
     """A fit that leaves this error, of the force and at the command."""
     left = error * SHAPE if residual is None else residual
     error_there = error if at_command is None else at_command
     command = SimpleNamespace(
         error=error_there,
         blind=blind,
-        weak=weak,
         residual=error_there * SHAPE if residual is None else residual,
         sighted=np.ones(400, dtype=bool),
     )

@@ -8,7 +8,6 @@ from diagnose.stand_ins import fit, floor
 
 from teleopdesign.base.errors import ModelError
 from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.ladder_state import LadderState
 from teleopdesign.diagnose.order import rank_key
 from teleopdesign.diagnose.outside_tone import Tone
@@ -93,7 +92,7 @@ class Table:
 
     def search(self):
         plan = SimpleNamespace(exchanges=2)
-        return SimpleNamespace(prepared=None, criteria=CRITERIA, plan=plan, rank=self.rank)
+        return SimpleNamespace(prepared=None, plan=plan, rank=self.rank)
 
     def state(self, rungs, **more):
         """A ladder of these rungs, beside a low floor."""

@@ -94,7 +94,7 @@ def test_a_search_finds_a_heavy_and_a_light_tip(number, tmp_path):
     )
     base = estimate(stated, prepared)
     new = base.model.with_effect(BACKLASH, at=hidden["at"])
-    rough = estimate_from_starts(new, prepared, base, stated)
+    rough = estimate_from_starts(new, prepared, base)
     assert rough.fit_error < 1.3 * force_error(true, prepared.of("fit"))
 
 
@@ -109,7 +109,7 @@ def test_draws_lead_to_a_wide_gap(seed, tmp_path):
     prepared, stated = prepare(experiment), Model.from_experiment(experiment)
     base = base_of(estimate_stated(stated, prepared), prepared)
     new = base.fit.model.with_effect(BACKLASH, at=hidden["at"])
-    usual = estimate_from_starts(new, prepared, base, stated)
+    usual = estimate_from_starts(new, prepared, base)
     attempt = Candidate(BACKLASH, hidden["at"]), usual
     ((_, best),) = search_among_draws([attempt], base, prepared, stated)
     values = {f"{hidden['at']}.backlash.{n}": v["value"] for n, v in hidden["parameters"].items()}
@@ -133,14 +133,14 @@ def test_draws_are_made_only_for_gaps_that_are_there_and_where_nothing_explains(
         return [true]
 
     monkeypatch.setattr(draws, "best_draws", starts)
-    plan = replace(PLAN, unexplained=0.0)
     absent = replace(absent, model=base.fit.model.with_effect(BACKLASH, at="device"))
-    explained = search_among_draws([(gap, there)], base, prepared, stated)
+    explained = search_among_draws([(gap, there)], base, prepared)
     assert explained == [(gap, there)]
-    kept = search_among_draws([(gap, absent), (spring, there)], base, prepared, plan=plan)
+    monkeypatch.setattr(draws, "PLAN", replace(PLAN, unexplained=0.0))
+    kept = search_among_draws([(gap, absent), (spring, there)], base, prepared)
     assert kept == [(gap, absent), (spring, there)]
     assert not searches
-    ((_, best),) = search_among_draws([(gap, there)], base, prepared, plan=plan)
+    ((_, best),) = search_among_draws([(gap, there)], base, prepared)
     assert searches == [(("backlash", "device"),)]
     assert best.fit_error <= there.fit_error
 
@@ -150,17 +150,18 @@ def test_draws_are_made_only_for_gaps_that_are_there_and_where_nothing_explains(
         return replace(there, fit_residual=nothing, at_bound=("device.coulomb.level",))
 
     monkeypatch.setattr(draws, "estimate_best_start", with_a_bound)
-    kept = search_among_draws([(gap, there)], base, prepared, plan=plan)
+    kept = search_among_draws([(gap, there)], base, prepared)
     assert kept == [(gap, there)]
 
 
-def test_draws_stay_within_bounds_and_leave_fixed_parameters(case):
+def test_draws_stay_within_bounds_and_leave_fixed_parameters(case, monkeypatch):
     _, prepared, stated, _ = case
     base = estimate(stated, prepared)
     new = base.model.with_effect(BACKLASH, at="device")
     plan = replace(PLAN, draws=6, draws_kept=2, draw_evaluations=8)
-    starts = draws.best_draws(new, prepared, base, stated, plan=plan)
-    again = draws.best_draws(new, prepared, base, stated, plan=plan)
+    monkeypatch.setattr(draws, "PLAN", plan)
+    starts = draws.best_draws(new, prepared, base)
+    again = draws.best_draws(new, prepared, base)
     assert [s.parameters for s in starts] == [s.parameters for s in again]
     assert len(starts) == 2 * plan.draws_kept
     usual = [m.parameters["device.backlash.gap"].value for m in make_starts(new, prepared.scales)]
@@ -171,7 +172,7 @@ def test_draws_stay_within_bounds_and_leave_fixed_parameters(case):
         gap = start.parameters["device.backlash.gap"].value
         assert np.sqrt(min(usual) * max(usual)) <= gap <= plan.draws_beyond * max(usual)
     fixed = new.with_values({"device.backlash.gap": Value(1e-3, fixed=True)})
-    for start in draws.best_draws(fixed, prepared, base, plan=plan):
+    for start in draws.best_draws(fixed, prepared, base):
         assert start.parameters["device.backlash.gap"].value == 1e-3
 
 

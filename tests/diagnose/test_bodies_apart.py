@@ -14,7 +14,6 @@ from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate, fit_squares
 from teleopdesign.diagnose.promise import Promises
 from teleopdesign.diagnose.rank import rank_candidates
-from teleopdesign.diagnose.stated import reset_to_stated
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
 
@@ -113,17 +112,6 @@ def test_starts_that_differ_at_one_body_compute_the_other_once(two_bodies, monke
     squares = [promises.squares(start) for start in starts[1:]]
     assert (computed.count("master"), computed.count("slave")) == (1, 2)
     assert squares[0] == squares[2] == Promises(prepared, base).squares(starts[1])
-
-
-def test_the_values_of_a_user_come_back_at_one_body_alone(two_bodies):
-    _, stated = two_bodies
-    moved = stated.with_values(
-        {n: 1.5 * v.value for n, v in stated.parameters.items() if not v.fixed}
-    )
-    back = reset_to_stated(moved, stated, "slave").parameters
-    for name, value in back.items():
-        here = stated if stated.locate(name)[0] == "slave" else moved
-        assert value.value == here.parameters[name].value
 
 
 def test_what_is_gained_at_one_body_does_not_depend_on_effects_at_another(two_bodies):

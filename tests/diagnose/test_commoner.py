@@ -10,7 +10,6 @@ from diagnose.stub_models import Table, candidate
 from teleopdesign.diagnose import moves as module
 from teleopdesign.diagnose import rungs as rungs_module
 from teleopdesign.diagnose.moves import swap
-from teleopdesign.diagnose.older_answers import Place, _is_named
 from teleopdesign.diagnose.probability import list_rarer, shares
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.result import _indistinguishable
@@ -105,8 +104,7 @@ def test_gravity_that_was_set_aside_does_not_come_back_for_a_spring(use):
     table = use()
     state = table.state(table.rungs("spring"))
     gone = SetAside(GRAVITY, 0.3, "the fit records leave its values open")
-    for where in ("set_aside", "barred"):
-        assert swap(table.search(), replace(state, **{where: (gone,)})) is None
+    assert swap(table.search(), replace(state, set_aside=(gone,))) is None
     been = replace(state, visited=frozenset({frozenset({("gravity", "device")})}))
     assert swap(table.search(), been) is None, "a ladder does not go round"
 
@@ -155,12 +153,3 @@ def test_a_spring_and_gravity_stand_beside_each_other_in_the_answer_whichever_is
     assert look_alikes(["stribeck"], "stribeck") == () == look_alikes([], "spring")
     assert look_alikes(["spring"], "spring", "gravity") == (), "the model has both"
     assert look_alikes(["spring"], "spring", arm=True) == (), "the links of an arm have gravity"
-
-
-def test_a_pair_that_stands_beside_a_name_leaves_no_verdict_open_when_an_older_answer_is_read():
-    pair = (Place("spring", "device"), Place("gravity", "device"))
-    assert _is_named(pair, EFFECTS) and _is_named(pair[::-1], EFFECTS)
-    others = (pair[0], Place("bias", "device"))
-    assert not _is_named(others, EFFECTS)
-    assert not _is_named((*pair, others[1]), EFFECTS)
-    assert not _is_named((pair[0], Place("a users own", "device")), EFFECTS)

@@ -56,7 +56,7 @@ def concluded(monkeypatch):
     What would be learned, read or drawn again of records is left out: there are none.
     """
 
-    def run(rungs, *, on_whole=None, barred=()):
+    def run(rungs, *, on_whole=None, set_aside=()):
         table = Table(error)
         stubs = {
             "learnable": lambda *_, **__: None,
@@ -76,7 +76,7 @@ def concluded(monkeypatch):
         search.progress = lambda line: None
         search.generator = lambda: None
         search.plan.omissions = lambda: ()
-        state = table.state(rungs, barred=barred)
+        state = table.state(rungs, set_aside=set_aside)
         return conclude(search, state, tuple(rungs)), state
 
     return run
@@ -112,7 +112,7 @@ def test_a_rung_that_leaves_more_of_the_whole_records_is_left_out(concluded):
 def test_the_answer_sets_no_effect_of_its_ladder_aside(concluded):
     """Alone it only weakened errors of the readings, beside another one it explained the force."""
     aside = tuple(SetAside(one, 0.5, "alone it explains nothing") for one in (SPRING, DRAG))
-    diagnosis, _ = concluded(ladder(Table(error), "bias", "spring"), barred=aside)
+    diagnosis, _ = concluded(ladder(Table(error), "bias", "spring"), set_aside=aside)
     assert added(diagnosis) == [BIAS, SPRING]
     assert diagnosis.set_aside == aside[1:]
 
@@ -246,7 +246,7 @@ def test_a_fit_of_windows_has_the_errors_of_the_whole_records(monkeypatch, has_c
         0.3,
         (),
         *[one.check_residual] * 2,
-        CommandError(one.check_residual, one.at_command.sighted, 0.2, 0.0, False),
+        CommandError(one.check_residual, one.at_command.sighted, 0.2, 0.0),
         *[one.check_blocks] * 2,
         *[one.check_residual] * 3,
     )
@@ -254,9 +254,9 @@ def test_a_fit_of_windows_has_the_errors_of_the_whole_records(monkeypatch, has_c
     monkeypatch.setattr(
         module, "force_error", lambda m, parts: {"fit": 0.5, "check": 0.6}[parts[0]]
     )
-    command = SimpleNamespace(error=0.4, blind=0.1, weak=True)
+    command = SimpleNamespace(error=0.4, blind=0.1)
     monkeypatch.setattr(module, "refer_to_command", lambda model, parts: command)
     again = module._evaluate_on_all(one, SimpleNamespace(of=whole.__getitem__))
     figures = (again.fit_error, again.check_error, again.at_command.error, again.at_command.blind)
     assert figures == ((0.5, 0.6, 0.4, 0.1) if has_check else (0.5, 0.3, 0.2, 0.0))
-    assert again.at_command.weak == has_check and again.model is one.model
+    assert again.model is one.model

@@ -104,8 +104,6 @@ def test_what_makes_a_force_unpredictable_or_only_smaller_has_not_explained_it()
     assert refusal(fit(0.5, blind=0.3), fit(0.3, blind=0.5)) == ""
     assert refusal(fit(0.5, blind=0.3), fit(0.3, blind=0.56)) == "blind"
     assert refusal(fit(0.5, blind=0.2), fit(0.3, blind=0.26)) == "blind"
-    assert refusal(base, fit(0.3, weak=True)) == "weak"
-    assert refusal(fit(0.5, weak=True), fit(0.3, weak=True)) == ""
     # three hundredths of the squares: less of the force, and no less at the command
     assert refusal(base, fit(0.5 * 0.96**0.5, at_command=0.5)) == "hides"
     assert refusal(base, fit(0.5 * 0.98**0.5, at_command=0.5)) == ""
@@ -164,7 +162,7 @@ def test_a_first_step_is_followed_for_a_hundredth_or_where_little_is_left_for_a_
 
 def test_candidates_that_count_come_first_then_those_that_leave_less():
     rows = [
-        ranked(0.2, refused="weak"),
+        ranked(0.2, refused="blind"),
         ranked(0.4),
         ranked(0.3),
         ranked(0.1, is_identifiable=False),
@@ -190,7 +188,7 @@ def test_what_takes_away_half_of_what_the_best_does_is_named_beside_it():
     base, best = fit(1.0), ranked(0.5)  # takes away 0.75 of the squares
     half = ranked((1 - 0.376) ** 0.5, "viscous")
     less = ranked((1 - 0.374) ** 0.5, "spring")
-    barred = ranked(0.5, "cogging", refused="weak")
+    barred = ranked(0.5, "cogging", refused="blind")
     ranking = SimpleNamespace(base=base, ranked=(best, half, less, barred))
     assert select_other_helpers(best, ranking) == (half.candidate,)
 

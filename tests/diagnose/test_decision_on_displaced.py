@@ -141,7 +141,7 @@ def test_a_bound_where_an_effect_is_not_absent_makes_it_not_superfluous():
 
 
 @pytest.mark.parametrize(("before", "after", "gives_way"), [
-    (4.9, 0.9, False), (5.1, 0.9, True), (5.1, 1.1, False), (100.0, 0.5, True),
+    (3.9, 0.9, False), (4.1, 0.9, True), (4.1, 1.1, False), (100.0, 0.5, True),
 ])  # fmt: skip
 def test_what_was_surely_there_and_may_be_absent_now_is_superfluous(before, after, gives_way):
     """In standard errors from absence."""

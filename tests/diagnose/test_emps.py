@@ -25,7 +25,7 @@ def case():
     film = estimate_from_starts(stated.with_effect("shear_thinning"), prepared, before)
     names = ("bias", "coulomb_asymmetry", "viscous_asymmetry", "viscous")
     among = [Candidate(EFFECTS[n], "device") for n in names]
-    return rank_candidates(film, prepared, among=among, stated=stated), prepared
+    return rank_candidates(film, prepared, among=among), prepared
 
 
 def test_a_films_friction_may_differ_by_direction(case):

@@ -13,8 +13,7 @@ from diagnose.test_slip_elements import slip
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.blocks import Value
 from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.further_starts import with_what_they_need
-from teleopdesign.diagnose.search import base_of, estimate_from_starts
+from teleopdesign.diagnose.search import base_of, estimate_from_starts, with_what_they_need
 from teleopdesign.measurement.prepare import prepare
 
 pytestmark = pytest.mark.slow  # fits from many starts
@@ -63,10 +62,10 @@ def test_a_search_never_leaves_more_than_the_model_without_the_effect(tmp_path, 
     experiment = yielding(tmp_path, spring, turned(turns))
     prepared, model = prepare(experiment), Model.from_experiment(experiment)
     rigid = base_of(estimate(model, prepared), prepared)
-    bristle = estimate_from_starts(model.with_effect("presliding"), prepared, rigid, model)
+    bristle = estimate_from_starts(model.with_effect("presliding"), prepared, rigid)
     assert bristle.fit_error < 0.2 < 0.8 < rigid.fit.fit_error
     base = base_of(bristle, prepared)
-    best = estimate_from_starts(bristle.model.with_effect("spring"), prepared, base, model)
+    best = estimate_from_starts(bristle.model.with_effect("spring"), prepared, base)
     assert fit_squares(best) < fit_squares(bristle)
 
 
@@ -90,7 +89,7 @@ def test_the_search_reaches_a_bristle_beside_a_level_of_zero(tmp_path):
     force = prepared.scales["force"]
     assert rigid.model.parameters["device.coulomb.level"].value < 0.2 * force
     assert start.parameters["device.coulomb.level"].value == force
-    best = estimate_from_starts(bristle, prepared, base_of(rigid, prepared), model)
+    best = estimate_from_starts(bristle, prepared, base_of(rigid, prepared))
     assert best.check_error < 0.15 < 0.8 < rigid.check_error
 
 

@@ -29,7 +29,7 @@ def identifiable(effect, **changed):
         ("actuator_lag", "time_constant", 2.0),
         ("stribeck", "stribeck_velocity", 1.0),  # the effect stands on its level
         ("cogging", "period", 1.0),
-        ("backlash", "gap", 5.0),  # without a gap it is another effect
+        ("backlash", "gap", 4.0),  # without a gap it is another effect
         ("backlash", "tip_inertia", 2.0),
         ("backlash", "damping", 1.0),
     ],

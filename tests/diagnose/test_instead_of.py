@@ -19,14 +19,12 @@ from teleopdesign import Body, Model, find_missing, load_experiment
 from teleopdesign.base.errors import ModelError
 from teleopdesign.diagnose.answer import answer, load_answer, write_answer
 from teleopdesign.diagnose.candidates import Candidate, candidates
-from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.decision import find_superfluous_effect
 from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.identifiability import OpenWidths
 from teleopdesign.diagnose.rung import Rung, restore_replaced
 from teleopdesign.diagnose.search import estimate_from_starts
-from teleopdesign.diagnose.stated import reset_to_stated
 from teleopdesign.diagnose.statements import OpenRival
-from teleopdesign.diagnose.width import OpenWidths
 from teleopdesign.effects import EFFECTS
 from teleopdesign.next_experiment.rivals import rival_instead
 from teleopdesign.show.diagnose.text import ladder_text
@@ -142,18 +140,6 @@ def test_a_damper_that_is_there_stays_beside_the_bristle(tmp_path):
     assert damping.value == pytest.approx(300.0, rel=0.1)
 
 
-def test_a_search_that_follows_starts_from_the_users_values_of_what_is_still_there(search):
-    experiment, diagnosis = search
-    stated = Model.from_experiment(experiment, KNOWN)
-    again = reset_to_stated(diagnosis.model, stated)
-    assert not again.body("device").has("viscous")
-    assert again.parameters["device.coulomb.level"].value == 1.0
-    assert (
-        again.parameters["device.presliding.stiffness"]
-        == (diagnosis.model.parameters["device.presliding.stiffness"])
-    )
-
-
 def test_what_ends_at_its_absence_gives_way_before_what_is_only_open(search):
     """Two are no longer told beside a candidate; one of them is gone."""
     names = ("device.coulomb.level", "device.viscous.damping")
@@ -194,14 +180,7 @@ def ranked_beside_discredited(search, monkeypatch, name):
     added = base.model.with_effect("presliding", at="device")
     records = diagnosis.prepared
     fit = estimate_from_starts(added, records, base)
-    return rank._ranked_best(base, (candidate, fit), OpenWidths(records, CRITERIA))
-
-
-def test_what_loses_its_name_beside_a_candidate_gives_way_to_it(search, monkeypatch):
-    """It stood in for the candidate; to refuse that for it would keep the stand-in."""
-    ranked = ranked_beside_discredited(search, monkeypatch, "viscous")
-    assert ranked.instead_of.effect.name == "viscous"
-    assert ranked.counts and not ranked.fit.model.body("device").has("viscous")
+    return rank._ranked_best(base, (candidate, fit), OpenWidths(records))
 
 
 def test_a_candidate_that_needs_what_loses_its_name_is_refused(search, monkeypatch):

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from teleopdesign.blocks import Value
-from teleopdesign.diagnose.open_parameters import open_parameters_line
+from teleopdesign.diagnose.undetermined import open_parameters_line
 
 
 @pytest.mark.parametrize(

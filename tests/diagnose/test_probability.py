@@ -77,15 +77,6 @@ def test_those_as_good_share_what_the_accepted_one_has():
     assert one.probability() == other.probability() == pytest.approx(EVIDENCE.probability() / 2)
 
 
-def test_a_candidate_that_displaces_a_parameter_has_no_share(end):
-    rung = end.rungs[1]
-    first = rung.ranking.ranked[0]
-    bound = replace(first.fit, at_bound=(*first.fit.at_bound, "device.coulomb.level"))
-    spoilt = replace(rung.ranking, ranked=(replace(first, fit=bound), *rung.ranking.ranked[1:]))
-    assert shares(rung.ranking, rung)[first.candidate.key] == pytest.approx(1.0)
-    assert shares(spoilt, rung)[first.candidate.key] == 0.0
-
-
 def test_an_accepted_effect_keeps_its_share_with_a_parameter_at_a_bound(end):
     rung = end.rungs[1]
     first = rung.ranking.ranked[0]

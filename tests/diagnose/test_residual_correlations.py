@@ -18,8 +18,8 @@ def rod():
 def share_outside(model, experiment):
     known = residual_correlations(model, prepare(experiment), "device")
     others = known.lag != 0
-    parts = np.concatenate([known.own[others], known.command])
-    assert known.own[~others] == pytest.approx(1.0)
+    parts = np.concatenate([known.itself[others], known.command])
+    assert known.itself[~others] == pytest.approx(1.0)
     return float(np.mean(np.abs(parts) > known.band))
 
 
@@ -33,7 +33,7 @@ def test_a_right_model_stays_within_the_band_and_one_that_lacks_an_effect_does_n
 def test_the_motion_is_drawn_over_the_measured_one_with_its_fit(rod):
     experiment, _, right = rod
     comparison = td.compare(right, experiment, by="simulation")
-    motion, own, command = comparison.plot().axes
+    motion, itself, command = comparison.plot().axes
     text = motion.get_legend().get_texts()
     fit = comparison.error(float("inf")).fit
     assert f"{fit:.1f} %" in text[1].get_text()
@@ -42,4 +42,4 @@ def test_the_motion_is_drawn_over_the_measured_one_with_its_fit(rod):
     off = np.sqrt(np.mean((simulated.get_ydata() - measured.get_ydata()) ** 2))
     assert fit == pytest.approx(100 * (1 - off / spread), abs=0.01)
     assert motion.get_ylabel() == "position (m)"
-    assert "ms" in own.get_xlabel() and "command" in command.get_ylabel()
+    assert "ms" in itself.get_xlabel() and "command" in command.get_ylabel()

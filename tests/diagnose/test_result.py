@@ -44,7 +44,7 @@ def test_what_became_of_a_candidate_is_reported_where_its_error_does_not_show_it
     assert outcome(end, replace(rung, added=other, alternatives=(candidate,))) == "as good"
     assert outcome(end, replace(rung, added=other, alternatives=())) == ""
     assert outcome(end, replace(rung, added=None, alternatives=())) == ""
-    assert outcome(end, refused="weak", implausible="it is none") == "weak"
+    assert outcome(end, refused="blind", implausible="it is none") == "blind"
     assert outcome(end, implausible="it is none", is_identifiable=False) == "implausible"
     assert outcome(end, is_identifiable=False) == "open"
     at_bound = replace(ranked.fit, at_bound=(*bounds, "device.inertia"))

@@ -56,10 +56,8 @@ def fit(tmp_path_factory):
 def test_the_search_reaches_three_springs(fit):
     """From starts that are not in proportion the search ended at 1.2 %, and noise is 0.2 %."""
     base, prepared = fit
-    stated = base.model
-    best = estimate_from_starts(
-        stated.with_effect("maxwell_slip"), prepared, base_of(base, prepared), stated
-    )
+    springs = base.model.with_effect("maxwell_slip")
+    best = estimate_from_starts(springs, prepared, base_of(base, prepared))
     assert best.check_error < 0.003 < 0.4 < base.check_error
     values = best.model.parameters
     for stiffness in STIFFNESS:

@@ -133,17 +133,6 @@ def test_where_the_readings_explain_what_is_left_an_effect_does_not_explain_it_b
     assert sentence_on_readings(1.15, 1.6, after=0.09) is None, "the readings count for as much"
 
 
-def test_an_effect_that_leaves_less_than_the_readings_alone_would_follows_their_errors():
-    """A lag left half of what a coarse encoder makes of a motor that sticks and slips."""
-    same = dict(before=0.005, after=0.005)
-    sentence = sentence_on_readings(1.3, 0.5, **same, moments=7)
-    assert sentence is not None and sentence.of_readings
-    assert "leaves 0.5 noise floors" in sentence.reason and "(1.3 floors" in sentence.reason
-    assert sentence_on_readings(1.3, 0.81, **same, moments=7) is None, "known to a fifth"
-    assert sentence_on_readings(1.9, 0.5, **same, moments=7) is None, "more than readings"
-    assert sentence_on_readings(1.3, 0.5, **same, moments=12) is None, "acts again and again"
-
-
 @pytest.mark.slow
 def test_an_adequate_model_gets_no_tip_for_the_steps_of_its_encoder(tmp_path):
     """Two sines at 500 Hz, steps of 0.1 mrad, next to no noise of the forces."""

@@ -7,13 +7,8 @@ import pytest
 from effects.recorded import write_recorded
 
 import teleopdesign as td
-from teleopdesign.diagnose.candidates import Candidate, candidates
-from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.search import base_of
-from teleopdesign.diagnose.search_plan import PLAN
-from teleopdesign.diagnose.tip_start import _Course, _linear_problem, tip_starts
+from teleopdesign.diagnose.candidates import candidates
 from teleopdesign.effects import EFFECTS
-from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model
 
 DAMPED = "viscous = { damping = 0.5 }"
@@ -25,7 +20,6 @@ TRUE = {"tip_inertia": 0.06, "stiffness": 800.0, "damping": 1.0, "gap": 1e-3}
 #: parts of a gear, and what its hysteresis was once called
 GEARS = ("coulomb", "stribeck", "transmission_compliance", "backlash", "tip_friction")
 GEARS += ("maxwell_slip", "presliding")
-FRICTION = Candidate(EFFECTS["tip_friction"], "device")
 
 
 @pytest.fixture(scope="module")
@@ -33,44 +27,6 @@ def gear(tmp_path_factory):
     folder = tmp_path_factory.mktemp("gears") / "gap"
     write_recorded(folder, BELIEVED, gap=TRUE["gap"], **GEAR, **RUBBING)
     return td.load_experiment(folder)
-
-
-def test_searches_begin_near_the_true_gap(gear):
-    prepared = prepare(gear)
-    base = base_of(estimate(Model.from_experiment(gear), prepared), prepared).coarse
-    starts = tip_starts(base, prepared.coarse, Candidate(EFFECTS["backlash"], "device"), FRICTION)
-    best = starts[0]
-    assert best.squares == min(s.squares for s in starts)
-    assert best.squares < 0.3 * fit_squares(base)
-    values = {n: v.value for n, v in best.model.parameters.items()}
-    for name in ("tip_inertia", "stiffness", "gap"):
-        assert values[f"device.backlash.{name}"] == pytest.approx(TRUE[name], rel=0.5)
-    assert values["device.tip_friction.level"] == pytest.approx(0.3, rel=0.5)
-    # what the friction behind the gap does is no more put down to the friction before it
-    assert values["device.coulomb.level"] < base.model.parameters["device.coulomb.level"].value
-
-
-def test_a_search_that_nothing_holds_stays_near_its_grid(gear):
-    """Where no gap helps, squares fall a hair to where the tip swings ever faster."""
-    prepared = prepare(gear)
-    base = estimate(Model.from_experiment(gear), prepared)
-    problem = _linear_problem(base, prepared.of("fit"), "device", PLAN)
-    flat = replace(problem, left=problem.left * 0.0)
-    for one in (problem, flat):
-        for swing in (PLAN.tip_swings[1] * 300.0, 20.0):
-            start = _Course(1e-3, swing, 5.0)
-            best = one.refine(start, replace(PLAN, tip_refined=400)).course
-            for name in ("gap", "swing", "slowing"):
-                ratio = getattr(best, name) / getattr(start, name)
-                assert 1 / PLAN.tip_near <= ratio * 1.001 and ratio <= PLAN.tip_near * 1.001
-
-
-def test_no_search_begins_where_a_hand_moves_the_tip(gear):
-    prepared = prepare(gear)
-    base = estimate(Model.from_experiment(gear), prepared)
-    for stretch in prepared.stretches:
-        stretch.motion.interaction[:] = 0.1
-    assert tip_starts(base, prepared, Candidate(EFFECTS["backlash"], "device"), FRICTION) == []
 
 
 @pytest.mark.slow

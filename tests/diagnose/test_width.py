@@ -8,11 +8,11 @@ import sympy as sp
 from diagnose.made_records import write_made
 
 from teleopdesign import Body, Effect, FitSearch, Model, Parameter, load_experiment
-from teleopdesign.diagnose import width
+from teleopdesign.diagnose import identifiability as module
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.identifiability import OpenWidths, explain_open_width
 from teleopdesign.diagnose.rank import make_ranked
-from teleopdesign.diagnose.width import OpenWidths, explain_open_width
 from teleopdesign.measurement.prepare import prepare
 
 LEVEL, WIDTH = 0.3, 0.5
@@ -106,8 +106,8 @@ def ask_width(monkeypatch):
             values.append(model.parameters[OF_WIDTH])
             return ScoredFit(model, (), scores[round(values[-1].value, 6)])
 
-        monkeypatch.setattr(width, "estimate", again)
-        monkeypatch.setattr(width, "whole_score", lambda before, after: before.score - after.score)
+        monkeypatch.setattr(module, "estimate", again)
+        monkeypatch.setattr(module, "whole_score", lambda before, after: before.score - after.score)
         names = {"rounded_friction.level": LEVEL, "rounded_friction.width": WIDTH}
         model = Model({"device": Body("revolute", {"inertia": 1.0, **names}, (effect,))})
         fit = ScoredFit(model, free)
@@ -141,7 +141,7 @@ def test_a_width_beyond_its_bounds_is_not_asked(ask_width):
 
 def test_each_fit_is_asked_once(ask_width, monkeypatch):
     monkeypatch.setattr(
-        width, "explain_open_width", lambda fit, *_, **__: calls.append(fit) or "open"
+        module, "explain_open_width", lambda fit, *_, **__: calls.append(fit) or "open"
     )
     calls, widths = [], OpenWidths(None)
     one, other = ScoredFit(None, ()), ScoredFit(None, ())

@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 import pytest
-from diagrams.test_toml import FREE
 
 from teleopdesign.cli import main
 from teleopdesign.derive import all_transfers
@@ -88,31 +87,3 @@ def test_the_command_prints_draws_and_writes(file, tmp_path, capsys):
     assert figure.read_text(encoding="utf-8").startswith("<svg")
     first = json.loads(answer.read_text(encoding="utf-8"))["transfers"][0]
     assert first["name"] == "x_m/f_h" and first["latex"]
-
-
-def test_the_command_prints_latex_of_a_shipped_diagram(capsys):
-    assert main(["derive", "haptic-interface", "--latex"]) == 0
-    out = capsys.readouterr().out
-    assert r"T_{H} &= Z_{H} \left(Z_{M} + \Gamma Z_{H} - C\right)^{-1} \Gamma" in out
-
-
-def test_what_has_no_linear_form_is_reported(tmp_path, capsys):
-    file = tmp_path / "free.toml"
-    file.write_text(FREE, encoding="utf-8")
-    assert main(["derive", str(file)]) == 0  # one block is known by its name only: no numbers
-    assert "With values" not in capsys.readouterr().out
-    assert main(["derive", "world-haptics-2005", "--speed", "0.02"]) == 0
-    assert "Left out, because they have no linear form: Z_M.coulomb" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("haptic-interfac", 'did you mean "haptic-interface"?'),
-        ("none.toml", "none.toml: cannot be read"),
-    ],
-)
-def test_a_diagram_that_does_not_exist_is_reported_in_one_line(name, words, capsys):
-    assert main(["derive", name]) == 2
-    err = capsys.readouterr().err
-    assert words in err and len(err.splitlines()) == 1

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import felt_friction
 
 
@@ -58,17 +57,3 @@ def test_equal_rods_at_right_angles_are_felt_as_a_cube():
     felt = felt_friction(np.eye(3), [0.5] * 3)
     assert felt.smallest[0] == pytest.approx(0.5)
     assert felt.largest[0] == pytest.approx(0.5 * 3**0.5)
-
-
-@pytest.mark.parametrize(
-    ("geometry", "levels", "message"),
-    [
-        (np.eye(2), [1.0], "expected"),
-        (np.ones((2, 2)), [1.0, 1.0], "singular"),
-        (np.eye(2), [1.0, -1.0], "negative, found -1 N"),
-        (np.eye(17), [1.0] * 17, "up to 16"),
-    ],
-)
-def test_wrong_input_is_named(geometry, levels, message):
-    with pytest.raises(ModelError, match=message):
-        felt_friction(geometry, levels)

@@ -15,7 +15,6 @@ from teleopdesign.diagrams import (
     Junction,
     Linked,
     Moving,
-    haptic_interface,
     read_diagram,
     write_diagram,
 )
@@ -87,7 +86,3 @@ def test_names_of_a_kind_may_stand_in_another_wiring(wire, tmp_path):
     write_diagram(diagram, file)
     assert read_diagram(file) == diagram
     assert main(["derive", str(file)]) == 0
-
-
-def test_a_kind_is_still_known():
-    assert kind_of(haptic_interface(body(), hand=body())) == "haptic interface"

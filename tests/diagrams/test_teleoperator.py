@@ -5,11 +5,10 @@ import pytest
 import sympy as sp
 from devices import body
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import CONTACT
 from teleopdesign.controllers import controller
 from teleopdesign.derive import block_symbol, counterexample, proved_equal, two_port_functions
-from teleopdesign.diagrams import ANY, haptic_interface, teleoperator
+from teleopdesign.diagrams import ANY, teleoperator
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.lti import S, linear_blocks
 from teleopdesign.simulate import simulate, sine
@@ -60,11 +59,6 @@ def test_a_perfect_slave_side_is_felt_as_nothing():
     exact = {C_s: Z_s}
     assert proved_equal(h["h_21"].subs(exact), sp.S(1))
     assert proved_equal(h["h_11"].subs(exact), Z_m)
-
-
-def test_a_haptic_interface_is_no_teleoperator():
-    with pytest.raises(ModelError, match='no teleoperator: it has no signal "X_m"'):
-        two_port_functions(haptic_interface(ANY))
 
 
 @pytest.mark.parametrize(("frequency", "cycles"), [(0.7, 4), (8.0, 16)])
@@ -128,9 +122,3 @@ def test_contact_pushes_the_slave_and_never_pulls():
     force, there = simulation["F_s"].values, simulation["X_s"].values
     assert force.max() <= 0.0 and force.min() < -0.5
     assert np.all(force[there < 1e-3] == 0.0)
-
-
-def test_signals_carry_the_units_of_their_axis():
-    simulation = simulate(linear(), duration=0.01, jit=False)
-    units = {n: simulation[n].attrs["units"] for n in ("X_m", "X_e", "X_s_velocity", "F_P", "U_s")}
-    assert units == {"X_m": "m", "X_e": "m", "X_s_velocity": "m/s", "F_P": "N", "U_s": "N"}

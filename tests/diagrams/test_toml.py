@@ -25,7 +25,6 @@ from teleopdesign.diagrams import (
     read_diagram,
     write_diagram,
 )
-from teleopdesign.diagrams.expressions import read_expression
 from teleopdesign.diagrams.toml_writing import diagram_text
 from teleopdesign.effects import EFFECTS, catalogue
 
@@ -159,12 +158,6 @@ def test_a_shipped_diagram_is_written_by_its_blocks_and_read_as_the_same(name, r
     assert reading(text) == load_shipped(name)
 
 
-def test_a_value_may_carry_its_unit(reading):
-    diagram = reading(FREE)
-    assert diagram.values["M.inertia"] == pytest.approx(0.15, rel=1e-15)
-    assert diagram.block("Z").body is ANY and diagram.block("Z").sign == -1
-
-
 def test_the_short_form_is_wired_as_the_package_does(reading):
     diagram = reading(SHORT)
     blocks = {b.name: b for b in diagram.blocks}
@@ -179,65 +172,23 @@ def test_the_short_form_is_wired_as_the_package_does(reading):
     ("text", "old", "new", "words"),
     [
         (FREE, "loads", "load", 'loop.toml: blocks.M: unknown key "load"'),
-        (FREE, "loads", "load", 'did you mean "loads"'),
         (FREE, "f_k = 1", 'f_k = "1"', 'loop.toml: blocks.M.loads.f_k: found "1", expected a num'),
-        (FREE, '"moving"', '"movin"', 'blocks.M.kind: found "movin", expected moving, attached'),
         (FREE, 'kind = "moving"', "", 'loop.toml: blocks.M: no key "kind"'),
         (FREE, "coulomb]", "coulom]", 'blocks.M.effects: no effect "coulom"; did you mean "coul'),
-        (FREE, "level = 0.5\n\n", "levl = 0.5\n\n", "did you mean"),
-        (
-            FREE,
-            "level = 0.5\n\n",
-            "level = -0.5\n\n",
-            "M.effects.coulomb.level: -0.5 N is outside",
-        ),
+        (FREE, "level = 0.5\n\n", "level = -0.5\n\n", "M.effects.coulomb.level: -0.5 N is out"),
         (FREE, '"g"', '"mm"', 'blocks.M.inertia.unit: found "mm", expected a mass'),
         (FREE, "150", "nan", "loop.toml: blocks.M.inertia.value: found nan"),
-        (FREE, '"prismatic"', '"x"', 'blocks.M.axis: found "x", expected "prismatic" or '),
-        (FREE, "smoothed_", "smooth_", 'blocks.C.law: found "smooth_coulomb"'),
-        (
-            FREE,
-            ", smoothing_velocity = 0.01",
-            "",
-            'blocks.C.parameters: no key "smoothing_velocity"',
-        ),
         (FREE, "velocity = 0.01", "velocity = -1", "loop.toml: blocks.C.parameters: smoothed_coul"),
-        (FREE, 'f = "force"', 'f = "forc"', 'outside.f: found "forc"'),
-        (FREE, '["x"]', '"x"', 'diagram.measured: found "x", expected a list of signals'),
         (FREE, '["x"]', '["y"]', "loop.toml: one body on a spring: measured: nothing makes sign"),
-        (FREE, 'force = "f_k"', 'force = "f_k"\nsign = 2', "blocks.Z.sign: found 2, expected 1 or"),
-        (FREE, "[outside]", "[outsid]", 'unknown key "outsid", expected'),
         (JOINED, "0.1*cos(q)", "0.1*cosh(q)", 'kinematics.x: found function "cosh", expected sin'),
         (JOINED, "0.1*cos(q)", "0.1*cos(r)", 'nothing makes signal "r"'),
-        (JOINED, "0.1*cos(q)", "0.1*cos(q", 'x: found "0.1*cos(q", expected an expression'),
         (JOINED, "0.1*cos(q)", "cos(q)/0", "loop.toml: kinematics.x: has no finite real value"),
-        (JOINED, "0.1*cos(q)", "cos(q)*1e999", "kinematics.x: has no finite real value"),
-        (JOINED, "0.1*cos(q)", "asin(2)", "loop.toml: kinematics.x: has no finite real value"),
-        (JOINED, "0.1*cos(q)", "cos(q, 1)", "kinematics.x: cos: found 2 arguments, expected 1"),
-        (JOINED, "0.1*sin(q)", "q.real", 'y.expression: found "q.real", expected numbers, positi'),
-        (JOINED, "-0.1*sin(q)", "q[0]", 'junctions.t.f_x: found "q[0]", expected numbers'),
         (JOINED, '"-0.1*sin(q)"', "true", "junctions.t.f_x: found true, expected a number"),
-        (JOINED, "f = 1, f_x", 'f = "True", f_x', 'junctions.t.f: found "True", expected a number'),
-        (JOINED, "{ t = 1 }", '{ t = "q" }', 'blocks.M.loads.t: found "q", expected a number'),
-        (JOINED, '"prismatic"', '"linear"', 'kinematics.y.axis: found "linear"'),
         (JOINED, "[[300, -40], ", "[[300], ", "blocks.Z.stiffness: found 2 rows of 1 and 2, expec"),
-        (
-            JOINED,
-            "[[300, -40], ",
-            "[[300, nan], ",
-            "blocks.Z.stiffness: found nan, expected 2 rows",
-        ),
         (JOINED, '["f_x", "f_y"]', '["f_x"]', "Z: 2 rows, found 2 motions and 1 forces"),
-        (JOINED, '["x", "y"]', "[]", "blocks.Z.motions: found none, expected one or more"),
-        (JOINED, "stiffness = [[", "stifness = [[", 'did you mean "stiffness"'),
         (JOINED, "q = 0.4", "q = inf", "loop.toml: pose.q: found inf"),
-        (JOINED, "effects.environment", "effects.environmen", 'did you mean "environment"?'),
-        (SHORT, '"haptic interface"', '"haptic"', 'diagram.kind: found "haptic", expected haptic'),
-        (SHORT, "blocks.Z_H", "blocks.Z_h", 'unknown key "Z_h", expected Z_M, Z_H, C, H, K'),
         (SHORT, "bandwidth = 20", "gain = 20", 'blocks.H.series[2].parameters: unknown key "gain"'),
         (SHORT, "analog", 'law = "lead"\nanalog', "blocks.H.law: found beside series"),
-        (SHORT, "low_pass", "velocity_schedule", "unknown key"),
-        (SHORT, "analog = true", "analog = 1", "blocks.H.analog: found a whole number, expected"),
         (SHORT, "[blocks.Z_H]", "[blocks.Z_H", "loop.toml: not valid TOML"),
     ],
 )
@@ -256,22 +207,6 @@ def test_geometry_and_what_joins_several_motions_are_read(reading):
     assert diagram.block("Z").body.stiffness == ((300.0, -40.0), (-40.0, 200.0))
     assert diagram.block("M").body.effect("environment") is CONTACT
     assert reading(diagram_text(diagram)) == diagram
-
-
-@pytest.mark.parametrize("text", ["9**9**9**9", "(9**64)**64", "x" * 10_001, "(" * 5000 + "x"])
-def test_an_expression_that_would_take_for_ever_is_refused_at_once(text):
-    with pytest.raises(ExperimentError) as caught:
-        read_expression(text, where="here")
-    assert len(str(caught.value)) < 120
-
-
-@pytest.mark.parametrize(
-    "text",
-    ["__import__('os')", "(lambda: 1)()", "[q for q in 'a']", "q if q else 1", "q < 1", "1j"],
-)
-def test_an_expression_is_never_run_as_code(text):
-    with pytest.raises(ExperimentError, match="here: found"):
-        read_expression(text, where="here")
 
 
 def test_parallel_rods_and_arms_are_read_as_they_were_written(reading):
@@ -315,13 +250,6 @@ def test_an_effect_of_the_user_takes_part_in_a_file(tmp_path, capsys):
     assert main(["derive", str(file), "--effect", str(path)]) == 0
     assert main(["derive", str(file)]) == 2
     assert 'no effect "magnet"' in capsys.readouterr().err
-
-
-def test_a_missing_file_and_an_unknown_name_are_reported(tmp_path):
-    with pytest.raises(ExperimentError, match="none.toml: cannot be read"):
-        read_diagram(tmp_path / "none.toml")
-    with pytest.raises(ModelError, match='did you mean "haptic-interface"'):
-        load_shipped("haptic-interfac")
 
 
 def test_an_effect_that_a_reader_would_not_find_is_not_written(tmp_path):

@@ -111,14 +111,6 @@ def test_a_linear_effect_superposes(name, a, b):
     np.testing.assert_allclose(both, apart, rtol=0, atol=1e-9 * size)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_linear_form_is_declared_or_none(name):
-    form = EFFECTS[name].linear_form(S)
-    assert (form is not None) == EFFECTS[name].linear
-    if form is not None:
-        assert form.free_symbols <= {S, *EFFECTS[name].symbols().values()}
-
-
 @pytest.mark.parametrize("frequency", [2.0, 7.0, 15.0])
 @pytest.mark.parametrize("name", [n for n in NAMES if EFFECTS[n].linear])
 def test_the_linear_form_is_the_law_along_a_sine(name, frequency):

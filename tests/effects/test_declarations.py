@@ -3,7 +3,6 @@
 Held against what the physics says of some effects; another effect needs no entry here.
 """
 
-from dataclasses import replace
 from math import pi
 
 import pytest
@@ -11,32 +10,12 @@ import pytest
 from teleopdesign.effects import (
     BLOCK_EFFECTS,
     EFFECTS,
-    Effect,
-    Parameter,
-    acts_linearly,
     depends_on_position,
     depends_on_time,
     period,
 )
 
 KNOWN = {**EFFECTS, **BLOCK_EFFECTS}
-
-#: laws that are sums of signals times constants, and have a linear form
-LINEAR = {
-    *("actuation_delay", "actuator_gain", "actuator_lag", "added_inertia", "arm", "spring"),
-    *("transmission_compliance", "viscous"),
-}
-
-
-#: laws with a product, a sign or a bound
-NONLINEAR = {"coulomb", "presliding", "quadratic_drag", "backlash", "cogging", "contact_damping"}
-
-
-@pytest.mark.parametrize("name", sorted(LINEAR | NONLINEAR))
-def test_linear_laws_have_a_linear_form_and_others_have_none(name):
-    assert KNOWN[name].linear == (name in LINEAR)
-    # a damping counts in contact only, however linear its law
-    assert acts_linearly(KNOWN[name]) == (name in {*LINEAR, "contact_damping"})
 
 
 #: what a law repeats after along the way; None: it depends on the position, and never repeats
@@ -78,16 +57,3 @@ def test_the_force_left_unexplained_leads_the_tip_by_the_stated_rate(name):
     momentum = effect.led_momentum()
     led_momentum = float(momentum.subs({s: values[s.name] for s in momentum.free_symbols}))
     assert led_momentum == pytest.approx(m * led)
-
-
-def test_a_law_whose_slope_does_not_show_it_is_linear_too():
-    """Of (a + b)^2 u - a^2 u the slope 2 (a + b) u - 2 a u holds a until it is expanded."""
-
-    def law(now, p):
-        return ((p.size + p.more) ** 2 - p.size**2) * now.velocity
-
-    size, more = Parameter("damping", "a"), Parameter("damping", "b")
-    effect = Effect("force", law, {"size": size, "more": more}, absent={"size": 0.0})
-    assert effect.strength == "size"
-    square = replace(effect, law=lambda now, p: p.size**2 * p.more * now.velocity)
-    assert square.strength is None

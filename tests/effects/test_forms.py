@@ -21,8 +21,8 @@ from effects.along import (
 from excitation import fit_record
 from truth_effects import PUBLIC
 
-from teleopdesign.blocks import Body, Value
-from teleopdesign.effects import EFFECTS, SIGNALS, load_effect, make_rubbing_structure
+from teleopdesign.blocks import Value
+from teleopdesign.effects import EFFECTS, SIGNALS, make_rubbing_structure
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.ode_scan import ode_scan
 from teleopdesign.realise.traced import Along, Traced
@@ -199,22 +199,6 @@ def test_the_direction_of_motion_is_known_within_a_few_steps_of_every_reversal()
     assert np.mean(motion.direction[moving] == np.sign(motion.velocity[moving])) > 0.99
 
 
-def test_friction_of_a_body_at_rest_balances_up_to_its_level():
-    n = 1500
-    ramp = np.linspace(0.0, 2 * LEVEL, n)
-    motion = motion_along(np.zeros(n), ramp, resolution=STEP)
-    along = residual_along(body_of("coulomb"), motion)
-    stuck = slice(250, 650)  # the command is below the level until sample 750
-    np.testing.assert_allclose(along.residual.value[stuck], 0.0, atol=1e-6 * LEVEL)
-    over = slice(850, 1250)
-    np.testing.assert_allclose(along.friction.value[over], LEVEL, rtol=1e-6)
-    np.testing.assert_allclose(
-        along.residual.value[over],
-        ramp[over] - LEVEL,
-        atol=2 * (ramp[1] - ramp[0]),  # a held command is half a sample late
-    )
-
-
 def test_a_bristle_stiffer_than_the_encoder_sees_is_coulomb_friction():
     x, u, f = signals(4)
     motion = motion_along(encoded(x, STEP), u, f, resolution=STEP)
@@ -231,7 +215,7 @@ def test_a_bristle_stiffer_than_the_encoder_sees_is_coulomb_friction():
 PARAMETERS = [(name, p) for name in NAMES for p in EFFECTS[name].parameters]
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1])
 @pytest.mark.parametrize(
     ("name", "parameter"), [*PARAMETERS, (None, "inertia")], ids=lambda v: str(v)
 )
@@ -274,27 +258,3 @@ def test_tangents_of_friction_pass_through_presliding_and_actuation_together(nam
         ]
         slope = (sides[0] - sides[1]) / (2e-6 * value)
         assert np.linalg.norm(tangent - slope) < 1e-3 * np.linalg.norm(slope), full
-
-
-@pytest.mark.parametrize("name", ["half", "a", "p", "z", "u", "free", "f"])
-def test_an_effect_of_the_user_may_have_any_name(tmp_path, name):
-    """Parameters `step` and `level`: with some names of the effect, words of the generated scan."""
-    path = tmp_path / f"{name}.py"
-    path.write_text(
-        '"""A lag of a user\'s own."""\n'
-        "from teleopdesign.effects import Effect, Parameter, State\n"
-        "EFFECT = Effect(\n"
-        '    role="actuation", law=lambda now, p: now.output,\n'
-        '    parameters={"step": Parameter("time", "time constant"),\n'
-        '                "level": Parameter("dimensionless", "gain")},\n'
-        '    states={"output": State("force", lambda now, p: (p.level * now.command\n'
-        "                                                        - now.output) / p.step)},\n"
-        '    absent={"step": 0.0, "level": 1.0})\n'
-    )
-    effect = load_effect(path)
-    motion = motion_along(*signals(3, 600))
-    values = {f"{name}.step": Value(2e-3), f"{name}.level": Value(1.0)}
-    lag = body_of("actuator_lag", values={"actuator_lag.time_constant": 2e-3})
-    made = Body(lag.axis, {"inertia": lag.parameters["inertia"], **values}, (effect,))
-    along, expected = (residual_along(b, motion).residual.value for b in (made, lag))
-    np.testing.assert_allclose(along, expected, rtol=0, atol=1e-9 * np.abs(expected).max())

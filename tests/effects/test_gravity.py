@@ -48,12 +48,6 @@ def test_over_a_wide_travel_or_near_the_level_gravity_is_recognised_by_its_curva
     assert undetermined(phase, low, high) is None
 
 
-def test_without_samples_or_travel_nothing_is_reported():
-    p = SimpleNamespace(amplitude=2.0, phase=0.0)
-    still = facts(0.3, 0.3)
-    assert EFFECTS["gravity"].undetermined(p, still) is None
-
-
 def test_a_link_that_swings_freely_is_pulled_by_more_than_any_sensor_measures():
     """Swung up by 5 N m against 20 N m of gravity: the inertia takes the rest."""
     plausible, p = EFFECTS["gravity"].plausible, SimpleNamespace(amplitude=20.0, phase=0.0)
@@ -61,11 +55,3 @@ def test_a_link_that_swings_freely_is_pulled_by_more_than_any_sensor_measures():
     assert plausible(p, swinging) is None
     held = replace(facts(-0.01, 0.01), acting=5.0 + 0.1)
     assert "a constant force and a spring" in plausible(p, held)
-
-
-def test_a_spring_says_where_a_hanging_link_would_do_as_well():
-    spring, p = EFFECTS["spring"].undetermined, SimpleNamespace(stiffness=2.0)
-    assert "`gravity`" in spring(p, facts(-1.2, 1.2)) and "2.4 rad" in spring(p, facts(-1.2, 1.2))
-    assert spring(p, facts(-2.0, 2.0)) is None, "there a link's torque falls again"
-    linear = facts(-0.5, 0.5)
-    assert spring(p, replace(linear, axis="prismatic")) is None

@@ -109,12 +109,3 @@ def test_an_older_file_is_refused_with_what_to_write_instead(users_effect, field
     with pytest.raises(ModelError, match=rf"search=FitSearch\({field}=") as refusal:
         load_effect(users_effect)
     assert "\n" not in str(refusal.value)
-
-
-def test_an_effect_file_that_is_not_there_or_has_no_name_is_one_line(tmp_path):
-    with pytest.raises(ModelError, match="no such effect file"):
-        load_effect(tmp_path / "nothing.py")
-    file = tmp_path / "my-effect.py"
-    file.write_text(SOURCE)
-    with pytest.raises(ModelError, match='"my-effect" must be a name such as my_effect.py'):
-        load_effect(file)

@@ -5,13 +5,11 @@ import json
 import numpy as np
 import pytest
 import xarray
-from devices import LUGRE, body
+from devices import body
 
-from teleopdesign.base.errors import ModelError
-from teleopdesign.blocks import Body
 from teleopdesign.controllers import controller
-from teleopdesign.diagrams import four_cases, haptic_interface, world_haptics_2005
-from teleopdesign.frequency import bode, falling_profile, measured_impedance, simulated_response
+from teleopdesign.diagrams import haptic_interface
+from teleopdesign.frequency import bode, measured_impedance, simulated_response
 
 LINEAR = body(0.2, viscous__damping=3.0, spring__stiffness=500.0)
 
@@ -49,51 +47,6 @@ def test_phase_loss_over_a_decade_stays_below_its_bound(coulomb):
     assert float(spread.max()) > 50
 
 
-def test_cycles_settle_behind_a_slow_filter():
-    """At 100 Hz a filter of 20 Hz loses 72 % a cycle: more than the first four cycles."""
-    feedback = controller("low_pass", {"bandwidth": 20.0})
-    diagram = haptic_interface(LINEAR, force_feedback=feedback, analog=("H",))
-    impedance = measured_impedance(diagram, amplitude=1e-3, frequency=100.0)
-    expected = bode(diagram, output="E", input="L", given="L", frequency=np.array([100.0]))
-    assert float(impedance.data["unsettled"].max()) < 3e-4
-    # 0.1 %: what the tolerance of settling allows
-    np.testing.assert_allclose(impedance.data["impedance"].item(), expected.values()[0], rtol=1e-3)
-
-
-def test_amplitude_can_follow_a_profile():
-    impedance = measured_impedance(
-        haptic_interface(LINEAR), amplitude=falling_profile(0.01), frequency=[1.0, 10.0]
-    )
-    assert impedance.on_profile
-    np.testing.assert_allclose(impedance.data["amplitude"], [0.01, 0.01 * 10**-0.8])
-    with pytest.raises(ModelError, match="function of frequency"):
-        impedance.spread()
-
-
-def test_a_revolute_axis_has_revolute_units():
-    # of the structure of LINEAR, whose kernel is there
-    wheel = Body("revolute", LINEAR.parameters, LINEAR.effects)
-    impedance = measured_impedance(haptic_interface(wheel), amplitude=0.1, frequency=2.0)
-    assert impedance.data["impedance"].attrs["units"] == "N*m/rad"
-    assert impedance.data["amplitude"].attrs["units"] == "rad"
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"amplitude": -1e-3}, "amplitude: found -0.001"),
-        ({"frequency": [1.0, float("nan")]}, r"frequency\[1\]: found the number nan"),
-        ({"drive": "L_d"}, '"L_d" cannot be driven.*did you mean'),
-        ({"force": "F"}, 'no signal "F"'),
-    ],
-)
-def test_a_wrong_request_is_reported_in_one_line(arguments, message):
-    with pytest.raises(ModelError, match=message):
-        measured_impedance(
-            haptic_interface(LINEAR), **({"amplitude": 1e-3, "frequency": 1.0} | arguments)
-        )
-
-
 def test_results_are_written_with_units(coulomb, tmp_path):
     coulomb.to_netcdf(tmp_path / "map.nc")
     with xarray.open_dataset(tmp_path / "map.nc") as read:
@@ -128,14 +81,3 @@ def test_a_linear_loop_simulated_agrees_with_its_symbolic_response():
     f = np.array([0.5, 2.0, 5.0, 20.0, 100.0])
     response = simulated_response(diagram, amplitude=1.0, frequency=f)
     np.testing.assert_allclose(response.values(), bode(diagram, frequency=f).values(), rtol=1e-3)
-
-
-@pytest.mark.slow
-def test_how_ideal_the_contact_is_hardly_matters():
-    """LuGre beside the four cases: halving the give moves sizes by less than 0.1 dB."""
-    cases = four_cases(world_haptics_2005()) | {"LuGre": haptic_interface(body(**LUGRE))}
-    coarse, fine = (
-        measured_impedance(cases, amplitude=[5e-4, 1e-2], frequency=[2.0, 15.0], give=width)
-        for width in (1e-5, 5e-6)
-    )
-    assert float(np.abs(coarse.decibel - fine.decibel).max()) < 0.1

@@ -1,6 +1,5 @@
 """Loops of a controller that samples and holds: exact margins, and what else is said."""
 
-import pickle
 from dataclasses import replace
 from fractions import Fraction
 
@@ -143,9 +142,3 @@ def test_a_window_of_dead_times_about_a_whole_sample_is_detected():
     assert margin == pytest.approx(0.130849, rel=1e-5)
     for share, grows in ((0.999, False), (1.001, True)):
         assert loop.with_delay(share * margin).grows() == grows
-
-
-def test_a_sampled_loop_survives_pickling():
-    loop = loop_gain(interface(gain(1.0)))
-    gain_margin(loop)
-    assert gain_margin(pickle.loads(pickle.dumps(loop))) == gain_margin(loop)

@@ -70,9 +70,3 @@ def test_loops_and_matrices_say_that_friction_is_left_out(cancelled):
     assert "its cancellation C is not" in str(loop)
     matrix = matrix_response(cancelled, ["R_M"], ["R_D"], [1.0, 10.0])
     assert "its cancellation C is not" in str(matrix) and "UNSTABLE" in str(matrix)
-
-
-def test_axes_name_the_signals(cancelled):
-    axes = td.bode(cancelled, speed=0.1).plot().axes
-    for axis in axes:
-        assert "R" in axis.get_ylabel() and "M" in axis.get_ylabel() and "D" in axis.get_ylabel()

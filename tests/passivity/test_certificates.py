@@ -1,6 +1,5 @@
 """Certificates: a small program verifies them without the package, and refuses the rest."""
 
-import ast
 import copy
 import hashlib
 import json
@@ -15,81 +14,15 @@ import sympy as sp
 from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import (
     Certificate,
-    absolutely_stable,
-    any_environment,
-    bounded_compensation,
     checker,
     dahl_compensation,
-    delayed_small_motion,
-    delayed_spring,
-    lugre_passivity,
-    passive,
     positive_real,
-    quantised_spring,
     read_certificate,
-    sampled_passivity,
-    teleoperator_two_port,
+    read_record,
+    write_record,
 )
-from teleopdesign.realise.lti import S
 
 FOLDER = Path(checker.__file__).parent
-
-PROVED = {
-    "impedance": lambda: positive_real(0.15 * S + 4 + 300 / S),
-    "two-port": lambda: passive(teleoperator_two_port(master=S + 1, slave=S + 2, stiffness=10)),
-    "stable two-port": lambda: absolutely_stable(
-        teleoperator_two_port(master=S + 1, slave=S + 2, stiffness=10)
-    ),
-    "delayed coupling": lambda: delayed_spring(
-        master_inertia=1, master_damping=2, slave_inertia=1, slave_damping=2, stiffness=9, delay=0.1
-    ),
-    "sampled": lambda: sampled_passivity(1000, damping=1, sample_time=1e-3),
-    "bounded": lambda: bounded_compensation(coulomb_level=1, bound=0.9),
-    "coulomb": lambda: dahl_compensation(
-        coulomb_level=1, compensator_level=1, compensator_stiffness=1e4
-    ),
-    "presliding": lambda: dahl_compensation(
-        coulomb_level=0.5,
-        compensator_level=0.4,
-        compensator_stiffness=1e3,
-        presliding_stiffness=2e3,
-        highest_level=0.7,
-    ),
-    "identical": lambda: dahl_compensation(
-        coulomb_level=1, compensator_level=1, compensator_stiffness=1e3, presliding_stiffness=1e3
-    ),
-    "lugre": lambda: lugre_passivity(
-        coulomb_level=0.5,
-        static_level=0.6,
-        stiffness=1e5,
-        bristle_damping=20,
-        viscous_damping=4,
-        stribeck_velocity=0.005,
-    ),
-    "motor": lambda: any_environment(
-        motor_level=1,
-        link_level=2,
-        transmission_stiffness=1e4,
-        compensator_level=0.9,
-        compensator_stiffness=1e4,
-    ),
-    "quantised": lambda: quantised_spring(
-        stiffness=1000, damping=4, sample_time=1e-3, step=1e-4, coulomb_level=0.2
-    ),
-    "late": lambda: delayed_small_motion(
-        damping=2, compensator_stiffness=5e3, delay=1e-3, presliding_stiffness=1e4
-    ),
-}
-
-
-@pytest.fixture(scope="module")
-def certificates():
-    """Each certificate of the claims above, by name."""
-    return {
-        f"{name} {k}": certificate
-        for name, claim in PROVED.items()
-        for k, certificate in enumerate(claim().certificates)
-    }
 
 
 def resealed(content):
@@ -99,21 +32,6 @@ def resealed(content):
     return Certificate({**body, "digest": hashlib.sha256(text.encode()).hexdigest()})
 
 
-@pytest.mark.parametrize("file", sorted(FOLDER.glob("*.py")), ids=lambda file: file.name)
-def test_the_checker_is_one_folder_that_imports_only_the_standard_library(file):
-    """`__main__.py` imports its own package by a name that it has, and nothing else so."""
-    source = file.read_text()
-    nodes = [n for n in ast.walk(ast.parse(source)) if isinstance(n, ast.Import | ast.ImportFrom)]
-    imports = [n for n in nodes if isinstance(n, ast.ImportFrom) and n.level]
-    assert all(n.level == 1 and (FOLDER / f"{n.module}.py").is_file() for n in imports)
-    names = {alias.name for n in nodes if isinstance(n, ast.Import) for alias in n.names}
-    names |= {str(n.module) for n in nodes if isinstance(n, ast.ImportFrom) and not n.level}
-    assert {n.split(".")[0] for n in names} <= sys.stdlib_module_names
-    assert file.name == "__main__.py" or "importlib" not in names
-    called = {n.id for n in ast.walk(ast.parse(source)) if isinstance(n, ast.Name)}
-    assert not called & {"eval", "exec", "compile", "__import__", "getattr", "globals"}
-
-
 def test_the_checker_is_short_enough_to_be_read_whole():
     """1900 lines in files of at most 300, each a concept with its proof."""
     lengths = [len(file.read_text().splitlines()) for file in FOLDER.glob("*.py")]
@@ -121,7 +39,7 @@ def test_the_checker_is_short_enough_to_be_read_whole():
 
 
 def test_every_proof_has_certificates_that_the_checker_accepts(certificates):
-    assert len(certificates) >= len(PROVED)
+    assert len(certificates) >= 13
     for name, certificate in certificates.items():
         assert certificate.check(), name
 
@@ -139,14 +57,6 @@ def test_the_statement_is_made_from_the_content_and_holds_its_values(certificate
     content = {**content, "example": {**content["example"], "f_D": "500"}}
     with pytest.raises(ModelError, match="example: enough does not hold"):
         resealed(content).check()
-
-
-def test_the_statement_names_rates_supply_storage_and_what_is_assumed(certificates):
-    statement = certificates["lugre 0"].check()
-    for part in ("d/dt y = ", "V = y**2/(2*sigma_0)", "F_S - y >= 0", "g > 0", "sigma_0 = 100000"):
-        assert part in statement
-    statement = certificates["two-port 0"].check()
-    assert "[[s + 1 + 10/s, -10/s], [-10/s, s + 2 + 10/s]] is positive real" in statement
 
 
 @pytest.mark.slow
@@ -175,12 +85,6 @@ def test_a_certificate_survives_its_file(certificates, tmp_path):
     for certificate in certificates.values():
         certificate.write(tmp_path / "c.json")
         assert read_certificate(tmp_path / "c.json").content == certificate.content
-
-
-def test_a_file_that_is_no_certificate_is_one_clear_line(tmp_path):
-    (tmp_path / "c.json").write_text("{")
-    with pytest.raises(ModelError, match=r"c\.json: refused: no certificate"):
-        read_certificate(tmp_path / "c.json")
 
 
 def test_any_change_breaks_the_digest(certificates):
@@ -258,50 +162,48 @@ def _proof_of_one_sign_missing(forged):
     forged["proofs"]["supply"].popitem()
 
 
-def test_a_storage_must_not_assume_what_a_state_does(certificates):
-    """A bound on a state is an invariant to be shown; as a mere assumption it is refused."""
-    forged = copy.deepcopy(dict(certificates["coulomb 0"].content))
-    kept = forged["invariant"].pop("below")
-    forged["nonnegative"]["below"] = kept["expression"]
-    with pytest.raises(ModelError, match="a state or a sign is assumed"):
-        resealed(forged).check()
+s = sp.Symbol("s")
 
 
-def test_a_storage_must_not_depend_on_a_signal(certificates):
-    forged = copy.deepcopy(dict(certificates["presliding 0"].content))
-    forged["constants"].remove("sigma_p")
-    forged["signals"].append("sigma_p")
-    with pytest.raises(ModelError, match="depends on a signal"):
-        resealed(forged).check()
-
-
-def test_what_may_divide_by_zero_is_refused(certificates):
-    forged = copy.deepcopy(dict(certificates["presliding 0"].content))
-    del forged["positive"]["softer"]  # sigma_p = sigma_D, and V is infinite
-    with pytest.raises(ModelError, match="divide by zero"):
-        resealed(forged).check()
-
-
-@pytest.mark.parametrize("impedance", ["s - 1", "1/(s**2 + 2*s + 1)", "-s", "1/s**2", "s**2", "-1"])
-def test_an_impedance_that_is_not_positive_real_is_refused(impedance, certificates):
-    forged = {**certificates["impedance 0"].content, "impedance": [[impedance]]}
-    with pytest.raises(ModelError, match="certificate"):
-        resealed(forged).check()
+@pytest.fixture(scope="module")
+def motions(tmp_path_factory):
+    """A growing wave and a cycle as plain data."""
+    folder = tmp_path_factory.mktemp("motions")
+    claims = {
+        "wave": positive_real((s**2 - sp.Rational(1, 10) * s + 1) / (s + 1) ** 2),
+        "cycle": dahl_compensation(
+            coulomb_level=0.5, compensator_level=0.6, compensator_stiffness=1e4
+        ),
+    }
+    strokes = {}
+    for name, claim in claims.items():
+        path = folder / f"{name}.json"
+        write_record(claim.record, path)
+        assert read_record(path).replay() > 0
+        strokes[name] = json.loads(path.read_text())
+    return strokes
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["__import__('os').system('true')", "s.__class__", "(lambda: 1)()", "exit()", "1e3", "", "s s"],
+    ("name", "key", "value"),
+    [
+        ("wave", "rate", "1e999999999"),
+        ("wave", "frequency", "9" * 100_000),
+        ("wave", "rate", 3),
+        ("wave", "impedance", [["__import__('os').system('true')"]]),
+        ("wave", "impedance", [["9**9**9**9"]]),
+        ("wave", "velocity", [[1e308, 1e308]]),
+        ("cycle", "rounds", 10**15),
+        ("cycle", "rounds", -1),
+        ("cycle", "rounds", "__import__('os')"),
+        ("cycle", "turning_points", [0.1] * 100_000),
+        ("cycle", "compensator", ["sys", "exit"]),
+        ("cycle", "kind", "__class__"),
+    ],
 )
-def test_a_certificate_cannot_run_code(text, certificates):
-    forged = {**certificates["impedance 0"].content, "impedance": [[text]]}
-    with pytest.raises(ModelError, match="refused"):
-        resealed(forged).check()
-
-
-@pytest.mark.parametrize("expression", [sp.Float(0.5), sp.sqrt(2), sp.exp(S), 0.1 * S, sp.oo])
-def test_only_rational_expressions_are_written(expression):
-    from teleopdesign.passivity.claims.certificate import matrix_certificate
-
-    with pytest.raises(ModelError, match="expected a rational expression"):
-        matrix_certificate("not rational", [[expression]])
+def test_a_spoilt_record_is_refused_in_one_line(motions, name, key, value, tmp_path):
+    path = tmp_path / "motion.json"
+    path.write_text(json.dumps({**motions[name], key: value}))
+    with pytest.raises(ModelError) as refused:
+        read_record(path)
+    assert "\n" not in str(refused.value) and len(str(refused.value)) < 400

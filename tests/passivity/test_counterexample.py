@@ -2,14 +2,11 @@
 
 import numpy as np
 import pytest
-from devices import body
 
 import teleopdesign as td
-from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.passivity import Strokes, released_energy, search_counterexample
-from teleopdesign.simulate import Sampling
 
 
 def joint(level, stiffness, compensation=None, damping=0.0):
@@ -77,34 +74,3 @@ def test_a_motion_that_gives_out_energy_is_detected_and_replays(friction, compen
     assert claim.record.energy > 0
     assert claim.record.replay() == pytest.approx(claim.record.energy)
     assert claim.record.as_dict()["turning_points"]
-
-
-@pytest.mark.slow
-def test_viscous_damping_hides_over_compensation_from_fast_motion_only():
-    """At speeds above (f_D - f_C)/B damping takes more than is given out: slow motion gives."""
-    claim = searched(joint(0.5, None, (0.6, 1e5), damping=1.0), tries=30)
-    assert claim.status == "refuted"
-    assert claim.record.strokes.speed < 0.3
-
-
-@pytest.mark.slow
-def test_a_sampled_compensator_within_the_level_is_passive_too():
-    diagram = joint(0.5, None, (0.45, 1e4))
-    claim = searched(diagram, computer=Sampling(period=1e-3, delay=1e-3), tries=6)
-    assert claim.holds
-
-
-def test_a_stroke_that_makes_no_sense_is_refused():
-    with pytest.raises(ModelError, match="expected stroke and speed > 0"):
-        searched(joint(0.5, None), stroke=0.0)
-
-
-@pytest.mark.slow
-def test_evidence_says_what_a_motion_that_does_not_return_would_keep():
-    """A spring that pushes away gives 1/2 K x^2, 0.2 J at 2 cm, and takes it back."""
-    pushes = controller("spring_damper", {"stiffness": 1000.0, "damping": 0.0})
-    diagram = haptic_interface(body(0.3, viscous__damping=2.0), cancellation=pushes)
-    rng = np.random.default_rng(1)
-    claim = search_counterexample(diagram, stroke=0.02, speed=0.1, rng=rng, tries=3)
-    assert claim.status == "evidence" and "that returns" in claim.statement
-    assert "on the way back to its start one releases 0." in claim.verdict.searched

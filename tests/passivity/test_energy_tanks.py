@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import energy_tanks, four_channel, teleoperator
-from teleopdesign.passivity import energy_tank
 from teleopdesign.simulate import Sampling, simulate, sine
 
 PERIOD, RESERVE, TRAVEL = 1e-3, 0.02, 2e-3
@@ -106,16 +105,6 @@ def test_no_channel_makes_both_ends_give_out_more_than_their_reserves(delay, sha
     check_a_run(delay=delay, share=share, seed=seed, duration=1.0, jit=False)
 
 
-def test_forces_that_the_tanks_bear_are_left_alone():
-    """A reserve that is never used changes no motion."""
-    spring = controller("spring_damper", {"stiffness": 200.0, "damping": 3.0})
-    sides = body(0.3, viscous__damping=1.0), body(0.3, viscous__damping=1.0)
-    plain = teleoperator(*sides, coupling=spring)
-    with_tanks = energy_tanks(plain, reserve=10.0, travel=TRAVEL)
-    first, second = (moved(d, push, 0.3, jit=False) for d in (plain, with_tanks))
-    np.testing.assert_allclose(first["X_s"].values, second["X_s"].values, rtol=0, atol=1e-12)
-
-
 def test_the_count_of_a_held_force_is_its_work_exactly():
     """Trapezia would count the force of the next sample; the held one acts along the travel."""
     spring = controller("spring_damper", {"stiffness": 200.0, "damping": 0.0})
@@ -135,23 +124,6 @@ def test_the_count_of_a_held_force_is_its_work_exactly():
         for name, sign in (("given", 1), ("taken", -1)):
             counted = simulation[f"{name}_Z_{side}"].values
             np.testing.assert_allclose(counted, np.maximum(sign * work, 0).cumsum(), atol=1e-12)
-
-
-def test_the_bound_is_proved_and_its_certificate_checked():
-    claim = energy_tank(reserve=0.02, travel=0.002)
-    assert claim.status == "proved" and "0.04 J more" in claim.statement
-    assert claim.certificates[0].check()
-
-
-@pytest.mark.slow
-def test_a_travel_above_the_largest_overdraws_a_tank():
-    """The hypothesis is needed: a force that is held over a longer way gives more."""
-    made = energy_tanks(
-        position_force(delay=0.03, share=0.3, seed=0.3), reserve=RESERVE, travel=TRAVEL / 100
-    )
-    simulation = moved(made, push, jit=False)
-    assert largest_travel(simulation) > TRAVEL / 100
-    assert min(simulation[f"tank_{n}"].values.min() for n in ("Z_m", "Z_s")) < -RESERVE
 
 
 def test_a_second_tank_or_no_body_is_reported_in_one_line():

@@ -2,22 +2,19 @@
 
 import inspect
 import random
-import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from devices import body
-from passivity.test_theorems import GIVING, IDEAL, QUESTIONS, SMOOTHED
+from passivity.test_theorems import QUESTIONS
 
 from teleopdesign.base.errors import ModelError
-from teleopdesign.blocks import Body
-from teleopdesign.controllers import CONTROLLERS, controller
+from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
 from teleopdesign.passivity import Search, diagram_claims
-from teleopdesign.passivity.identified import identify_device
-from teleopdesign.passivity.theorems import THEOREMS, Question, Wall, settle
+from teleopdesign.passivity.theorems import THEOREMS, settle
 from teleopdesign.passivity.theorems._hypotheses import Positive, hypotheses_of, require_hypotheses
 from teleopdesign.passivity.theorems.compliant_transmission import free_motion
 from teleopdesign.passivity.theorems.velocity_compensation import velocity_compensation
@@ -55,11 +52,6 @@ def inside(function, rng):
         if name in samples:
             samples[name] = low + samples[name]
     return samples
-
-
-def test_every_file_of_theorems_states_one_with_its_mathematics():
-    assert all(theorem.mathematics for theorem in THEOREMS.values())
-    assert {"velocity_compensation", "delayed_spring", "any_environment"} <= set(NAMES)
 
 
 @pytest.mark.parametrize(("theorem", "function"), FUNCTIONS, ids=NAMES)
@@ -138,14 +130,6 @@ def test_a_delay_of_no_whole_number_of_samples_is_proved_nothing(delay):
         assert proved <= bounded | {f"{t}, continuous time" for t in bounded}
 
 
-def test_a_law_of_velocity_is_asked_about_devices_and_spends_their_damping():
-    """sqrt(f_D) <= sqrt(f_0) + sqrt(a B): f_D = 0.4 N, a = 0.01 m/s, B = 1 N s/m."""
-    topic = "law of velocity, with damping"
-    for device, status in ((IDEAL, "proved"), (GIVING, "refuted")):
-        claims = {one.topic: one for one in settle(Question(device, SMOOTHED), simulated=False)}
-        assert claims[topic].claim.status == status and claims[topic].spends_damping
-
-
 def test_no_claim_on_a_wall_passes_over_steps_of_the_encoder():
     for question in QUESTIONS:
         if question.wall is None or question.computer is None:
@@ -169,42 +153,3 @@ def test_damping_that_a_theorem_spends_is_not_spent_again_by_the_linear_rest():
     by_topic = {one.topic: one.claim.status for one in whole.claims}
     assert "proved" in [s for t, s in by_topic.items() if t.startswith("friction of Z_M with C")]
     assert by_topic.get("all ports, any motion") != "proved"
-
-
-@pytest.mark.parametrize("name", ["dahl", "smoothed_coulomb", "coulomb"])
-def test_claims_on_a_revolute_axis_have_its_units(name):
-    values = {"level": 0.4, "stiffness": 1e3, "smoothing_velocity": 0.1}
-    law = controller(name, {n: values[n] for n in CONTROLLERS[name].parameters})
-    for wall in (None, Wall(10.0, 0.1)):
-        for effects in ({}, {"presliding": {"stiffness": 2e3, "bristle_damping": 0.0}}):
-            made = Body("revolute", {"inertia": 0.01})
-            made = made.with_effect(EFFECTS["coulomb"], {"level": 0.5})
-            made = made.with_effect(EFFECTS["viscous"], {"damping": 0.1})
-            for effect, parameters in effects.items():
-                made = made.with_effect(EFFECTS[effect], parameters)
-            for computer in (None, Sampling(1e-3, 0.0, 1e-4)):
-                question = Question(identify_device(made), law.stages[0], wall, computer)
-                for one in settle(question, simulated=False):
-                    text = f"{one.claim.statement} {one.claim.verdict}"
-                    assert not re.search(r"\d N(?! m\b)|N s/m|\d m/s|\d kg(?! m)|\d m\b", text)
-
-
-@pytest.mark.slow
-def test_proved_in_continuous_time_says_so_in_its_heading():
-    """Not where a computer is in the theorem, nor where it holds for both."""
-    for question in QUESTIONS:
-        for one in settle(question, simulated=False):
-            if one.claim.status == "proved":
-                assert one.heading == "proved" + " (in continuous time)" * (
-                    one.time == "continuous"
-                )
-                if question.computer is not None and one.time == "sampled":
-                    assert "(in continuous time)" not in one.heading
-    law = controller("lead", {"gain": 30.0, "zero": 1.0, "pole": 10.0})
-    device = body(0.15).with_effect(EFFECTS["viscous"], {"damping": 5.0})
-    for diagram, sampled in (
-        (haptic_interface(device, cancellation=law), True),
-        (haptic_interface(device, cancellation=law, analog=("C",)), False),
-    ):
-        text = repr(diagram_claims(diagram, rng=np.random.default_rng(0), search=Search(tries=1)))
-        assert ("proved (in continuous time)" in text) is (sampled and "proved" in text)

@@ -5,10 +5,9 @@ from dataclasses import replace
 import pytest
 
 import teleopdesign as td
-from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import Controller, controller
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.effects import EFFECTS, Effect, Parameter
+from teleopdesign.effects import EFFECTS
 from teleopdesign.passivity.device_claims import Compensator, margins
 from teleopdesign.passivity.diagram_claims import friction_pairs, pair_claims
 from teleopdesign.passivity.identified import DIGITS, identify_device
@@ -59,34 +58,6 @@ def test_bristle_damping_below_a_falling_level_is_not_dropped():
     assert list(margins(identify_device(body))) == []
 
 
-def test_viscous_damping_makes_up_for_it():
-    # s1 (F_S/F_C - 1) = 12 N s/m
-    body = body_of(**SLOPE, presliding=BRISTLE, viscous={"damping": 12.01})
-    claim = claims_on(body)["95 % interval"]
-    assert claim.status == "proved"
-    assert "bristle damping 30 and viscous damping 12.01 N s/m counted" in claim.statement
-    assert len(claim.certificates) == 2
-    for certificate in claim.certificates:
-        certificate.check()
-    assert (
-        claims_on(body_of(**SLOPE, presliding=BRISTLE, viscous={"damping": 11.9}))[
-            "95 % interval"
-        ].status
-        == "unknown"
-    )
-
-
-def test_bristle_damping_of_a_constant_level_takes_energy():
-    assert set(statuses(body_of(presliding=BRISTLE)).values()) == {"proved"}
-
-
-def test_in_a_diagram_bristle_damping_counts_too():
-    body = body_of(**SLOPE, presliding=BRISTLE)
-    law = controller("dahl", {"level": 0.4, "stiffness": 1e4})
-    (pair,) = friction_pairs(haptic_interface(body, cancellation=law))
-    assert [one.claim.status for one in pair_claims(pair)] == ["unknown"]
-
-
 @pytest.mark.parametrize(
     ("effect", "values", "ideal", "gives"),
     [
@@ -124,40 +95,6 @@ def test_damping_of_one_direction_counts_against_that_of_the_other():
     assert wall.claim.status == "unknown"
 
 
-def users_effect(role, law, **more):
-    parameters = {"size": Parameter("force", "size")}
-    made = Effect(role=role, law=law, parameters=parameters, absent={"size": 0.0}, **more)
-    return made.named("own", "Own.")
-
-
-def test_a_users_force_that_does_not_say_leaves_claims_open():
-    def law(now, p):
-        return -p.size * now.velocity
-
-    body = body_of().with_effect(users_effect("force", law), {"size": 0.1})
-    assert identify_device(body).set_aside == ("own",)
-    claims = claims_on(body)["any law within the level"]
-    assert claims.status == "unknown"
-    assert "own may supply energy" in str(claims.verdict)
-    false = body_of().with_effect(users_effect("force", law, energy="dissipates"), {"size": 0.1})
-    assert identify_device(false).set_aside == ("own",)
-
-    def damping(now, p):
-        return p.size * now.velocity
-
-    true = body_of().with_effect(users_effect("force", damping, energy="dissipates"), {"size": 0.1})
-    assert identify_device(true).set_aside == ()
-    damper = users_effect("force", lambda now, p: p.size * now.velocity)
-    assert identify_device(body_of().with_effect(damper, {"size": 0.1})).set_aside == (), (
-        "it is proved"
-    )
-
-
-def test_a_users_shape_of_friction_is_none_that_a_theorem_is_about():
-    shape = users_effect("friction_shape", lambda now, p: now.level * now.velocity / p.size)
-    assert identify_device(body_of().with_effect(shape, {"size": 0.1})).set_aside == ("own",)
-
-
 @pytest.mark.slow
 def test_design_and_passivity_have_one_interval():
     """Stribeck and a wave along the travel, a period that is not known well."""
@@ -180,30 +117,6 @@ def test_design_and_passivity_have_one_interval():
         "levels over any speed, any position"
         in claims_on(body)["any law within the level"].statement
     )
-
-
-def test_a_level_that_is_one_number_holds_for_any_motion():
-    assert "levels over" not in claims_on(body_of())["any law within the level"].statement
-
-
-def test_a_level_without_an_upper_bound_is_refused_where_one_is_needed():
-    load = {"load_dependent_friction": {"coefficient": 0.1}}
-    assert statuses(body_of(**load))["any law within the level"] == "proved"
-    with pytest.raises(ModelError, match="no upper bound of the friction level over any acting"):
-        identify_device(body_of(**load, presliding={"stiffness": 1e4}))
-
-
-@pytest.mark.parametrize(
-    ("damping", "viscous", "is_known"),
-    [(30, 12.01, True), (30, 11.9, False), (0.5, 0.3, True), (0.5, 0.1, False)],
-)
-def test_a_limit_of_design_is_reported_where_viscous_damping_makes_up_for_the_bristles(
-    damping, viscous, is_known
-):
-    """The bristle's damping times what the level falls by, over the level: 0.4 of it."""
-    bristle = {"stiffness": 2e4, "bristle_damping": damping}
-    body = body_of(**SLOPE, presliding=bristle, viscous={"damping": viscous})
-    assert bool(margins(identify_device(body))) == is_known
 
 
 @pytest.mark.parametrize("slope", [{}, SLOPE])
@@ -240,19 +153,3 @@ def test_a_cancellation_of_several_stages_is_not_judged_by_one_of_them(gain, fir
     (alone,) = friction_pairs(haptic_interface(body, cancellation=dahl))
     assert [one.claim.status for one in pair_claims(alone)] == ["proved"]
     assert friction_pairs(haptic_interface(body, cancellation=Controller(stages))) == []
-
-
-def test_unknown_is_what_is_neither_fixed_nor_has_an_error_nor_is_absent():
-    """An optional parameter of zero is a part that is not there."""
-    body = body_of(viscous={"damping": 2.0}, presliding={"stiffness": 2e4, "bristle_damping": 0.0})
-    values = {
-        "inertia": td.Value(0.1, fixed=True),
-        "coulomb.level": td.Value(0.5),
-        "viscous.damping": td.Value(2.0, stderr=0.1),
-        "presliding.stiffness": td.Value(2e4),
-        "presliding.bristle_damping": td.Value(0.0),
-    }
-    for damping, more in ((0.0, ()), (3.0, ("presliding.bristle_damping",))):
-        values["presliding.bristle_damping"] = td.Value(damping)
-        unknown = identify_device(body.with_values(values)).unknown
-        assert sorted(unknown) == sorted(("coulomb.level", "presliding.stiffness", *more))

@@ -7,15 +7,14 @@ import control
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import teleopdesign as td
 from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import (
+    absolutely_stable,
     damping_excess,
     impedance,
-    mobility_excess,
+    passive,
     positive_real,
     read_record,
     two_port,
@@ -76,18 +75,6 @@ def test_others_are_refuted_by_a_motion_that_gives_out_energy(name, tmp_path):
     assert again.replay() > 0
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("scale", [1e-6, 1e6])
-@pytest.mark.parametrize("time", [1e-6, 1e6])
-def test_the_units_of_force_and_time_change_no_verdict(scale, time):
-    """Impedances from 1e-6 to 1e6 in size and in time."""
-    for cases, status in ((PASSIVE, "proved"), (NOT_PASSIVE, "refuted")):
-        for name, z in cases.items():
-            scaled = sp.sympify(z) * sp.Rational(str(scale))
-            scaled = scaled.subs(S, S * sp.Rational(str(time)))
-            assert positive_real(scaled).status == status, name
-
-
 def test_mixed_scales_within_one_impedance():
     """Terms that differ by 1e12 and more; each verdict turns on the smallest of them."""
     assert positive_real(1e-6 * S + 1e6 + 1e6 / S).status == "proved"
@@ -96,13 +83,6 @@ def test_mixed_scales_within_one_impedance():
     assert positive_real(1e6 - 1e-6 * S).status == "refuted"
     assert positive_real(1e6 + 1e-6 / S**2).status == "refuted"
     assert positive_real((S + 1e6) / (S - 1e-6)).status == "refuted"
-
-
-def test_equality_is_named():
-    assert "loses nothing" in positive_real(0.15 * S + 300 / S).verdict.equality
-    assert positive_real((S**2 + 1) / (S + 1) ** 2).verdict.equality == "at 1 rad/s"
-    assert "high frequency" in positive_real((S + 1) / (S**2 + S + 1)).verdict.equality
-    assert positive_real(0.15 * S + 4).verdict.equality == ""
 
 
 @pytest.mark.parametrize(
@@ -139,12 +119,6 @@ def test_the_bounds_of_the_excess_are_exact():
         assert [positive_real(e).status for e in less] == ["proved", "refuted"]
 
 
-def test_mobility_excess_is_that_of_the_inverse():
-    assert float(mobility_excess(S + 4)) == pytest.approx(0.0, abs=1e-20)
-    assert float(mobility_excess(4)) == pytest.approx(0.25)
-    assert float(mobility_excess(0)) == math.inf
-
-
 def test_floats_are_the_decimals_that_they_are_written_as():
     """On the boundary the binary value of 0.1, which is a little more, would decide."""
     assert impedance(0.1 / S).p.all_coeffs() == [sp.Rational(1, 10)]
@@ -171,12 +145,6 @@ def test_python_control_systems_are_read():
     assert positive_real(control.tf([0.15, 4], [1])).status == "proved"
 
 
-def test_modes_that_the_port_does_not_see_drop_out():
-    """A state that input or output does not touch is not part of the impedance."""
-    space = control.ss(np.diag([-1.0, 5.0]), [[1], [0]], [[1, 1]], [[0.0]])
-    assert str(impedance(space)) == "1/(s + 1)"
-
-
 @pytest.mark.parametrize(
     "system",
     [
@@ -190,18 +158,6 @@ def test_of_a_system_with_a_mode_that_its_port_does_not_show_nothing_is_proved(s
     claim = positive_real(system)
     assert str(impedance(system)) == "1/(s + 1)" and positive_real(1 / (S + 1)).holds
     assert claim.status == "unknown" and "at s = 5 1/s" in str(claim.verdict)
-
-
-@settings(max_examples=30)
-@given(st.lists(st.floats(-10, 10).map(lambda x: round(x, 2)), min_size=9, max_size=9))
-def test_state_space_and_transfer_function_agree(entries):
-    """C (s I - A)^-1 B at one point, in floating point, for any matrices."""
-    a, b = np.array(entries[:4]).reshape(2, 2), np.array(entries[4:6])[:, None]
-    c, d = np.array(entries[6:8])[None, :], np.array([[entries[8]]])
-    s = 3.0 + 20.0j  # away from every pole of such matrices
-    direct = (c @ np.linalg.solve(s * np.eye(2) - a, b) + d)[0, 0]
-    value = impedance(control.ss(a, b, c, d))(s)
-    assert value == pytest.approx(direct, rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -222,16 +178,6 @@ def test_state_space_and_transfer_function_agree(entries):
 def test_what_is_no_impedance_is_one_clear_line(system, message):
     with pytest.raises(ModelError, match=message):
         positive_real(system)
-
-
-READERS = (positive_real, impedance, lambda x: two_port([[x, 0], [0, 1]]))
-
-
-@pytest.mark.parametrize("accept", READERS, ids=["claim", "impedance", "two-port"])
-def test_a_text_is_refused_and_not_run(accept, capfd):
-    with pytest.raises(ModelError, match="expected an expression in s"):
-        accept('__import__("os").system("echo run")')
-    assert not capfd.readouterr().out
 
 
 @pytest.mark.slow
@@ -256,52 +202,20 @@ def test_a_wave_is_the_response_of_a_stable_system_from_rest():
     assert simulated[2000:] == pytest.approx(f[2000:, 0], abs=1e-3 * np.abs(f).max())
 
 
-def test_a_growing_wave_is_a_mode_of_the_port_held_by_a_damper():
-    """No dip of Re Z on the axis, but a double pole there: found as an unstable coupling."""
-    record = positive_real(1 / S + S**3).record
-    assert record.value[0, 0].real < 0
+ONE = control.tf([1, 2], [1, 1])
+BOTH = control.tf([[[1, 2], [0]], [[0], [0.5, 1]]], [[[1, 1], [1]], [[1], [1]]])
 
 
-class TestAgainstPythonControl:
-    """Where python-control's `ispassive` refuses or errs, the exact test is right."""
-
-    @pytest.fixture(autouse=True)
-    def _needs_cvxopt(self):
-        pytest.importorskip("cvxopt", reason="ispassive needs cvxopt, which is GPL")
-
-    def test_it_refuses_improper_impedances(self):
-        system = control.tf([0.15, 4], [1])
-        with pytest.raises(ValueError, match="non-proper"):
-            control.ispassive(system)
-        assert positive_real(system).status == "proved"
-
-    def test_it_refuses_a_constant(self):
-        system = control.tf([-1e-9], [1])
-        with pytest.raises(ValueError, match="at least one array"):
-            control.ispassive(system)
-        assert positive_real(system).status == "refuted"
-
-    def test_it_calls_a_badly_scaled_passive_system_active(self):
-        """1e6 (s + 1e6)/(s + 1e-6): zero and pole in the left half plane, Re Z > 0."""
-        system = control.tf([1e6, 1e12], [1, 1e-6])
-        assert not control.ispassive(system)
-        claim = positive_real(system)
-        assert claim.status == "proved"
-        assert claim.verdict.margin == pytest.approx(1e6)
-
-    def test_it_calls_a_badly_scaled_active_system_passive(self):
-        """(1e-6 s - 1e-12)/(s + 1e-6) is -1e-6 at rest."""
-        system = control.tf([1e-6, -1e-12], [1, 1e-6])
-        assert control.ispassive(system)
-        assert positive_real(system).status == "refuted"
-        assert float(damping_excess(system)) == pytest.approx(-1e-6)
-
-
-@pytest.mark.parametrize(("degree", "fits"), [(40, True), (41, False)])
-def test_an_impedance_of_degree_forty_is_the_highest_that_is_decided(degree, fits):
-    z = S / (S**degree + 1)
-    if fits:
-        assert impedance(z).q.degree() == degree
-        return
-    with pytest.raises(ModelError, match="of degree 41 in s, expected at most 40"):
-        impedance(z)
+@pytest.mark.parametrize(
+    ("system", "entries"),
+    [
+        ([[ONE, 0], [0, control.tf([0.5, 1], [1])]], [[(S + 2) / (S + 1), 0], [0, S / 2 + 1]]),
+        (BOTH, [[(S + 2) / (S + 1), 0], [0, S / 2 + 1]]),
+        (control.ss(-np.eye(2), np.eye(2), np.eye(2), np.eye(2)), sp.eye(2) * (S + 2) / (S + 1)),
+        (np.array([[2.0, 1.0], [1.0, 3.0]]), [[2, 1], [1, 3]]),
+    ],
+)
+@pytest.mark.parametrize("decide", [passive, absolutely_stable])
+def test_a_two_port_of_python_control_is_that_of_its_expressions(system, entries, decide):
+    """A one-port could be one, and the error for a matrix of them pointed to `two_port`."""
+    assert repr(decide(two_port(system))) == repr(decide(two_port(entries)))

@@ -5,21 +5,15 @@ import pytest
 import sympy as sp
 from devices import body
 
-import teleopdesign as td
 from teleopdesign.blocks import matrix_impedance
 from teleopdesign.diagrams import (
-    Arm,
     Diagram,
     Linked,
     Moving,
-    joint,
-    teleoperator_of_arms,
-    tip_coordinates,
 )
-from teleopdesign.passivity import diagram_claims, ports
+from teleopdesign.passivity import diagram_claims
 from teleopdesign.passivity.linear.family import family_of_matrix
 from teleopdesign.passivity.linear.judge import passive_claim
-from teleopdesign.passivity.linear_diagrams import linear_claims
 from teleopdesign.realise.lti import S
 
 STAR = 1000.0 * (3 * np.eye(3) - np.ones((3, 3)))
@@ -49,10 +43,6 @@ def test_three_arms_joined_by_springs_are_proved_passive_together():
     assert "positive real" in claim.certificates[0].check()
 
 
-def test_three_arms_with_coulomb_friction_are_proved_too():
-    assert whole(star(STAR, coulomb__level=0.4)).status == "proved"
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(("entry", "value"), [((0, 1), -900.0), ((2, 2), -10.0)])
 def test_springs_that_are_no_spring_are_refuted_by_a_wave(entry, value):
@@ -73,13 +63,14 @@ def random_matrix(rng, size, less):
     return z
 
 
-@pytest.mark.parametrize("size", [3, *(pytest.param(n, marks=pytest.mark.slow) for n in (4, 5))])
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [3, 4])
 def test_no_wave_beats_what_is_proved_and_each_refutation_is_one(size):
     """Against eigenvalues of Z + Z^H at random points of the right half plane."""
     rng = np.random.default_rng(size)
     points = 10.0 ** rng.uniform(-3, 3, 4000) * np.exp(0.5j * np.pi * rng.random(4000))
     kinds = set()
-    for less in (0, 0, sp.Rational(1, 50), 3):
+    for less in (0, sp.Rational(1, 50), 3):
         z = random_matrix(rng, size, less)
         claim = passive_claim(family_of_matrix(z.tolist()))
         values = np.array(sp.lambdify(S, z.tolist(), "numpy")(points), dtype=object)
@@ -92,31 +83,6 @@ def test_no_wave_beats_what_is_proved_and_each_refutation_is_one(size):
         assert not (claim.status == "refuted" and claim.record.replay() <= 0)
         kinds.add(claim.status)
     assert kinds >= {"proved", "refuted"}
-
-
-JOINT = td.Body("revolute", {"inertia": 0.01}).with_effect(td.EFFECTS["viscous"], {"damping": 0.1})
-LINKS = Arm((JOINT, JOINT), tip_coordinates([[0.3, 0.1], [0.0, 0.2]]))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("stiffness", "status"), [(0.0, "proved"), (150.0, "refuted")])
-def test_two_arms_of_two_joints_behind_fixed_jacobians_are_decided_at_all_four_ports(
-    stiffness, status
-):
-    """A coupling whose matrix is not symmetric is no spring."""
-    gains = 100.0 * np.eye(2)
-    gains[0, 1] = stiffness
-    diagram = teleoperator_of_arms(LINKS, LINKS, stiffness=gains, damping=np.eye(2))
-    claim = whole(diagram)
-    assert claim.status == status
-    assert len(ports(diagram)) == 4
-
-
-def test_a_jacobian_that_changes_with_the_pose_is_not_linear():
-    circle = Arm((JOINT,), (0.3 * sp.sin(joint(1)),))
-    diagram = teleoperator_of_arms(circle, circle, stiffness=[[100.0]])
-    (one,) = linear_claims(diagram, ports(diagram))
-    assert one.claim.status == "unknown" and "kinematics X_m1" in str(one.claim)
 
 
 @pytest.mark.parametrize("frequency", [1, 40])

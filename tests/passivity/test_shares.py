@@ -2,19 +2,13 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
-import sympy as sp
 from devices import body
-from hypothesis import given
-from hypothesis import strategies as st
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
-from teleopdesign.diagrams import Attached, Control, Diagram, Junction, Moving, position_symbol
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.passivity import ports
 from teleopdesign.passivity.diagram_claims import composed_claim, friction_pairs
-from teleopdesign.passivity.ports import shares_of
 
 RUBBING = body(0.3, viscous__damping=2.0, coulomb__level=0.4)
 PLAIN = body(0.3, viscous__damping=2.0)
@@ -69,42 +63,3 @@ def test_a_cancellation_that_acts_on_its_body_alone_is_proved_with_it(diagram):
     claim = composed_claim(diagram, ports(diagram), friction_pairs(diagram))
     assert claim is not None
     assert claim.claim.status == "proved"
-
-
-def test_a_port_counts_a_force_as_often_as_a_loop_of_sums_does():
-    loop = (Junction("l", {"f": 1.0, "m": 0.5}), Junction("m", {"l": 1.0}))
-    (port,) = ports(wired(replace(A, loads={"l": 1.0}), sums=loop))
-    assert port.weights == {"x": 2.0}
-    with pytest.raises(ModelError, match="a loop of sums has no solution"):
-        ports(wired(replace(A, loads={"l": 1.0}), sums=(loop[0], Junction("m", {"l": 2.0}))))
-
-
-def test_a_share_is_exact_and_keeps_the_positions_of_a_lever_arm():
-    q = position_symbol("x")
-    sums = (Junction("t", {"f": 0.1}), Junction("r", {"t": 3 * sp.sin(q)}))
-    diagram = wired(replace(A, loads={"r": 1.0}), sums=sums)
-    assert shares_of(diagram, "f")["r"] == sp.Rational(3, 10) * sp.sin(q)
-
-
-@given(st.lists(st.integers(-3, 3), min_size=16, max_size=16))
-def test_shares_solve_the_equations_of_the_sums(weights):
-    names = ["a", "b", "c", "d"]
-    grid = np.array(weights).reshape(4, 4)
-    sums = tuple(
-        Junction(n, {**{m: float(w) for m, w in zip(names, row, strict=True) if w}, "f": 1.0})
-        for n, row in zip(names, grid, strict=True)
-    )
-    diagram = wired(replace(A, loads={"f": 1.0}), sums=sums)
-    system = np.eye(4) - grid
-    if round(np.linalg.det(system)) == 0:
-        with pytest.raises(ModelError, match="no solution"):
-            shares_of(diagram, "f")
-        return
-    shares = [float(shares_of(diagram, "f").get(n, 0)) for n in names]
-    # determinants are whole numbers of at most some thousand: far above double rounding
-    assert np.allclose(system @ shares, 1.0, atol=1e-9)
-
-
-def test_an_attached_body_takes_no_forces():
-    held = Attached("Z_K", PLAIN, "x", "F_K")
-    assert friction_pairs(wired(A, C, held))[0].cancellation is C

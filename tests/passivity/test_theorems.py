@@ -55,11 +55,6 @@ def test_a_theorem_answers_some_question_and_leaves_others(name):
         assert one.topic and one.claim.status in ("proved", "refuted", "evidence", "unknown")
 
 
-def test_no_two_theorems_stand_at_the_same_place():
-    places = [theorem.order for theorem in THEOREMS.values()]
-    assert places == sorted(set(places))
-
-
 def test_the_question_alone_decides_which_theorems_speak():
     def topics(question):
         return [one.topic for one in settle(question, simulated=False)]

@@ -3,7 +3,6 @@
 from dataclasses import replace
 from functools import cache
 
-import control
 import numpy as np
 import pytest
 import sympy as sp
@@ -12,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from teleopdesign.base.errors import ModelError
-from teleopdesign.controllers import controller, from_control
+from teleopdesign.controllers import controller
 from teleopdesign.derive import two_port_functions
 from teleopdesign.diagrams import ANY, Junction, four_channel, load_shipped, wave_variables
 from teleopdesign.effects import EFFECTS
@@ -21,11 +20,8 @@ from teleopdesign.passivity import (
     observe_simulation,
     passive,
     two_port,
-    wave_channel,
     wave_claim,
-    wave_teleoperator,
 )
-from teleopdesign.passivity.diagram_claims import wave_claims
 from teleopdesign.passivity.linear.family import family_at
 from teleopdesign.passivity.ports import ports
 from teleopdesign.simulate import simulate
@@ -191,89 +187,3 @@ def test_no_effect_of_the_catalogue_is_passed_over_by_the_proof(beside):
         expected = "proved" if {*beside, name} <= counted else "unknown"
         assert wave_claim(diagram).status == expected, name
     assert count > 10
-
-
-def test_a_mode_that_grows_within_the_coupling_leaves_the_whole_unknown():
-    """(s - 1)/((s - 1)(s + 1)): from rest a passive low-pass."""
-    law = from_control(control.tf([1.0, -1.0], [1.0, 0.0, -1.0]), name="law")
-    arm = body(0.3, **SIDE)
-    claim = wave_claim(wave_variables(arm, arm, wave_impedance=10.0, coupling=law, delay=0.05))
-    assert claim.status == "unknown" and "within P" in str(claim.verdict)
-
-
-def test_parts_that_are_not_passive_alone_leave_the_whole_unknown():
-    parts = {"master": S + 1, "slave": S + 1, "coupling": 10 + 400 / S, "wave_impedance": 10}
-    assert wave_teleoperator(**parts).status == "proved"
-    for name in ("master", "slave", "coupling"):
-        claim = wave_teleoperator(**parts | {name: S - 1})
-        assert claim.status == "unknown" and name in str(claim.verdict)
-
-
-def channel_energy(rng, scale, slope):
-    """Least energy into a channel with varying delays over what was sent, from its definition.
-
-    Waves of eight tones each from rest at t = 0; delays swing with a slope of at most `slope`.
-    """
-    t = np.linspace(0, 20, 20001)
-    tones, sizes = rng.uniform(0.2, 5, (2, 8)), rng.uniform(-1, 1, (2, 8))
-
-    def sent(k, at):
-        return np.where(at > 0, np.sin(np.multiply.outer(at, tones[k])) @ sizes[k], 0.0)
-
-    power, turned = 0.0, 0.0
-    for k in range(2):
-        w = rng.uniform(0.3, 3)
-        late = sent(k, t - (slope / w * (1 + np.sin(w * t + rng.uniform(0, 6))) + 0.1))
-        power, turned = power + sent(k, t) ** 2 - scale**2 * late**2, turned + sent(k, t) ** 2
-    energy = np.cumsum((power[1:] + power[:-1]) / 2)
-    return energy.min() / turned.sum()
-
-
-@pytest.mark.slow
-@given(slope=st.floats(0, 0.9), seed=st.integers(0, 2**31))
-@settings(max_examples=40)
-def test_varying_delays_with_a_small_enough_scale_give_out_nothing(slope, seed):
-    """Proved for f^2 = 1 - d; 1e-4 of what was sent: 20 s by trapezia of 1 ms."""
-    square = 1 - round(slope, 6)
-    scale = np.floor(np.sqrt(square) * 1e6) / 1e6
-    claim = wave_channel(wave_impedance=3, scale=scale, delay_growth=round(1 - square, 6))
-    assert claim.status == "proved" and claim.certificates[0].check()
-    assert channel_energy(np.random.default_rng(seed), scale, slope) > -1e-4
-
-
-def test_growing_delays_without_a_scale_give_out_energy_and_nothing_is_proved():
-    """The hypothesis is needed: with f = 1 a delay that grows stretches what was sent."""
-    rng = np.random.default_rng(7)
-    assert min(channel_energy(rng, 1.0, 0.9) for _ in range(20)) < -1e-3
-    assert wave_channel(wave_impedance=3, delay_growth=0.01).status == "unknown"
-    assert wave_channel(wave_impedance=3, scale=1.01).status == "unknown"
-
-
-def test_a_wave_impedance_or_way_that_cannot_be_is_reported_in_one_line():
-    for arguments, words in (
-        ({"wave_impedance": 0.0}, "expected > 0"),
-        ({"delay": {"T_3": 0.1}}, 'no way "T_3"'),
-    ):
-        with pytest.raises(ModelError) as caught:
-            wave_variables(**arguments)
-        assert words in str(caught.value) and "\n" not in str(caught.value)
-
-
-def test_a_slaves_controller_that_is_not_linear_is_another_theorem():
-    law = controller("dahl", {"level": 0.3, "stiffness": 1e4})
-    side = body(0.3, **SIDE)
-    diagram = wave_variables(side, side, wave_impedance=10.0, coupling=law, delay=0.05)
-    with pytest.raises(ModelError, match="P has no linear form"):
-        wave_claim(diagram)
-
-
-def test_waves_with_delays_are_decided_by_their_theorem_and_without_by_the_linear_test():
-    arm = body(0.3, **SIDE)
-
-    def of_diagram(**delays):
-        diagram = wave_variables(arm, arm, wave_impedance=10.0, coupling=MATCHED, **delays)
-        return [c for c in wave_claims(diagram) if c.claim.status != "unknown"]
-
-    (one,) = of_diagram(delay=0.05)
-    assert one.topic == "both ports, any motion" and one.claim.status == "proved"
-    assert of_diagram() == []

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from devices import body
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
@@ -76,10 +75,3 @@ def test_a_motor_drives_a_load_through_such_a_gear_whatever_the_bristle(deflecti
         x += step * v
     # each reversal begins a bristle's length late; the Euler steps leave 1e-5
     assert moved["L"].values[-1] == pytest.approx(x, abs=4 * deflection + 1e-4)
-
-
-def test_a_record_that_never_moves_gives_no_length_of_a_bristle():
-    with pytest.raises(ModelError, match="never moves"):
-        with_bristle(body(0.5, coulomb__level=2.0), 0.0)
-    free = body(0.5)
-    assert with_bristle(free, 0.0) is free, "without friction there is no bristle"

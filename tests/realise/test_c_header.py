@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from devices import body
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import CONTROLLERS, Controller, Stage, controller, from_control
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.realise.c_header import as_c_header
@@ -100,22 +99,3 @@ def test_a_late_lag_is_the_difference_equation_that_it_is_by_hand(late, tmp_path
         expected.append(y)
         y += (1.0 - np.exp(-2 * np.pi * 20.0 * PERIOD)) * (now - y)
     np.testing.assert_allclose(out, expected, rtol=1e-12, atol=1e-15)
-
-
-def test_a_name_that_is_no_name_or_a_law_that_is_code_is_refused():
-    block = from_control(NOTCH)
-    for name in ("", "a b", "x;}", "1st", "Law"):
-        with pytest.raises(ModelError, match="expected such as"):
-            as_c_header(block, period=PERIOD, name=name)
-    with pytest.raises(ModelError, match="period: expected a time"):
-        as_c_header(block, period=0.0)
-    cubic = control.nlsys(None, lambda t, x, u, p: u**3, inputs=1, outputs=1)
-    with pytest.raises(ModelError, match="known as code only"):
-        as_c_header(from_control(cubic), period=PERIOD)
-
-
-def test_numbers_have_the_digits_that_were_given():
-    law = controller("smoothed_coulomb", {"level": 0.4, "smoothing_velocity": 0.015})
-    text = as_c_header(law.then(controller("gain", {"gain": 1e-7})), period=PERIOD)
-    assert "4e-08*velocity/(speed + 0.015)" in text
-    assert "000000000" not in text

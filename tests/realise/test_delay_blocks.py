@@ -12,11 +12,10 @@ from hypothesis import strategies as st
 from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.derive import all_transfers, transfer, transfer_function
-from teleopdesign.diagrams import Control, Diagram, Junction, Moving, read_diagram, write_diagram
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.frequency import bode, delay_margin, loop_gain, matrix_response
-from teleopdesign.passivity import diagram_claims
 from teleopdesign.realise.iosystem import to_iosystem
-from teleopdesign.simulate import Sampling, simulate, simulate_many
+from teleopdesign.simulate import simulate
 
 STIFFNESS, MASS = 20.0, 0.1
 
@@ -59,12 +58,6 @@ def test_a_delayed_loop_is_its_analytic_solution(time):
     assert np.abs(simulation["x"].values - expected).max() < 1e-9 * np.ptp(expected)
 
 
-def test_the_step_is_divided_so_that_a_delay_is_whole_steps():
-    """25.25 ms at steps of 0.1 ms: 303 steps of 1/12 ms."""
-    simulation = simulate(held(0.02525), duration=0.05, computer="continuous")
-    assert simulation.data.attrs["step_s"] == pytest.approx(1e-3 / 12)
-
-
 def test_a_jump_passes_an_analog_delay_as_a_jump():
     """A force of 1 N on a free mass, late: nothing before T, a parabola behind; rounding alone."""
     time = 0.0123
@@ -104,36 +97,6 @@ def test_between_samples_a_computers_delay_lies_on_the_line_that_joins_them():
     np.testing.assert_allclose(simulation["x_late"].values[6:], between, rtol=1e-14)
 
 
-def test_two_delays_in_series_are_one_of_their_sum():
-    one = held(0.012, analog=False)
-    both = one.with_block("T_1", late(0.005).then(late(0.007)))
-    assert both.block("T_1").dead_time == pytest.approx(0.012)
-    runs = [
-        simulate(d, duration=0.05, inputs={"f": 1.0}, jit=False)["x"].values for d in (one, both)
-    ]
-    np.testing.assert_array_equal(*runs)
-
-
-# two loops to compile each; lanes with delays are in simulate/test_many.py too
-@pytest.mark.slow
-@pytest.mark.parametrize("analog", [True, False])
-def test_delays_side_by_side_are_those_of_single_simulations(analog):
-    """Analog and sampled, zero among them; lanes have the same arithmetic but for exp."""
-    times = np.array([0.0, 0.004, 0.0125, 0.0125])
-    diagram = held(0.01, analog=analog, damping=2.0)
-    many = simulate_many(
-        diagram,
-        {"T_1.delay.time": times},
-        duration=0.02,
-        inputs={"f": 1.0},
-        reduce={"end": ("x", "final")},
-    )
-    for time, end in zip(times, many["end"].values, strict=True):
-        one = diagram.with_values({"T_1.delay.time": float(time)})
-        alone = simulate(one, duration=0.02, inputs={"f": 1.0}, jit=False)["x"].values[-1]
-        assert end == pytest.approx(alone, rel=1e-12)
-
-
 def test_the_derivation_has_the_dead_time_as_a_factor_that_commutes():
     x = transfer(held(0.02), "x", ("f",))["f"]
     m, p, s, v = (sp.Symbol(n) for n in ("M", "P", "s", "V_P"))  # V_P: the damper, on x itself
@@ -158,20 +121,6 @@ def test_responses_hold_the_dead_time_exactly(time, frequency):
 def test_a_delay_block_costs_its_time_in_the_delay_margin():
     margins = [delay_margin(loop_gain(held(t, damping=4.0), controller="P")) for t in (0.0, 0.03)]
     assert margins[0] - margins[1] == pytest.approx(0.03, rel=1e-9)
-
-
-def test_a_port_behind_a_delay_is_not_called_passive():
-    """Re Z = d + k sin(-w T)/w: at k T > d energy comes out at low frequency."""
-    (one,) = diagram_claims(held(0.2, damping=2.0), rng=np.random.default_rng(1)).claims[:1]
-    assert one.claim.status in ("refuted", "unknown")
-
-
-@given(time=st.floats(0.0, 10.0), analog=st.booleans())
-@settings(max_examples=10, deadline=None)
-def test_a_delay_block_comes_back_from_its_file(time, analog, tmp_path_factory):
-    path = tmp_path_factory.mktemp("delay") / "held.toml"
-    write_diagram(held(time, analog=analog), path)
-    assert read_diagram(path) == held(time, analog=analog)
 
 
 @pytest.mark.slow
@@ -204,37 +153,3 @@ def test_python_control_has_a_pade_approximation_where_its_order_is_asked_for():
     assert rational(20j) == pytest.approx(
         1 / (MASS * (20j) ** 2 + 80j + STIFFNESS * np.exp(-0.2j)), rel=1e-9
     )
-
-
-def test_an_impossible_delay_is_reported_in_one_line():
-    cases = [
-        (lambda: late(-1.0), "outside 0"),
-        (lambda: simulate(held(5e-4, analog=False), duration=0.01), "below the computer's period"),
-        (lambda: simulate(held(1e-9), duration=0.01, computer="continuous"), "below the step"),
-        (
-            lambda: simulate(
-                held(1e-3).with_block("T_1", controller("spring_damper", SPRING)),
-                duration=0.01,
-            ),
-            "T_1: its law sees a velocity, and no motion is wired",
-        ),
-    ]
-    for make, words in cases:
-        with pytest.raises(ModelError, match=words) as caught:
-            make()
-        assert "\n" not in str(caught.value)
-
-
-SPRING = {"stiffness": 1.0, "damping": 1.0}
-
-
-def test_a_delay_of_the_computer_adds_to_one_of_its_samples():
-    """Sampling at 2 ms: 10 ms are five samples."""
-    simulation = simulate(
-        held(0.01, analog=False),
-        duration=0.05,
-        inputs={"f": 1.0},
-        computer=Sampling(period=2e-3),
-        jit=False,
-    )
-    np.testing.assert_array_equal(simulation["x_late"].values[5:], simulation["x"].values[:-5])

@@ -19,7 +19,7 @@ from teleopdesign.realise.damping_interval import (
     largest_acting_force,
     small_motion_damping,
 )
-from teleopdesign.realise.friction_interval import friction_interval, value_interval
+from teleopdesign.realise.friction_interval import friction_interval
 from teleopdesign.realise.reach import Reach
 
 REACH = Reach(
@@ -92,14 +92,6 @@ def check_levels_within(body, seed):
     return interval
 
 
-# 3 here and 8 in the slow run: each asks a new law
-@pytest.mark.slow
-@settings(max_examples=3)
-@given(body=bodies(), seed=st.integers(0, 2**31))
-def test_no_level_within_reach_and_errors_leaves_the_interval(body, seed):
-    check_levels_within(body, seed)
-
-
 @pytest.mark.slow
 @settings(max_examples=8)
 @given(body=bodies(), seed=st.integers(0, 2**31))
@@ -163,19 +155,6 @@ def test_a_wave_beside_a_load_over_every_motion_holds_all_levels(asymmetry):
     assert interval.lowest.low <= levels.min()
 
 
-def test_a_parameter_stays_within_its_declared_bounds():
-    interval = friction_interval(
-        body_of({"coulomb.level": 0.5}, {"coulomb.level": 1.0}), errors=2.0
-    )
-    assert interval.lowest.low == 0.0
-
-
-def test_a_level_at_zero_with_an_error_may_be_there():
-    stribeck = {"stribeck.extra_static_level": 0.0, "stribeck.stribeck_velocity": 0.02}
-    body = body_of({"coulomb.level": 0.5} | stribeck, {"stribeck.extra_static_level": 0.1})
-    assert friction_interval(body, errors=2.0).highest.high == pytest.approx(0.7)
-
-
 def test_friction_of_the_load_has_no_upper_bound_until_the_load_has():
     values = {"coulomb.level": 0.5, "load_dependent_friction.coefficient": 0.1}
     assert friction_interval(body_of(values), errors=2.0).highest.estimate == inf
@@ -198,36 +177,6 @@ def user(law, role="friction_level", **more):
 def with_users_effect(effect, size=0.1, base=None):
     body = body_of(base or {"coulomb.level": 0.5})
     return body.with_effect(effect, {"size": size})
-
-
-def test_a_level_that_falls_without_end_is_refused_with_what_to_give():
-    falling = user(lambda now, p: -p.size * now.position)
-    with pytest.raises(ModelError, match="no lower bound over any position: give the experiment"):
-        friction_interval(with_users_effect(falling), errors=2.0)
-    interval = friction_interval(with_users_effect(falling), REACH, errors=2.0)
-    assert interval.lowest.low == pytest.approx(0.5 - 0.1 * 0.05, rel=1e-4)
-    assert interval.where_lowest == "position 0.05 m"
-    assert REACH.travel == 0.1 and replace(REACH, low=0.2, high=0.5).travel == pytest.approx(0.3)
-
-
-def test_a_law_without_known_bounds_is_refused_by_name():
-    with pytest.raises(ModelError, match="erf"):
-        friction_interval(
-            with_users_effect(user(lambda now, p: p.size * sp.erf(now.velocity))), errors=2.0
-        )
-
-
-def test_a_speed_that_overshoots_is_no_lagging_speed():
-    def faster(now, p):
-        return (2 * abs(now.velocity) - now.film) / p.size
-
-    effect = user(
-        lambda now, p: now.film, role="friction_speed", states={"film": State("velocity", faster)}
-    )
-    stribeck = {"stribeck.extra_static_level": 0.2, "stribeck.stribeck_velocity": 0.02}
-    body = with_users_effect(effect, base={"coulomb.level": 0.5} | stribeck)
-    with pytest.raises(ModelError, match="can leave those of the motion"):
-        friction_interval(body, REACH, errors=2.0)
 
 
 # what acts, and what damps
@@ -279,66 +228,3 @@ def test_a_users_damper_counts_in_small_motion_under_any_name():
     pushing = user(lambda now, p: -p.size * now.velocity, role="force")
     undeclared = with_users_effect(pushing)
     assert damping_interval(undeclared, errors=0.0).supplying == ("own",)
-
-
-@pytest.mark.parametrize(
-    ("value", "ends"),
-    [
-        (td.Value(0.5, stderr=0.1), (0.3, 0.7)),
-        (td.Value(0.5, stderr=0.4), (0.0, 1.3)),
-        (td.Value(0.5, stderr=0.1, fixed=True), (0.5, 0.5)),
-        (td.Value(0.5), (0.5, 0.5)),
-        (td.Value(0.5, stderr=inf), (0.5, 0.5)),
-    ],
-)
-def test_a_value_is_within_two_errors_and_not_below_zero(value, ends):
-    interval = value_interval(value, errors=2.0)
-    assert interval.estimate == 0.5 and (interval.low, interval.high) == pytest.approx(ends)
-    alone = f"{0.5:.4g}"
-    assert str(interval) == (
-        alone if ends[0] == ends[1] else f"{alone} ({ends[0]:.4g} to {ends[1]:.4g})"
-    )
-
-
-@pytest.mark.parametrize(
-    ("travel", "lengths", "slides"), [(2e-3, 1.0, False), (2.1e-3, 1.05, True)]
-)
-def test_friction_is_known_where_a_motion_turns_the_bristles_round(travel, lengths, slides):
-    """Of 0.5 N over 500 N/m: a bristle length is 1 mm, and each way counts half of the travel."""
-    values = {"coulomb.level": 0.5, "presliding.stiffness": 500.0}
-    interval = friction_interval(body_of(values), errors=2.0)
-    assert interval.presliding.estimate == 500.0
-    assert interval.bristle_lengths(travel) == pytest.approx(lengths)
-    assert interval.slides_within(travel) == slides
-    ideal = friction_interval(body_of({"coulomb.level": 0.5}), errors=2.0)
-    assert ideal.presliding is None and ideal.bristle_lengths(1e-9) == inf
-
-
-def test_parameters_of_the_level_without_an_error_are_named_unless_they_are_fixed():
-    values = {"coulomb.level": 0.5, "viscous.damping": 1.0}
-    assert friction_interval(body_of(values), errors=2.0).unknown == ("coulomb.level",)
-    known = body_of(values, {"coulomb.level": 0.1})
-    assert friction_interval(known, errors=2.0).unknown == ()
-    fixed = body_of(values).with_values({"coulomb.level": td.Value(0.5, fixed=True)})
-    assert friction_interval(fixed, errors=2.0).unknown == ()
-    assert friction_interval(body_of({"viscous.damping": 1.0}), errors=2.0) is None
-
-
-@pytest.mark.parametrize("asymmetry", [-0.5, 0.5])
-def test_a_damping_that_differs_with_the_direction_takes_from_one_of_them(asymmetry):
-    """And drag that grows with speed adds nothing at rest."""
-    values = {"viscous.damping": 2.0, "quadratic_drag.drag": 5.0}
-    assert damping_interval(body_of(values), errors=2.0).least.low == pytest.approx(2.0)
-    values["viscous_asymmetry.half_difference"] = asymmetry
-    interval = damping_interval(body_of(values), errors=2.0)
-    assert interval.least.low == pytest.approx(1.5) and interval.supplying == ()
-    values["viscous_asymmetry.half_difference"] = 5.0 * asymmetry
-    supplied = damping_interval(body_of(values), errors=2.0)
-    assert supplied.least.low == pytest.approx(2.0)
-    assert supplied.supplying == ("viscous_asymmetry",)
-
-
-def test_the_least_damping_is_that_of_the_worst_parameter():
-    unsure = body_of({"viscous.damping": 2.0}, {"viscous.damping": 0.25})
-    least = damping_interval(unsure, errors=2.0).least
-    assert (least.low, least.estimate) == pytest.approx((1.5, 2.0))

@@ -1,76 +1,27 @@
-"""The loop written by hand, on the laws of a free mass that its file is read with."""
+"""The loop written by hand, on the laws of a free mass, without a compiler."""
 
-import ast
-from pathlib import Path
+from types import SimpleNamespace
 
-import mpmath
 import numpy as np
 import pytest
-from devices import LUGRE, body
+from devices import body
 
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.realise import _free_mass as mass
-from teleopdesign.realise import integrator
 from teleopdesign.realise._codegen import Generator
 from teleopdesign.realise.equations import build_equations
 from teleopdesign.realise.private_names import private_names
+from teleopdesign.realise.program import module_source
 
 
-def test_the_laws_it_is_read_with_are_those_that_are_generated():
-    made = Generator(build_equations(private_names(haptic_interface(body(2.0))).diagram)).source()
-    made = ast.parse(made.replace(" * LANES", ""))
-    read = ast.parse(Path(mass.__file__).read_text(encoding="utf-8"))
-
-    def functions(tree):
-        return {f.name: ast.dump(f) for f in tree.body if isinstance(f, ast.FunctionDef)}
-
-    def constants(tree):
-        plain = (a for a in tree.body if isinstance(a, ast.Assign))
-        return {a.targets[0].id: ast.dump(a.value) for a in plain}
-
-    assert functions(made).items() <= functions(read).items()
-    assert constants(made).items() <= constants(read).items()
+def free_mass():
+    """The module of a mass: input 0 is the force, sampled input 0 the command."""
+    diagram = private_names(haptic_interface(body(2.0))).diagram
+    names = {}
+    exec(module_source(Generator(build_equations(diagram)).source(), jit=False), names)
+    return SimpleNamespace(**names)
 
 
-def test_what_it_is_read_with_and_a_mass_has_no_use_for_is_generated_for_a_bristle():
-    """phi and the weights of a step, which a free mass takes none of."""
-    with_bristle = haptic_interface(body(**LUGRE))
-    made = Generator(build_equations(private_names(with_bristle).diagram)).source()
-    read = ast.parse(Path(mass.__file__).read_text(encoding="utf-8"))
-    texts = {
-        f.name: ast.dump(f)
-        for tree in (read, ast.parse(made.replace(" * LANES", "")))
-        for f in tree.body
-        if isinstance(f, ast.FunctionDef) and f.name in ("phi_near", "phi", "weights")
-    }
-    for f in read.body:
-        if isinstance(f, ast.FunctionDef) and f.name in texts:
-            assert ast.dump(f) == texts[f.name]
-    assert set(texts) == {"phi_near", "phi", "weights"}
-
-
-@pytest.mark.parametrize("z", [-30.0, -1.0, -0.999, -1e-3, 0.0, 1e-9, 0.7, 0.999, 1.0, 2.5])
-def test_phi_is_the_exponential_less_its_first_terms(z):
-    """phi_k = (phi_(k-1) - 1/(k-1)!) / z, at fifty digits."""
-    with mpmath.workdps(50):
-        x = mpmath.mpf(z)
-        expected = [mpmath.nsum(lambda j, k=k: x**j / mpmath.factorial(j + k), [0, 150])
-                    for k in range(4)]  # fmt: skip
-    # the first term that the series leaves out is z^13/16!: 5e-14
-    assert mass.phi(z) == pytest.approx([float(e) for e in expected], rel=4e-13)
-
-
-@pytest.mark.parametrize("z", [-30.0, -2.0, -0.3, 0.0, 0.5])
-def test_the_weights_of_a_step_integrate_rates_that_are_parabolas(z):
-    """Of y' = z y + g(t) over one step, where g is a parabola; the middle is asked twice."""
-    half, _, whole, first, middle, last = mass.weights(z, abs(z) < 2.0)
-    assert half == pytest.approx(np.exp(z / 2), rel=1e-14)
-    assert whole == pytest.approx(np.exp(z), rel=1e-14)
-    with mpmath.workdps(30):
-        for power in range(3):
-            expected = mpmath.quad(lambda t, p=power: mpmath.exp(z * (1 - t)) * t**p, [0, 1])
-            integral = first * 0.0**power + 2.0 * middle * 0.5**power + last
-            assert integral == pytest.approx(float(expected), rel=1e-12)
+mass = free_mass()
 
 
 def advance(force, command, *, samples=20, inner=5, period=1e-3, lag=0, reductions=()):
@@ -86,7 +37,7 @@ def advance(force, command, *, samples=20, inner=5, period=1e-3, lag=0, reductio
     )
     kept = mass.COLUMNS + np.arange(mass.MANY_COLUMNS)
     out, results = np.zeros((samples + 1) * len(kept)), np.zeros(len(kinds))
-    integrator.run(
+    mass.run(
         samples, inner, h, period, lag, np.zeros(0), 0.0, 0.0,
         np.zeros(lag // inner + 2), lag // inner + 2, np.zeros(0), np.zeros(0), 1,
         np.zeros(0), np.zeros(0), 2, False,

@@ -9,12 +9,11 @@ import pytest
 from side_by_side_cases import cases_of, plain_loop, with_a_computer, with_late_signals
 
 from teleopdesign.realise import side_by_side
-from teleopdesign.realise.kernel import execute, fastest_rate, slopes_at_rest
+from teleopdesign.realise.kernel import execute
 from teleopdesign.realise.side_by_side import (
     GridRun,
     Reduction,
     execute_many,
-    rates_of_cases,
 )
 
 
@@ -27,9 +26,6 @@ def three_lanes_of_plain_python(monkeypatch):
 
 SETUPS = {
     "filtered": lambda: with_a_computer(8e-3, velocity_bandwidth=60.0),
-    "observer of order 2": lambda: with_a_computer(
-        8e-3, velocity="observer", velocity_bandwidth=60.0, observer_order=2
-    ),
     "observer of order 3": lambda: with_a_computer(
         8e-3, velocity="observer", velocity_bandwidth=60.0
     ),
@@ -102,48 +98,3 @@ def test_a_case_beyond_all_numbers_is_reported_and_spoils_no_other():
     for case in (0, 1, 3):
         rows, _ = alone(setup, timing, cases[case])
         assert np.all(np.abs(many.kept[case] - rows) <= 1e-9 * np.abs(rows).max(axis=0))
-
-
-def test_a_block_ends_early_only_where_every_case_in_it_is_badly_resolved():
-    setup = SETUPS["continuous"]()
-    timing, cases = setup.timing(setup.inner()), four_cases(setup)[[0, 2, 3]]
-    whole = together(setup, timing, cases)
-    low, high = whole.worst.min(), whole.worst.max()
-    assert 0 < low < high
-    kept = together(setup, timing, cases, limit=float(low)).kept
-    np.testing.assert_array_equal(kept, whole.kept)
-    early = together(setup, timing, cases, limit=0.5 * float(low))
-    assert (early.worst < whole.worst).any() and (early.worst > 0.5 * low).all()
-
-
-def test_the_fastest_rate_at_rest_is_that_of_each_case():
-    setup = SETUPS["continuous"]()
-    cases, layout = four_cases(setup), setup.program.layout
-    rates, states = rates_of_cases(setup.program, cases)
-    for case, row in enumerate(cases):
-        rate, state = fastest_rate(setup.program, dict(zip(layout.parameters, row, strict=True)))
-        assert rates[case] == pytest.approx(rate, rel=1e-9)
-        assert layout.states[states[case]] == state
-
-
-def test_slopes_at_rest_are_those_of_the_equations_of_motion():
-    """Of each body: what its bristle, its damping, and its springs do to it."""
-    setup = SETUPS["continuous"]()
-    names, cases = setup.program.layout.parameters, four_cases(setup)[:3]
-    slopes = slopes_at_rest(setup.program, plain_loop(setup.program.laws, 3),
-                           np.ascontiguousarray(cases.T).reshape(-1))  # fmt: skip
-    state = setup.program.layout.states.index
-    for case, row in enumerate(cases):
-        value = dict(zip(names, row, strict=True))
-        m, n = value["M.inertia"], value["N.inertia"]
-        expected = {
-            ("x", "x_velocity"): 1.0,
-            ("x", "y"): 0.0,
-            ("x_velocity", "M_presliding_bristle"): -value["M.presliding.stiffness"] / m,
-            ("x_velocity", "y"): value["P.spring_damper.stiffness"] / m,
-            ("y_velocity", "y"): -value["P.spring_damper.stiffness"] / n,
-            ("N_presliding_bristle", "y_velocity"): 1.0,
-            ("N_presliding_bristle", "N_presliding_bristle"): 0.0,
-        }
-        for (of, by), slope in expected.items():
-            assert slopes[case, state(of), state(by)] == pytest.approx(slope, rel=1e-6), (of, by)

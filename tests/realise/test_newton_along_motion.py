@@ -9,9 +9,8 @@ from effects.along import body_of, motion_along, signals, unled
 from scipy.integrate import solve_ivp
 
 from teleopdesign.blocks import Body, Value
-from teleopdesign.effects import EFFECTS, Effect, Parameter
+from teleopdesign.effects import Effect, Parameter
 from teleopdesign.realise.along_motion import residual_along
-from teleopdesign.realise.simulated import least_levels
 from teleopdesign.realise.stages_along import INTERACTION_SHIFT, RECORD_SHIFT
 from teleopdesign.realise.tangent_columns import Probe
 
@@ -64,20 +63,6 @@ def test_friction_by_the_acting_force_counts_to_what_moves_the_body():
     lost = along.acting.value - along.moving.value
     expected = 0.2 * np.abs(along.acting.value) * motion.direction
     np.testing.assert_allclose(lost[moves], expected[moves], atol=1e-9)
-
-
-@pytest.mark.parametrize("parameter", ["coulomb.level", "load_dependent_friction.coefficient"])
-def test_what_moves_the_body_has_its_slopes_too(parameter):
-    motion = recorded()
-    body = body_of("coulomb", "load_dependent_friction")
-    value = body.parameters[parameter].value
-    sides = [
-        residual_along(body.with_values({parameter: value * (1 + e)}), motion).moving.value
-        for e in (1e-6, -1e-6)
-    ]
-    slope = (sides[0] - sides[1]) / (2e-6 * value)
-    along = residual_along(body, motion, [parameter]).moving.tangent[0]
-    np.testing.assert_allclose(along, slope, atol=1e-5 * (1 + np.abs(slope).max()))
 
 
 @pytest.fixture(scope="module")
@@ -222,19 +207,3 @@ def test_a_users_law_may_join_conditions_on_the_motion_and_on_its_parameters(nam
     probe = Probe("device", body.symbols()["mine.k"], {})
     tangent = residual_along(body, motion, [probe]).residual.tangent[0]
     np.testing.assert_allclose(tangent, slope, atol=1e-9)
-
-
-def test_levels_of_many_cases_may_join_conditions_on_what_differs_and_what_does_not():
-    effect = Effect(
-        role="friction_level",
-        law=lambda now, p: sp.Piecewise((-p.a, sp.And(p.a > 1, p.b > 1)), (0, True)),
-        parameters={"a": Parameter("force", "a"), "b": Parameter("dimensionless", "b")},
-        absent={"a": 0.0},
-    ).named("mine", "")
-    values = {"inertia": 0.2, "coulomb.level": 3.0, "mine.a": 2.0, "mine.b": 2.0}
-    body = Body("prismatic", {n: Value(v) for n, v in values.items()}, (EFFECTS["coulomb"], effect))
-    numbers = body.numbers()
-    cases = {**numbers, body.symbols()["mine.a"]: np.array([0.5, 2.0, 4.0])}
-    levels = least_levels(body, cases.get)
-    np.testing.assert_allclose(levels["forward"], [3.0, 1.0, -1.0])
-    assert least_levels(body, numbers.get)["backward"] == 1.0

@@ -13,7 +13,6 @@ from gpu_cases import NO_SIMULATOR, SETUPS, cases_of, reductions_of, start_of, w
 from teleopdesign.base.errors import ModelError
 from teleopdesign.realise import on_gpu
 from teleopdesign.realise.kernel import execute
-from teleopdesign.realise.side_by_side import execute_many
 from teleopdesign.simulate import simulate_many
 
 # the simulator of a GPU is a process of its own, which takes 3 s
@@ -116,22 +115,3 @@ def test_without_a_gpu_one_line_says_what_is_missing(is_installed, monkeypatch):
     with pytest.raises(ModelError, match=expected) as refused:
         simulate_on_gpu()
     assert "\n" not in str(refused.value)
-
-
-def test_releases_that_do_not_go_together_are_refused_in_one_line(monkeypatch):
-    """numba-cuda 0.30 beside numpy 2.5: its import ends with "no attribute 'row_stack'"."""
-    monkeypatch.setattr(on_gpu, "_is_simulated", lambda: False)
-    monkeypatch.setattr(on_gpu, "find_spec", lambda _: object())
-    monkeypatch.setattr(on_gpu, "version", lambda name: f"of {name}")
-    monkeypatch.delattr("numba.cuda", raising=False)
-    monkeypatch.setitem(sys.modules, "numba.cuda", None)
-    with pytest.raises(ModelError, match="numba-cuda of numba-cuda cannot be imported") as refusal:
-        on_gpu.check_gpu()
-    assert "numpy of numpy" in str(refusal.value) and "\n" not in str(refusal.value)
-
-
-def test_the_same_function_serves_both_devices():
-    """What `execute_many` takes, `execute_on_gpu` takes too: cases are collected in one way."""
-    from inspect import signature
-
-    assert signature(on_gpu.execute_on_gpu) == signature(execute_many)

@@ -7,10 +7,9 @@ from devices import body
 
 from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value, matrix_impedance
-from teleopdesign.controllers import Controller, controller
 from teleopdesign.diagrams import Linked, parallel_rods
 from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter
-from teleopdesign.realise.simulated import check_levels, least_levels, without_no_delay
+from teleopdesign.realise.simulated import check_levels, least_levels
 from teleopdesign.realise.tips import with_tips
 
 COMPLIANT = {
@@ -28,16 +27,6 @@ def test_what_joins_several_bodies_holds_the_tips_of_those_that_have_one(which):
     (linked,) = (b for b in diagram.blocks if isinstance(b, Linked))
     ends = [f"L{k + 1}_tip" if has_tip else f"L{k + 1}" for k, has_tip in enumerate(which)]
     assert list(linked.motions) == ends
-
-
-@pytest.mark.parametrize("times", [(0.0,), (0.1,), (0.0, 0.1), (0.0, 0.0)])
-def test_delays_of_no_time_are_left_out_and_others_stay(times):
-    spring = controller("spring_damper", {"stiffness": 2.0, "damping": 0.0})
-    late = [controller("delay", {"time": t}).stages[0] for t in times]
-    made = without_no_delay(Controller((*late, *spring.stages)))
-    assert made.dead_time is None or made.dead_time > 0
-    left = [s.value_of("dead_time") for s in made.stages]
-    assert left == [*(t for t in times if t), None]
 
 
 @pytest.mark.parametrize(
@@ -65,10 +54,3 @@ def test_friction_below_zero_at_rest_alone_is_refused_with_its_direction(dip, wa
     if way:
         (other,) = set(levels) - {refused}
         assert levels[other] == pytest.approx(0.5)
-
-
-@pytest.mark.parametrize("difference", [0.2, -0.3])
-def test_levels_of_both_directions_are_the_mean_and_half_of_the_difference(difference):
-    made = body(0.1, coulomb__level=0.5, coulomb_asymmetry__half_difference=difference)
-    levels = least_levels(made, made.numbers().get)
-    assert levels == {"forward": 0.5 + difference, "backward": 0.5 - difference}

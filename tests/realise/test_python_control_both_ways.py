@@ -10,24 +10,18 @@ import numpy as np
 import pytest
 from devices import body, two_rods
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import CONTROLLERS, Controller, Stage, controller, from_control
 from teleopdesign.derive import transfer_function
 from teleopdesign.diagrams import (
     Control,
     Diagram,
-    controller_parts,
     coupled_plant_parts,
     haptic_interface,
     plant_parts,
 )
-from teleopdesign.frequency import bode
-from teleopdesign.passivity import ports
-from teleopdesign.passivity.linear_diagrams import linear_claims
 from teleopdesign.realise.iosystem import to_iosystem
-from teleopdesign.simulate import Sampling, Trajectory, simulate
+from teleopdesign.simulate import Sampling, simulate
 
-RNG = np.random.default_rng(7)
 DURATION, STEP = 0.2, 1e-4
 LEAD = control.tf([-300.0, -9000.0], [1.0, 200.0])
 FOURTH = LEAD * control.tf([1.0, 20.0, 4e3], [1.0, 120.0, 4e3]) * control.tf([50.0], [1.0, 50.0])
@@ -122,63 +116,6 @@ def test_a_plant_is_the_same_through_both_and_its_transfer_function(plant):
 
 
 PERIOD = 1e-3
-WAVES = {
-    motion: Trajectory(
-        lambda t, w=w: 0.01 * np.sin(w * t),
-        lambda t, w=w: 0.01 * w * np.cos(w * t),
-        lambda t, w=w: -0.01 * w**2 * np.sin(w * t),
-    )
-    for motion, w in (("L", 30.0), ("x1", 30.0), ("x2", 47.0))
-}
-
-
-def stepped(diagram, motions):
-    """The diagram in a computer along these motions, a sample a row."""
-    computer = Sampling(period=PERIOD)
-    motion = {m: WAVES[m] for m in motions}
-    return simulate(diagram, duration=0.1, motion=motion, computer=computer, step=PERIOD, jit=False)
-
-
-@pytest.mark.parametrize("form", [control.tf, control.ss])
-@pytest.mark.parametrize("name", SISO)
-def test_in_discrete_time_a_block_steps_as_python_control_steps_it(name, form):
-    """Its answer to the reading of every sample, to 1e-9 of the range."""
-    system = form(control.sample_system(control.ss(SISO[name]), PERIOD, method="zoh"))
-    device = body(0.15, viscous__damping=2.0)
-    steps = stepped(haptic_interface(device, cancellation=from_control(system)), ["L"])
-    answer = control.forced_response(system, steps["time"].values, steps["L"].values).outputs
-    assert np.abs(steps["R_MBC"].values - answer).max() < 1e-9 * np.ptp(answer)
-
-
-@pytest.mark.parametrize("name", MIMO)
-def test_in_discrete_time_several_signals_step_as_python_control_steps_them(name):
-    """A matrix of transfer functions entry by entry: python-control alone steps no such matrix."""
-    if name == "2 x 2 state space":
-        system = control.sample_system(OBSERVER, PERIOD, method="zoh")
-        entries = [[system[i, j] for j in range(2)] for i in range(2)]
-    else:
-        entries = [
-            [
-                control.sample_system(
-                    control.tf(CROSSED.num[i][j], CROSSED.den[i][j]), PERIOD, method="zoh"
-                )
-                for j in range(2)
-            ]
-            for i in range(2)
-        ]
-        system = control.tf(
-            [[e.num[0][0] for e in row] for row in entries],
-            [[e.den[0][0] for e in row] for row in entries],
-            PERIOD,
-        )
-    steps = stepped(two_rods(system, analog=False), ["x1", "x2"])
-    time = steps["time"].values
-    for output, row in zip(("u1", "u2"), entries, strict=True):
-        answer = sum(
-            control.forced_response(entry, time, steps[x].values).outputs
-            for entry, x in zip(row, ("x1", "x2"), strict=True)
-        )
-        assert np.abs(steps[output].values - answer).max() < 1e-9 * np.ptp(answer)
 
 
 def test_transfer_functions_join_by_the_names_of_signals():
@@ -198,24 +135,6 @@ def test_transfer_functions_join_by_the_names_of_signals():
     for point in (2j, 40j, 300j):
         direct = complex(push_to_rod(point)) / complex(rod(point))
         assert direct * complex(loop(point)) == pytest.approx(complex(whole(point)), rel=1e-6)
-
-
-@pytest.mark.slow
-def test_parameters_of_the_system_are_its_params():
-    """Other values at the call give what a diagram with these values gives."""
-    diagram = one_rod(LEAD)
-    changed = {"Z_M.inertia": 0.4, "Z_M.viscous.damping": 5.0}
-    system = to_iosystem(diagram)
-    assert set(system.params) == set(diagram.values)
-    time = np.linspace(0.0, 0.1, 101)
-    inputs = [push(time) * (n == "R_V") for n in system.input_labels]
-    tight = {"solve_ivp_kwargs": {"rtol": 1e-10, "atol": 1e-13}}
-    ours = control.input_output_response(system, time, inputs, params=changed, **tight)
-    other = to_iosystem(diagram.with_values(changed))
-    theirs = control.input_output_response(other, time, inputs, **tight)
-    np.testing.assert_allclose(ours.outputs, theirs.outputs, rtol=0, atol=1e-12)
-    plain = control.input_output_response(system, time, inputs, **tight)
-    assert np.abs(plain.outputs - ours.outputs).max() > 1e-4
 
 
 def probe(law):
@@ -313,9 +232,10 @@ def exact_loop(plants, entries, forces):
 KINDS = {**{name: [[system]] for name, system in SISO.items()}, **dict.fromkeys(MIMO)}
 
 
-@pytest.mark.parametrize("form", [control.tf, control.ss])
-@pytest.mark.parametrize("discrete", [True, False])
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize(
+    ("form", "discrete"), [(control.tf, True), (control.ss, True), (control.ss, False)]
+)
+@pytest.mark.parametrize("name", [n for n in KINDS if n != "static gain"])
 def test_a_closed_loop_of_a_computer_is_that_of_python_controls_matrices(name, discrete, form):
     """Rods under held forces, laws discrete or continuous in the computer; 1e-6 of the range."""
     if name in SISO:
@@ -347,26 +267,6 @@ def test_a_closed_loop_of_a_computer_is_that_of_python_controls_matrices(name, d
     for k, motion in enumerate(motions):
         difference = np.abs(simulation[motion].values - expected[:, k]).max()
         assert difference < 1e-6 * np.ptp(expected[:, k])
-
-
-@pytest.mark.parametrize(
-    ("plant", "words"),
-    [
-        (control.tf([1.0], [1.0, 1.0]), "two more poles than zeros"),
-        (control.tf([1.0], [1.0, -1.0, 3.0]), "b = -1"),
-        (control.tf([1.0], [-1.0, 0.0, 3.0]), "m = -1"),
-        (control.tf([1.0], [1.0, 1.0, 3.0], 1e-3), "continuous time"),
-    ],
-)
-def test_what_is_no_plant_is_reported_in_one_line(plant, words):
-    with pytest.raises(ModelError, match=words) as caught:
-        plant_parts(plant, name="P", motion="x", command="u", driver="f")
-    assert "\n" not in str(caught.value)
-
-
-def test_signals_that_do_not_fit_a_system_are_counted():
-    with pytest.raises(ModelError, match="2 inputs and 2 outputs, found 1 and 2 signals"):
-        controller_parts(CROSSED, name="C", inputs=("x",), outputs=("u", "w"), motion="x")
 
 
 def mechanical(masses, damping, stiffness):
@@ -446,17 +346,6 @@ def test_a_plant_of_several_axes_has_its_transfer_functions(name):
             assert left_out == ()
 
 
-def test_the_bode_plot_of_a_plant_of_several_axes_is_its_response():
-    frequency = np.array([0.1, 3.0, 30.0])
-    response = bode(opened(with_axes(TWO_AXES)), output="x1", input="f2", frequency=frequency)
-    expected = [TWO_AXES(2j * np.pi * f)[0, 1] for f in frequency]
-    np.testing.assert_allclose(
-        response.data["magnitude"].values.ravel(), np.abs(expected), rtol=1e-9
-    )
-    turned = np.exp(1j * (np.radians(response.data["phase"].values.ravel()) - np.angle(expected)))
-    np.testing.assert_allclose(turned, 1.0, atol=1e-9)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["masses", "more states than two an axis"])
 def test_a_plant_of_several_axes_is_the_same_through_both(name):
@@ -480,42 +369,3 @@ def test_a_plant_of_several_axes_in_discrete_time_is_the_one_before_its_hold():
     at = np.searchsorted(simulation["time"].values, time - PERIOD / 1e3)
     for k, motion in enumerate(("x1", "x2")):
         assert np.abs(simulation[motion].values[at] - answer[k]).max() < 1e-6 * np.ptp(answer[k])
-
-
-@pytest.mark.slow
-def test_a_plant_of_several_axes_is_judged_at_its_ports():
-    """A passive plant under springs is proved passive, one with a negative damper refuted."""
-    held = with_axes(TWO_AXES)
-    claims = linear_claims(held, ports(held))
-    assert [one.claim.status for one in claims] == ["proved", "proved"]
-    driven = mechanical([[0.3, 0.05], [0.05, 0.2]], [[-4, 0], [0, 3]], [[900, -200], [-200, 700]])
-    free = opened(with_axes(driven))
-    assert linear_claims(free, ports(free))[0].claim.status == "refuted"
-
-
-UNSTABLE_ZERO = control.tf(
-    [[[1.0, -5.0], [0.0]], [[0.0], [1.0]]],
-    [[[0.1, 1.0, 5.0, 9.0], [1.0]], [[1.0], [1.0, 1.0, 3.0]]],
-)
-
-
-@pytest.mark.parametrize(
-    ("plant", "words"),
-    [
-        (control.tf([[[1.0], [1.0]], [[1.0], [1.0]]], [[[1.0, 1, 1]] * 2] * 2), "singular"),
-        (UNSTABLE_ZERO, "zeros that do not decay"),
-        (mechanical([[0.3, 0.5], [0.5, 0.2]], np.eye(2), np.eye(2)), "not positive definite"),
-        (control.ss(-np.eye(2), np.eye(2), np.eye(2), np.zeros((2, 2))), "not positive definite"),
-        (
-            control.ss(np.eye(3), np.eye(3)[:, :2], np.eye(3)[:2], np.zeros((2, 2)), 1e-3),
-            "4 states",
-        ),
-        (control.tf([1.0], [1.0, 1.0, 3.0]), "1 inputs and 1 outputs, found 2 commands"),
-    ],
-)
-def test_what_is_no_plant_of_two_axes_is_reported_in_one_line(plant, words):
-    with pytest.raises(ModelError, match=words) as caught:
-        coupled_plant_parts(
-            plant, name="P", motions=("x1", "x2"), commands=("u1", "u2"), drivers=("f1", "f2")
-        )
-    assert "\n" not in str(caught.value)

@@ -1,7 +1,6 @@
 """A residual force as an error of the recorded command, led back through the actuation."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,9 +12,6 @@ from teleopdesign.effects import EFFECTS, Effect, Parameter
 from teleopdesign.measurement.motion import motion_of
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.residual_at_command import (
-    _transmit,
-    _Way,
-    blind_share,
     is_between,
     residual_at_command,
 )
@@ -123,30 +119,6 @@ def test_samples_beyond_a_limit_are_blind(side):
         body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion
     )
     np.testing.assert_array_equal(command_error.blind, side * motion.command > 3.0)
-    assert not command_error.weak
-    # beside friction of 1 N
-    for limit, is_weak in ((0.5, True), (0.9, True), (1.1, False)):
-        held = residual_at_command(
-            body_with(EFFECTS["actuator_saturation"], {"limit": limit}), motion
-        )
-        assert held.blind.all() and held.weak == is_weak
-
-
-@pytest.mark.parametrize("gain", [1.0, 0.4, -0.4, 3.0, 0.0])
-@pytest.mark.parametrize("varies", [False, True])
-def test_of_a_hands_force_the_part_that_a_way_transmits_reaches_the_body(gain, varies):
-    """No more than its usual part, and at most all: a resonance brings no force of its own."""
-    motion = one_way()
-    n = len(motion.time)
-    force = smooth_noise(np.random.default_rng(2), n, 2.0)
-    over = gain * (np.linspace(0.5, 1.5, n) if varies else np.ones(n))
-    way = _Way(over, np.full(len(motion.spectrum.frequency), complex(gain)), 0.0)
-    passed = _transmit(force, way, motion)
-    inside = slice(int(RATE), -int(RATE))
-    shape = np.minimum(over / gain, 1.0) if gain else np.ones(n)
-    # what amplifies is held at one, and its gain as well
-    expected = force if gain > 1.0 else force * gain * shape
-    np.testing.assert_allclose(passed[inside], expected[inside], atol=1e-6)
 
 
 def led_back(body, motion, residual):
@@ -154,52 +126,6 @@ def led_back(body, motion, residual):
     return residual_at_command(
         body, motion, replace(along, residual=Traced(residual, along.residual.tangent))
     )
-
-
-@pytest.mark.parametrize("side", [1, -1])
-@pytest.mark.parametrize(("level", "weak"), [(1.8, False), (2.2, True)])
-@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e4])
-def test_an_actuator_that_is_strongest_for_a_small_command_is_judged_there(side, level, weak, unit):
-    """Of u its force is 40 u / (1 + 100 u^2), to a limit: 2 N for 0.1 N, 0.13 N for 3 N.
-
-    unit: N, of all forces: the answer is the same for a hair and for a crane
-    """
-    effects = {
-        CHEATS["fades_when_large"]: {"part": 1 / 16 / unit**2},
-        EFFECTS["actuator_gain"]: {"gain": 40.0},
-        EFFECTS["actuator_saturation"]: {"limit": 30.0 * unit},
-    }
-    values = {f"{e.name}.{n}": Value(v) for e, of in effects.items() for n, v in of.items()}
-    values |= {"inertia": Value(0.2 * unit), "coulomb.level": Value(level * unit)}
-    body = Body("prismatic", values, (EFFECTS["coulomb"], *effects))
-    motion = one_way(side)
-    command_error = residual_at_command(body, replace(motion, command=unit * motion.command))
-    assert command_error.blind.any() and command_error.weak == weak
-
-
-@pytest.mark.parametrize("side", [1, -1])
-@pytest.mark.parametrize(("level", "weak"), [(0.9, False), (1.1, True)])
-def test_what_else_acts_counts_when_it_is_asked_whether_an_actuator_can_slide_the_body(
-    side, level, weak
-):
-    """A limit of 2 N against 1 N of a constant force and friction that makes a little more or less.
-
-    A force that helps makes the same actuator strong enough.
-    """
-    motion = one_way(side)
-    for against in (1.0, -1.0):
-        body = Body(
-            "prismatic",
-            {
-                "inertia": Value(0.2),
-                "coulomb.level": Value(level),
-                "bias.force": Value(side * against),
-                "actuator_saturation.limit": Value(2.0),
-            },
-            (EFFECTS["coulomb"], EFFECTS["bias"], EFFECTS["actuator_saturation"]),
-        )
-        command_error = residual_at_command(body, motion)
-        assert command_error.blind.all() and command_error.weak == (weak and against > 0)
 
 
 def test_stages_in_series_are_led_back_one_by_one():
@@ -219,26 +145,7 @@ def test_stages_in_series_are_led_back_one_by_one():
     inside = slice(int(RATE), -int(RATE))
     expected = 2.0 * np.sin(omega * (motion.time + 0.04))
     np.testing.assert_allclose(forces.residual[inside], expected[inside], atol=0.02)
-    assert not forces.blind.any() and not forces.weak
-
-
-def test_a_delay_behind_a_limit_moves_no_blind_sample():
-    """A limit, then a delay of 0.2 s: blind is the command that was beyond the limit."""
-    motion = one_way()
-    body = Body(
-        "prismatic",
-        {
-            "inertia": Value(0.2),
-            "coulomb.level": Value(1.0),
-            "actuator_saturation.limit": Value(3.0),
-            "actuation_delay.delay": Value(0.2),
-        },
-        (EFFECTS["coulomb"], EFFECTS["actuator_saturation"], EFFECTS["actuation_delay"]),
-    )
-    command_error = residual_at_command(body, motion)
-    alone = residual_at_command(body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion)
-    assert 0.2 < alone.blind.mean() < 0.8
-    np.testing.assert_array_equal(command_error.blind, alone.blind)
+    assert not forces.blind.any()
 
 
 def test_without_a_law_between_nothing_is_changed():
@@ -247,71 +154,11 @@ def test_without_a_law_between_nothing_is_changed():
                 (EFFECTS["coulomb"],))  # fmt: skip
     before = residual_along(body, motion)
     command_error = residual_at_command(body, motion)
-    assert not is_between(body) and not command_error.blind.any() and not command_error.weak
+    assert not is_between(body) and not command_error.blind.any()
     np.testing.assert_array_equal(command_error.residual, before.residual.value)
     for name in PASSING:
         effect = {**EFFECTS, **CHEATS}[name]
         assert is_between(body_with(effect, PASSING[name])), name
-
-
-def test_friction_that_grows_with_the_acting_force_takes_its_part_of_each_error():
-    """Behind friction of mu times the force, 1 N of the residual is 1 / (1 - mu) N of command."""
-    motion = one_way()
-    for side in (1, -1):
-        motion = one_way(side)
-        body = body_with(EFFECTS["load_dependent_friction"], {"coefficient": 0.25})
-        wave = np.sin(2 * np.pi * motion.time)
-        forces = led_back(body, motion, wave)
-        inside = slice(int(RATE), -int(RATE))
-        np.testing.assert_allclose(forces.residual[inside], wave[inside] / 0.75, atol=0.01)
-
-
-def test_a_way_that_is_open_somewhere_passes_a_hands_force_whole_there():
-    motion = one_way()
-    n = len(motion.time)
-    force = smooth_noise(np.random.default_rng(2), n, 2.0)
-    gain = np.where(np.arange(n) < n // 2, 0.5, np.nan)
-    way = _Way(gain, np.ones(len(motion.spectrum.frequency), dtype=complex), 0.0)
-    passed = np.where(np.isnan(gain), 1.0, 0.5) * force
-    np.testing.assert_allclose(_transmit(force, way, motion), passed)
-
-
-def test_the_blind_share_counts_samples_that_slide_and_all_where_none_does():
-    def stretch(blind, direction):
-        return (
-            SimpleNamespace(blind=np.array(blind, dtype=bool)),
-            SimpleNamespace(direction=np.array(direction)),
-        )
-
-    first, second = stretch([1, 1, 0, 0], [1, 0, -1, 1]), stretch([1, 0], [0, 1])
-    errors, motions = zip(first, second, strict=True)
-    assert blind_share(errors, motions) == pytest.approx(1 / 4)
-    errors, motions = zip(stretch([1, 0, 0], [0, 0, 0]), strict=True)
-    assert blind_share(errors, motions) == pytest.approx(1 / 3)
-    errors, motions = zip(stretch([], []), strict=True)
-    assert blind_share(errors, motions) == 0.0
-
-
-@pytest.mark.parametrize("side", [1, -1])
-@pytest.mark.parametrize(("most", "weak"), [(0.8, True), (1.2, False)])
-def test_a_command_within_a_dead_zone_is_blind_and_a_larger_one_is_judged(side, most, weak):
-    """Nothing up to 50 N, then N for N up to a limit: friction of 1 N needs commands of 51 N."""
-    zone = Effect(
-        role="actuation",
-        law=lambda now, p: sp.Max(now.command - p.zone, 0) + sp.Min(now.command + p.zone, 0),
-        parameters={"zone": Parameter("force", "d")},
-        absent={"zone": 0.0},
-    ).named("dead_zone", "")
-    effects = {CHEATS["soft_limit"]: {"limit": most}, zone: {"zone": 50.0}}
-    values = {f"{e.name}.{n}": Value(v) for e, of in effects.items() for n, v in of.items()}
-    values |= {"inertia": Value(0.2), "coulomb.level": Value(1.0)}
-    motion = one_way(side)
-    for order in ((zone, CHEATS["soft_limit"]), (CHEATS["soft_limit"], zone)):
-        command_error = residual_at_command(
-            Body("prismatic", values, (EFFECTS["coulomb"], *order)), motion
-        )
-        # a limit in front of the zone never leaves it
-        assert command_error.blind.all() and command_error.weak == (weak or order[0] is not zone)
 
 
 @pytest.mark.parametrize("side", [1, -1])

@@ -58,8 +58,10 @@ def by_hand(dead_time, lag):
     return np.array(rows).T
 
 
-@pytest.mark.parametrize("dead_time", [0.0, 1e-3, 1.3e-3, 2.4e-3, 3e-3])
-@pytest.mark.parametrize("lag", [0.0, 3e-4, 1e-3, 1.7e-3, 2.2e-3])
+@pytest.mark.parametrize(
+    ("dead_time", "lag"),
+    [(0.0, 0.0), (1e-3, 0.0), (1.3e-3, 3e-4), (2.4e-3, 1.7e-3), (0.0, 1e-3), (3e-3, 2.2e-3)],
+)
 def test_each_command_is_made_of_the_readings_it_should_be_and_acts_when_it_should(dead_time, lag):
     simulation = simulate(
         diagram(dead_time),

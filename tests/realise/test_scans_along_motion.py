@@ -4,17 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import sympy as sp
 from effects.along import body_of, motion_along, signals, unled
 from scipy.integrate import solve_ivp
 
-from teleopdesign.base.errors import ModelError
-from teleopdesign.blocks import Body, Value
-from teleopdesign.effects import EFFECTS, SIGNALS, Effect, Parameter
-from teleopdesign.effects._effect import State
-from teleopdesign.realise.along_motion import measured_along, residual_along
+from teleopdesign.effects import SIGNALS
+from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.ode_scan import ode_scan
-from teleopdesign.realise.shape_scan import shape_bounds
 from teleopdesign.realise.traced import Along, Traced
 
 RATE = 1000.0
@@ -58,21 +53,6 @@ def test_a_tip_starts_where_the_body_is_and_swings_as_another_solver_says(offset
     # the body's course between rows is a parabola through what is known at both ends
     assert np.abs(tip - known).max() < 2e-4 * 0.01
     assert np.abs(tip - here).max() > 0.1 * 0.01
-
-
-@pytest.mark.parametrize(("stiffness", "known"), [(2.4e3, True), (1e6, True), (1e9, False)])
-def test_a_tip_too_fast_for_the_rows_has_no_numbers_at_all(stiffness, known):
-    """Resonances at 35 Hz, 0.7 kHz and 22 kHz, at rows of 1 kHz; sixteen steps a row at most."""
-    values = {"tip_inertia": 0.05, "stiffness": stiffness, "damping": 1.0}
-    named = {f"transmission_compliance.{n}": v for n, v in values.items()}
-    body = body_of("transmission_compliance", values=named)
-    t = np.arange(300) / RATE
-    x = 0.01 * np.sin(20 * t)
-    tip = tip_of(body, x, 0.2 * np.cos(20 * t), -4.0 * np.sin(20 * t), RATE)
-    if known:
-        assert np.abs(tip - x).max() < 2e-3 * (2.4e3 / stiffness) ** 0.5
-    else:
-        assert np.isnan(tip).all()
 
 
 COMBINED = {
@@ -169,52 +149,3 @@ def test_where_a_reading_tells_no_motion_friction_is_what_balances_within_a_step
         sure = body_of("coulomb", "presliding", values={"presliding.stiffness": stiffness})
         middle = residual_along(sure, replace(motion, direction=np.ones(n))).friction.value
         assert np.abs(along.friction.value - middle)[still].max() <= stiffness * step / 2 + 1e-9
-
-
-def test_where_a_reading_tells_no_motion_elements_are_open_by_the_sum_of_their_stiffness():
-    """Half a step of the encoder moves each of four elements that have not slipped."""
-    step, n, stiffness = 1e-4, 600, (300.0, 150.0, 60.0, 20.0)
-    values = {f"maxwell_slip.stiffness_{i + 1}": k for i, k in enumerate(stiffness)}
-    values |= {f"maxwell_slip.level_{i}": 0.1 for i in (2, 3, 4)}
-    body = body_of("coulomb", "maxwell_slip", values=values | {"coulomb.level": 0.5})
-    x = np.repeat(np.arange(6), 100) * step  # 0.5 mm: no element slips
-    still = np.arange(n) < 450
-    motion = motion_along(x, 0.0 * x, resolution=step, bandwidth=100.0)
-    motion = replace(motion, direction=np.where(still, 0, 1))
-    known = measured_along(body, motion)
-    level = known.constant(np.full(n, 0.5))
-    low, high = shape_bounds(
-        EFFECTS["maxwell_slip"], motion, known, forward=level, backward=level,
-        needed=known.constant(np.zeros(n)),
-    )  # fmt: skip
-    middle = sum(stiffness) * (motion.position - motion.position[0])
-    half = np.where(still, sum(stiffness) * step / 2, 0.0)
-    np.testing.assert_allclose(high.value, np.minimum(middle + half, 0.5), atol=1e-9)
-    np.testing.assert_allclose(low.value, np.maximum(middle - half, -0.5), atol=1e-9)
-
-
-@pytest.mark.parametrize("case", ["needs another", "goes by another", "has no stop"])
-def test_elements_that_do_not_each_follow_the_motion_up_to_a_stop_are_refused(case):
-    """The scan moves each by the motion alone: it would be wrong in silence."""
-
-    def rate(now, p):
-        return p.k * now.velocity * (now.a / now.level if case == "goes by another" else 1)
-
-    def stop(now, p):
-        return now.level - (sp.Abs(now.a) if case == "needs another" else 0)
-
-    second = State("force", rate, **({} if case == "has no stop" else {"stop": stop}))
-    effect = Effect(
-        role="friction_shape",
-        law=lambda now, p: (now.a + now.b) / 2,
-        parameters={"k": Parameter("stiffness", "k")},
-        states={
-            "a": State("force", lambda now, p: p.k * now.velocity, stop=lambda now, p: now.level),
-            "b": second,
-        },
-        absent={"k": float("inf")},
-    ).named("elements", "")
-    values = {"inertia": 0.2, "coulomb.level": 0.5, "elements.k": 1e3}
-    body = Body("prismatic", {n: Value(v) for n, v in values.items()}, (EFFECTS["coulomb"], effect))
-    with pytest.raises(ModelError, match="elements: states with a stop beside others"):
-        residual_along(body, recorded())

@@ -5,7 +5,6 @@ from xml.etree import ElementTree
 import pytest
 
 from teleopdesign import EFFECTS, Body, Model
-from teleopdesign.base.errors import ModelError
 from teleopdesign.realise.simulator_files import ENDINGS, FORMS, as_simulator_file
 
 
@@ -96,21 +95,6 @@ def test_every_effect_is_held_or_named_as_left_out(form, model):
     assert "stribeck at master" in file.text and form in ENDINGS
 
 
-def test_the_link_of_an_mjcf_joint_is_not_light_beside_its_armature(model):
-    """MuJoCo scales friction constraints by the link alone: a light link slides for ever."""
-    root = ElementTree.fromstring(as_simulator_file(model, "mjcf").text)
-    slide, hinge = root.iter("body")
-    assert float(slide.find("inertial").get("mass")) == pytest.approx(0.1)
-    assert float(hinge.find("inertial").get("diaginertia").split()[2]) == pytest.approx(2e-4)
-
-
-def test_an_unknown_form_and_a_body_without_inertia_are_refused(model):
-    with pytest.raises(ModelError, match='no form "mjfc", has mjcf, urdf; did you mean "mjcf"'):
-        as_simulator_file(model, "mjfc")
-    with pytest.raises(ModelError, match="light.inertia: found 0, expected more than 0"):
-        as_simulator_file(Model({"light": with_effects("prismatic", 0.0)}), "urdf")
-
-
 def test_joints_move_along_and_about_their_axis(model):
     """A slide goes along x, a hinge turns about z, in both forms; URDF hangs each on the base."""
     for form in sorted(FORMS):
@@ -125,32 +109,6 @@ def test_joints_move_along_and_about_their_axis(model):
     assert [j.find("child").get("link") for j in (slide, hinge)] == ["master", "slave"]
 
 
-def test_limits_that_urdf_demands_hinder_no_motion_either_way(model):
-    root = ElementTree.fromstring(as_simulator_file(model, "urdf").text)
-    for joint in root.iter("joint"):
-        limit = numbers(joint.find("limit"))
-        assert limit["lower"] == -limit["upper"] <= -1e3 and limit["velocity"] >= 1e3
-    free = next(root.iter("joint")).find("limit")
-    assert float(free.get("effort")) >= 1e6
-
-
-@pytest.mark.parametrize("form", sorted(FORMS))
-def test_what_a_joint_has_not_beside_its_inertia_is_next_to_nothing(form, model):
-    """The mass of a link that turns and the moment of one that slides; no products of inertia."""
-    root = ElementTree.fromstring(as_simulator_file(model, form).text)
-    if form == "mjcf":
-        slide, hinge = (numbers(b.find("inertial")) for b in root.iter("body"))
-        moments = [b.find("inertial").get("diaginertia").split() for b in root.iter("body")]
-        assert 0 < hinge["mass"] < 1e-5 and all(0 < float(m) < 1e-6 for m in moments[0])
-        return
-    _, slide, hinge = root.iter("link")
-    assert 0 < float(hinge.find("inertial/mass").get("value")) < 1e-5
-    for link, moment in ((slide, 1e-9), (hinge, 4e-4)):
-        inertia = numbers(link.find("inertial/inertia"))
-        assert [inertia[n] for n in ("ixy", "ixz", "iyz")] == [0.0, 0.0, 0.0]
-        assert [inertia[n] for n in ("ixx", "iyy", "izz")] == [moment] * 3
-
-
 def test_an_effect_that_is_absent_by_its_value_is_not_written(model):
     """A limit of infinity is none: no motor of the file is limited by it."""
     body = with_effects(
@@ -162,12 +120,3 @@ def test_an_effect_that_is_absent_by_its_value_is_not_written(model):
             assert not {"forcerange", "damping"} & set(element.attrib)
             assert "inf" not in element.attrib.values()
         assert [name for name, *_ in file.holds] == ["joint.inertia"]
-
-
-def test_time_goes_in_steps_of_which_four_make_the_constant_of_the_friction(model):
-    """MuJoCo's own step of 2 ms would be the constant itself."""
-    root = ElementTree.fromstring(as_simulator_file(model, "mjcf").text)
-    option = root.find("option")
-    constant = float(root.find(".//joint").get("solreffriction").split()[0])
-    assert 4 * float(option.get("timestep")) == pytest.approx(constant)
-    assert option.get("gravity") == "0 0 0"

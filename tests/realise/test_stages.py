@@ -2,25 +2,9 @@
 
 import numpy as np
 import pytest
-import sympy as sp
 from effects.along import body_of, motion_along
 
 from teleopdesign.realise.along_motion import residual_along
-from teleopdesign.realise.stages_along import _delay_samples, _value_at
-
-
-@pytest.mark.parametrize("steps", [-1, 0, 1, 7, 40, 41, 1_000])
-def test_a_signal_some_steps_delay_samples_is_held_before_it_begins(steps):
-    y = np.random.default_rng(1).normal(size=(2, 40))
-    expected = y[:, np.clip(np.arange(40) - steps, 0, 39)]
-    assert (_delay_samples(y, steps) == expected).all()
-
-
-def test_the_value_of_one_parameter_asks_sympy_for_nothing(monkeypatch):
-    delay = sp.Symbol("delay", real=True)
-    assert _value_at(2 * delay + 1, {delay: 0.25}) == 1.5
-    monkeypatch.setattr(sp.Basic, "subs", None)
-    assert _value_at(delay, {delay: 0.1}) == 0.1 and _value_at(sp.S(1), {delay: 0.1}) == 1.0
 
 
 def acting(names, values, command):

@@ -5,11 +5,9 @@ import numpy as np
 import pytest
 from devices import body
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, spring_damper
-from teleopdesign.design.quasi_static import slow_body
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.effects import EFFECTS, SIGNALS, load_effect
+from teleopdesign.effects import SIGNALS, load_effect
 from teleopdesign.frequency import bode, measured_impedance, transfer_function
 from teleopdesign.frequency.matrix_response import matrix_response
 from teleopdesign.passivity import hand_port
@@ -48,15 +46,6 @@ def test_actuator_and_tip_move_as_two_masses_on_a_spring(computer):
     _, expected = control.step_response(two_masses(), simulation["time"].values)
     for name, row in zip(("L", "L_tip"), expected[:, 0], strict=True):
         assert np.abs(simulation[name].values - row).max() < 1e-7 * np.abs(row).max()
-
-
-def test_the_transfer_function_of_the_parted_device_is_that_of_two_masses():
-    diagram = with_tips(haptic_interface(body(M, **COMPLIANT), hand=HAND))
-    for row, name in enumerate(("L", "L_tip")):
-        system, left_out = transfer_function(diagram, output=name, input="R_D")
-        point = 2j * np.pi * 7
-        assert left_out == ()
-        assert complex(system(point)) == pytest.approx(two_masses()(point)[row, 0], rel=1e-9)
 
 
 def test_python_control_moves_the_tip_alike():
@@ -135,36 +124,6 @@ def test_friction_of_the_tip_is_that_of_the_tip_as_a_separate_body():
     np.testing.assert_allclose(one, other, rtol=0, atol=1e-12 * one.max())
 
 
-def test_in_slow_motion_friction_of_the_tip_adds_to_that_of_the_body():
-    made = body(M, coulomb__level=0.3, tip_friction__level=0.2, **COMPLIANT)
-    assert slow_body(made).level().subs(made.numbers()) == pytest.approx(0.5)
-
-
-def test_friction_of_a_tip_needs_a_structure_and_any_will_do():
-    with pytest.raises(ModelError, match='"tip_friction" needs "transmission_compliance" beside'):
-        body(M, tip_friction__level=0.2)
-    gap = body(M, backlash__tip_inertia=TIP, backlash__stiffness=K, backlash__damping=C,
-               backlash__gap=1e-3)  # fmt: skip
-    with_gap = gap.with_effect(EFFECTS["tip_friction"], {"level": 0.2})
-    assert with_gap.tip_level() == EFFECTS["tip_friction"].symbols()["level"]
-    other = with_gap.with_effect(EFFECTS["transmission_compliance"], {"tip_inertia": TIP})
-    assert [e.name for e in other.effects] == ["tip_friction", "transmission_compliance"]
-
-
-@pytest.mark.parametrize(
-    ("changed", "arguments", "words"),
-    [
-        ({}, {"motion": {"L": sine(amplitude=1e-3, frequency=1.0)}}, "give the motion L_tip"),
-        ({"transmission_compliance__tip_inertia": 0.3}, {}, "it must be less"),
-    ],
-)
-def test_what_cannot_be_parted_is_reported_in_one_line(changed, arguments, words):
-    with pytest.raises(ModelError, match=words) as caught:
-        diagram = haptic_interface(body(M, **COMPLIANT | changed))
-        simulate(diagram, duration=0.01, jit=False, **arguments)
-    assert "\n" not in str(caught.value)
-
-
 def test_through_a_gap_two_bodies_exchange_momentum_and_keep_energy():
     """No damping: the actuator's side meets the resting tip behind half a gap, and passes on."""
     gap, stiffness, speed = 2e-3, 2e4, 0.1
@@ -231,24 +190,6 @@ def test_the_response_of_a_held_compliant_device_is_that_of_two_masses():
         assert response.data["magnitude"].units == "m/N"
 
 
-def test_backlash_has_no_linear_form_and_is_named():
-    values = {"tip_inertia": TIP, "stiffness": 2e4, "damping": 0.0, "gap": 1e-3}
-    lost = body(M, viscous__damping=B, **{f"backlash__{n}": v for n, v in values.items()})
-    zhat = {"output": "E", "input": "L", "given": "L"}
-    system, left_out = transfer_function(haptic_interface(lost), **zhat)
-    assert left_out == ("Z_M.backlash",)
-    s = 20j
-    assert complex(system(s)) == pytest.approx(M * s**2 + B * s, rel=1e-9)
-
-
-def test_a_transmission_that_is_absent_is_the_rigid_body():
-    absent = body(M, **COMPLIANT | {"transmission_compliance__tip_inertia": 0.0})
-    system, left_out = transfer_function(haptic_interface(absent), output="E", input="L", given="L")
-    assert left_out == ()
-    s = 20j
-    assert complex(system(s)) == pytest.approx(M * s**2 + B * s, rel=1e-9)
-
-
 SOURCE = '''"""A cable of a user's own, twice as hard where it is pulled."""
 
 from sympy import Piecewise
@@ -307,29 +248,3 @@ def test_one_coupling_is_the_law_of_one_body_and_the_joint_of_two(tmp_path):
         assert TIP * tip == pytest.approx(joint, rel=1e-9, abs=1e-12)
         value = float(effect.expression().subs(at))
         assert value + TIP * at[SIGNALS["acceleration"]] == pytest.approx(joint, abs=1e-9)
-
-
-def test_a_tip_without_correction_runs_free(tmp_path):
-    free = load_effect(written(tmp_path, SOURCE.replace("following=1.0", "following=0.0")))
-    assert free.corrections() == {} and free.led_momentum() == 0
-    assert EFFECTS["backlash"].led_momentum() != 0
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ('"tip_inertia"', '"inertia"', 'no parameter "tip_inertia"'),
-        (
-            "make_structure(\n",
-            'Effect(role="structure", law=coupling,\n    absent={},\n',
-            "coupling",
-        ),
-    ],
-)
-def test_a_structure_that_says_too_little_is_refused_in_one_line(tmp_path, old, new, words):
-    text = SOURCE.replace(old, new).replace("import Parameter", "import Effect, Parameter")
-    if "Effect(" in new:
-        text = text.replace("    following=1.0,\n", "")
-    with pytest.raises(ModelError, match=words) as refusal:
-        load_effect(written(tmp_path, text))
-    assert "\n" not in str(refusal.value)

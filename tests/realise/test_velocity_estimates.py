@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from devices import body
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.simulate import Sampling, Trajectory, simulate, sine
@@ -95,20 +94,3 @@ def test_an_observer_of_order_three_is_quieter_and_earlier_than_a_filtered_diffe
     (n0, d0), (n1, d1), (n2, d2), (n3, d3) = (measured(way) for way in WAYS)
     assert n2 < 0.5 * n3 and n3 < 0.6 * n1 and n1 < 0.2 * n0
     assert d3 < 0.2 * d1 and d1 < 0.6 * d2 and d0 == pytest.approx(0.5e-3, rel=0.05)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"velocity": "filterd"}, 'did you mean "filtered"'),
-        ({"velocity": "difference", "velocity_bandwidth": 30.0}, "has no bandwidth"),
-        ({"velocity": "observer"}, "an observer needs a velocity_bandwidth"),
-        (
-            {"velocity": "observer", "velocity_bandwidth": 9.0, "observer_order": 4},
-            "expected 2 or 3",
-        ),
-    ],
-)
-def test_a_sampling_that_means_nothing_is_refused(arguments, words):
-    with pytest.raises(ModelError, match=words):
-        Sampling(**arguments)

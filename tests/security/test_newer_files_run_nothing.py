@@ -9,13 +9,12 @@ import xml.etree.ElementTree as ET
 
 import h5py
 import pytest
-from clock import in_time, takes_less_than
+from clock import in_time
 from security.diagram_file import one_line
 from security.hostile import CODE, MARK, pairs, quoted
 
 from teleopdesign.arms import read_urdf
 from teleopdesign.base.errors import ExperimentError, TeleopDesignError
-from teleopdesign.cli import main
 from teleopdesign.commands.completion import say_what_follows
 from teleopdesign.model import Model
 from teleopdesign.studies import read_study, read_study_file
@@ -257,9 +256,3 @@ def _outside_quotes(script):
     """What a shell would run: all but single quotes, and double ones that expand nothing."""
     inert = r"""'[^']*'|"(?:[^"`\\$]|\\.|\$(?!\())*"|^\s*#.*$"""
     return re.sub(inert, "", script, flags=re.M)
-
-
-def test_the_completion_of_this_package_is_printed_at_once(guard, capsys):
-    with takes_less_than(10):
-        assert main(["completion", "bash"]) == 0
-    assert MARK not in capsys.readouterr().out

@@ -6,7 +6,6 @@ from devices import body
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import teleoperator
 from teleopdesign.simulate import force_displacement, loop_of, simulate, sine
@@ -37,16 +36,6 @@ def test_only_displacements_within_the_range_count():
     force = np.where(x > 0.0, 3.0 * x, x)
     assert loop_of(x, force, within=(0.1, 0.9)).stiffness == pytest.approx(3.0, rel=1e-9)
     assert loop_of(x, force, within=(-0.9, -0.1)).stiffness == pytest.approx(1.0, rel=1e-9)
-
-
-def test_a_motion_one_way_has_no_loop():
-    with pytest.raises(ModelError, match="both ways"):
-        loop_of(TIME, TIME)
-
-
-def test_no_simulation_is_refused():
-    with pytest.raises(ModelError, match="found no simulation"):
-        force_displacement({})
 
 
 @pytest.fixture(scope="module")

@@ -11,9 +11,7 @@ from hypothesis import strategies as st
 import teleopdesign as td
 from teleopdesign.base.errors import ModelError
 from teleopdesign.diagrams import haptic_interface, teleoperator
-from teleopdesign.realise.kernel import FINER
-from teleopdesign.simulate import Sampling, prepare, simulate, simulate_many
-from teleopdesign.simulate.on_grid import StepLadder
+from teleopdesign.simulate import Sampling, simulate, simulate_many
 
 #: two loops that differ by rounding in one exp: 1e-9 of the largest value, as golden/ allows
 ROUNDING = 1e-9
@@ -135,41 +133,6 @@ def test_delays_are_grouped_and_one_that_no_step_divides_is_reported():
     assert "delay" in str(many["reason"].values[2]) and list(many["reason"].values[:2]) == ["", ""]
 
 
-def test_cases_that_need_about_the_same_finer_step_share_a_grid():
-    """Stiffnesses over three decades ask for steps over a factor of 15, hardly two alike."""
-    stiffness = np.geomspace(1e5, 3e8, 40)
-    values = {"Z_m.presliding.stiffness": stiffness}
-    steps = simulate_many(coupled(), values, **{**RUN, "duration": 0.01})["step"].values
-    divided = np.round(1e-4 / steps).astype(int)
-    assert set(divided) <= set(FINER) and np.all(np.diff(divided) >= 0)
-    assert 3 <= len(set(divided)) <= 8
-    for case in (0, 20, 39):
-        at = {"Z_m.presliding.stiffness": float(stiffness[case])}
-        one = simulate(coupled().with_values(at), **{**RUN, "duration": 0.01})
-        assert one.data.attrs["step_s"] == steps[case]
-
-
-def test_a_run_ends_early_where_no_step_of_the_ladder_would_do_and_only_then():
-    """Up to its end it is the same run; the measure that ended it says that it is refused."""
-    setup = prepare(coupled(), duration=0.1, inputs={"F_u": push})
-    timing = setup.timing(setup.inner())
-    rows, worst = setup.run(timing)
-    assert 0 < worst < setup.ladder("refine").limit(timing.inner)
-    assert np.array_equal(setup.run(timing, limit=worst)[0], rows)
-    ended, measure = setup.run(timing, limit=0.5 * worst)
-    last = int(np.flatnonzero(ended.any(axis=1))[-1])
-    assert np.array_equal(ended[: last + 1], rows[: last + 1]) and not ended[last + 1 :].any()
-    assert 0.5 * worst < measure <= worst and last < timing.samples
-    with pytest.raises(ModelError, match="far too long: even one of"):
-        StepLadder(1e-4, 1e-3, 10).next(timing, 1.001 * StepLadder(1e-4, 1e-3, 10).limit(10), True)
-
-
-def test_inputs_that_are_held_are_those_of_a_table_of_them():
-    constant = simulate(coupled(), duration=0.05, inputs={"F_u": 1.5})
-    table = simulate(coupled(), duration=0.05, inputs={"F_u": lambda t: 1.5 + 0.0 * t})
-    assert constant.data.equals(table.data) and np.ptp(constant["X_e"].values) > 0
-
-
 @pytest.mark.slow
 def test_a_step_works_on_several_lanes_at_once_in_large_structures_too():
     """Four bristles in continuous time: a compiler that must check arrays for overlap gives up.
@@ -228,32 +191,6 @@ def test_what_comes_back_by_default_is_the_rms_of_every_signal():
     for name, x in simulation.data.items():
         rms = float(np.sqrt(np.mean(x.values**2)))
         assert many[f"{name}_rms"].values[1] == pytest.approx(rms, rel=1e-8, abs=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("values", "more", "words"),
-    [
-        ({"Z_m.coulomb.levl": [0.1]}, {}, 'no parameter "Z_m.coulomb.levl"; did you mean "Z_m.c'),
-        ({"Z_m.inertia": [1.0, 2.0], "Z_s.inertia": [1.0] * 3}, {}, "expected as many"),
-        ({"Z_m.inertia": [[1.0]]}, {}, "found an array of shape (1, 1)"),
-        ({"Z_m.inertia": "heavy"}, {}, "expected numbers, found 'heavy'"),
-        ({"Z_m.inertia": [0.1]}, {"keep": ["X_n"]}, 'no signal "X_n", has'),
-        ({"Z_m.inertia": [0.1]}, {"reduce": {"a": ("X_e", "rns")}}, 'did you mean "rms"'),
-        (
-            {"Z_m.inertia": [0.1]},
-            {"reduce": {"a": "X_e"}},
-            'found the text "X_e", expected a tuple',
-        ),
-        ({"Z_m.inertia": [0.1]}, {"reduce": {"a": ("F_m", "energy")}}, "((force, motion)"),
-        ({"Z_m.inertia": [0.1]}, {"reduce": {"step": ("F_m", "rms")}}, '"step" is taken'),
-        ({"Z_m.inertia": [0.1]}, {"inputs": {"F_v": 1.0}}, "is not from outside"),
-        ({"Z_m.inertia": np.ones(10**5)}, {"keep": ["X_m"], "duration": 9.0}, "keep fewer"),
-    ],
-)
-def test_what_is_asked_for_wrongly_is_refused_in_one_line(values, more, words):
-    with pytest.raises(ModelError) as caught:
-        simulate_many(coupled(), values, **{**RUN, **more})
-    assert words in str(caught.value) and "\n" not in str(caught.value)
 
 
 def test_threads_share_nothing_that_is_written(monkeypatch):

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.simulate import sampled_motion, sine
 
 
@@ -42,17 +41,3 @@ def test_a_motion_through_samples_of_a_polynomial_of_fifth_order_is_that_polynom
     inside = np.linspace(0.05, 0.95, 30)
     assert motion.velocity(inside) == pytest.approx(5 * inside**4 - 2 * inside, abs=1e-9)
     assert motion.acceleration(inside) == pytest.approx(20 * inside**3 - 2, abs=1e-8)
-
-
-@pytest.mark.parametrize(
-    ("time", "position", "message"),
-    [
-        (np.arange(5.0), np.zeros(5), "n >= 6"),
-        (np.arange(8.0), np.zeros(7), "found shapes"),
-        (np.zeros(8), np.zeros(8), "times that grow"),
-        (np.arange(8.0), np.full(8, np.nan), "without NaN"),
-    ],
-)
-def test_samples_that_give_no_motion_are_refused(time, position, message):
-    with pytest.raises(ModelError, match=message):
-        sampled_motion(time, position)

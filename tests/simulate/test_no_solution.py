@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from devices import body
 
 import teleopdesign as td
 from teleopdesign.base.errors import GrowsWithoutBound, ModelError
-from teleopdesign.diagrams import Control, Diagram, Junction, Moving
+from teleopdesign.controllers import controller
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_interface
 from teleopdesign.frequency import bode, transfer_function
+from teleopdesign.simulate import Sampling, simulate, simulate_many, sine
 
 BODY = td.Body("prismatic", {"inertia": 0.2}).with_effect(td.EFFECTS["viscous"], {"damping": 3.0})
 NOTHING = BODY.with_values({"inertia": 0.0})
@@ -88,3 +91,139 @@ def test_a_force_that_the_computer_reads_still_pushes_the_body(law, analog):
     ]
     sampled, continuous = (float(run["x"][-1]) for run in runs)
     assert sampled == pytest.approx(continuous, rel=2e-2)
+
+
+MOTION = {"L": sine(amplitude=0.01, frequency=5.0)}
+
+
+def device(half_difference):
+    return haptic_interface(
+        body(0.1, coulomb__level=0.5, coulomb_asymmetry__half_difference=half_difference)
+    )
+
+
+@pytest.mark.parametrize(("half_difference", "way"), [(0.6, "backward"), (-0.6, "forward")])
+def test_a_level_below_zero_is_refused_with_its_direction(half_difference, way):
+    """It was simulated: 1e35 N after 4 ms, which is finite."""
+    with pytest.raises(ModelError, match=f"Z_M: friction of -0.1 N {way} .*no less than 0"):
+        simulate(device(half_difference), duration=0.01, motion=MOTION, jit=False)
+
+
+def test_a_level_that_falls_below_zero_in_fast_sliding_alone_is_refused():
+    slippery = body(
+        0.1,
+        coulomb__level=0.5,
+        stribeck__extra_static_level=0.3,
+        stribeck__stribeck_velocity=0.01,
+        coulomb_asymmetry__half_difference=0.6,
+    )
+    with pytest.raises(ModelError, match="friction of -0.1 N backward"):
+        simulate(haptic_interface(slippery), duration=0.01, motion=MOTION, jit=False)
+
+
+@pytest.mark.slow  # a loop of lanes; simulate/test_many.py has cases that fail beside others
+def test_among_many_cases_only_those_are_refused():
+    simulation = simulate_many(
+        device(0.1),
+        {"Z_M.coulomb_asymmetry.half_difference": [0.1, 0.6, 0.5]},
+        duration=0.01,
+        motion=MOTION,
+    )
+    reasons = [str(r) for r in simulation["reason"].values]
+    assert reasons[0] == "" == reasons[2] and "friction of -0.1 N backward" in reasons[1]
+
+
+def test_a_level_of_zero_one_way_is_simulated():
+    simulation = simulate(device(0.5), duration=0.01, motion=MOTION, jit=False)
+    assert np.isfinite(simulation["R_V"].values).all()
+
+
+LATE = body(0.1, viscous__damping=1.0, actuation_delay__delay=0.0)
+
+
+def scheme(delay=0.0, *, actuator=0.0, computer=None):
+    name = "Z_M.actuation_delay.delay"
+    diagram = td.haptic_interface(LATE if actuator else body(0.1, viscous__damping=1.0))
+    if actuator:
+        diagram = diagram.with_values({name: actuator})
+    made = td.simulate_diagram(
+        diagram,
+        duration=0.01,
+        inputs={"R_D": 1.0},
+        computer=computer or td.Sampling(delay=delay),
+        jit=False,
+    )
+    return made.data.attrs["scheme"], repr(made)
+
+
+@pytest.mark.parametrize("delay", [0.0, 1e-4, 2.1e-3, 0.0300000000001])
+def test_a_whole_number_of_steps_needs_no_word(delay):
+    assert all("whole steps" not in text for text in scheme(delay))
+
+
+@pytest.mark.parametrize(
+    ("delay", "words"),
+    [(2.0738e-3, "2.1 ms for 2.0738 ms"), (5.04e-3, "5 ms for 5.04 ms")],
+)
+def test_a_rounded_delay_of_the_computer_is_stated(delay, words):
+    assert all(f"delays in whole steps: {words}" in text for text in scheme(delay))
+
+
+@pytest.mark.parametrize("computer", ["continuous", td.Sampling()])
+def test_a_rounded_delay_of_an_actuator_is_stated(computer):
+    text, _ = scheme(actuator=5.04e-3, computer=computer)
+    assert text.endswith("delays in whole steps: 5 ms for 5.04 ms")
+
+
+def test_a_delay_far_from_whole_steps_is_refused():
+    with pytest.raises(ModelError, match="is no whole number of steps"):
+        scheme(1.5e-4)
+
+
+PERIOD = 1e-3
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"period": 0.0}, "period > 0 s"),
+        ({"period": float("inf")}, "period > 0 s"),
+        ({"delay": -1e-3}, "delay and encoder_step >= 0"),
+        ({"encoder_step": -1e-6}, "delay and encoder_step >= 0"),
+        ({"velocity": "difference", "velocity_bandwidth": 50.0}, "has no bandwidth"),
+        ({"velocity": "observer"}, "needs a velocity_bandwidth"),
+    ],
+)
+def test_a_computer_that_cannot_be_is_refused(options, message):
+    with pytest.raises(ModelError, match=message):
+        Sampling(**options)
+
+
+def test_an_observer_has_its_order_and_other_estimates_have_none():
+    assert Sampling(velocity="observer", velocity_bandwidth=50.0, observer_order=2).observer == 2
+    assert Sampling(velocity_bandwidth=50.0).observer == 0
+
+
+def test_a_command_is_held_for_a_period():
+    """A spring as the position loop of a device that is led: each command is the spring's force at
+    the last sample.
+    """
+    law = controller("gain", {"gain": 1000.0})
+    diagram = haptic_interface(body(), position_loop=law)
+    motion = sine(amplitude=0.01, frequency=2.0)
+    simulation = simulate(
+        diagram,
+        duration=0.1,
+        motion={"L": motion},
+        computer=Sampling(period=PERIOD),
+        every_step=True,
+        jit=False,
+    )
+    time = simulation["time"].values
+    middles = (time / PERIOD) % 1.0
+    rows = (middles > 0.2) & (middles < 0.8) & (time > 3 * PERIOD)  # away from the changes
+    sample = np.floor(time[rows] / PERIOD) * PERIOD
+    expected = -1000.0 * motion.position(sample)
+    assert rows.sum() > 100
+    # the held command is exact; what remains is the rounding of times
+    assert simulation["R_D"].values[rows] == pytest.approx(expected, abs=1e-9)

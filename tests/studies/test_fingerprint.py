@@ -14,25 +14,11 @@ from teleopdesign.studies.fingerprint import fingerprint
 #: a model or measure f, and the same one with another result: `old` -> `new`
 CHANGES = {
     "method of a result": ("def f(s): return s.max()", "max", "min"),
-    "function within": ("def f(s): return max(2 * x for x in s)", "2", "3"),
-    "argument order": ("def f(a, b): return a - b", "a, b", "b, a"),
     "set": ("def f(s): return s in {1, 2}", "2", "3"),
     "constant above": ("K = 1\ndef f(s): return K", "1", "2"),
-    "table of functions": ("T = {'a': lambda s: 1}\ndef f(s): return T['a'](s)", "1", "2"),
     "instance called": ("class C:\n def __call__(self, s): return 1\nf = C()", "1", "2"),
     "method bound": ("class C:\n def g(self, s): return 1\nf = C().g", "1", "2"),
     "value of a class": ("class C:\n k = 1\ndef f(s): return C.k", "1", "2"),
-    "method of a class": ("class C:\n def g(self): return 1\ndef f(s): return C().g()", "1", "2"),
-    "base class": (
-        "class B:\n def g(self): return 1\nclass C(B): pass\ndef f(s): return C().g()",
-        "1",
-        "2",
-    ),
-    "property": (
-        "class C:\n @property\n def g(self): return 1\ndef f(s): return C().g",
-        "1",
-        "2",
-    ),
     "slots": (
         "class C:\n __slots__ = ('k',)\n def __call__(self, s): return self.k\nf = C()\nf.k = 1",
         "k = 1",
@@ -49,19 +35,7 @@ CHANGES = {
         "3",
         "4",
     ),
-    "function with an argument held": (
-        "from functools import partial\ndef g(s, k): return k + 1\nf = partial(g, k=3)",
-        "1",
-        "2",
-    ),
     "compiled": ("from numba import njit\n@njit\ndef f(s): return 1", "1", "2"),
-    "vectorised": ("import numpy as np\n@np.vectorize\ndef f(s): return 1", "1", "2"),
-    "long table": (
-        "import pandas as pd\nK = pd.DataFrame({'a': [*range(250), 1, *range(250)]})\n"
-        "def f(s): return K",
-        ", 1,",
-        ", 2,",
-    ),
     "long labelled array": (
         "import xarray as xr, numpy as np\nK = np.arange(5000.0)\nK[2500] = 1\n"
         "K = xr.DataArray(K)\ndef f(s): return K",

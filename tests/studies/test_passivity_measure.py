@@ -29,6 +29,7 @@ def test_a_wall_that_its_computer_makes_active_is_not_called_proved(device):
         assert status(wall, "continuous") == (["proved", "proved"], [1.0, 1.0])
 
 
+@pytest.mark.slow
 def test_a_proof_in_continuous_time_is_evidence_at_most_in_a_computer():
     rubbing = body(0.1, viscous__damping=DAMPING, coulomb__level=0.5)
     law = controller("dahl", {"level": 0.4, "stiffness": 1e4})

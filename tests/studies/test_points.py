@@ -76,26 +76,6 @@ def test_a_distribution_of_scipy_is_a_range():
 
 
 @pytest.mark.parametrize(
-    ("axes", "text"),
-    [
-        ({"a": []}, "a: found no value"),
-        ({"a": [1.0, np.nan]}, "not finite"),
-        ({"a": [1.0, 1.0]}, "a value is there twice"),
-        ({"a": [[1.0, 2.0]]}, "expected numbers or texts in one row"),
-        ({"a": [[1.0], [1.0, 2.0]]}, "expected numbers or texts in one row"),
-        ({"a": loguniform(1, 2)}, "draw points with latin_hypercube"),
-        ({"a": None}, "expected values"),
-        ([{"a": [1]}, {"a": [2]}], 'parameter "a" is there twice'),
-        ([latin_hypercube(TWO, 2), latin_hypercube({"c": (0, 1)}, 2)], "are there twice"),
-        ({f"p{i}": np.arange(100) for i in range(9)}, "expected at most 1e"),
-    ],
-)
-def test_axes_that_have_no_meaning_are_refused(axes, text):
-    with pytest.raises(ModelError, match=text):
-        points_of(axes)
-
-
-@pytest.mark.parametrize(
     ("ranges", "count", "text"),
     [
         ({}, 4, "found no range"),

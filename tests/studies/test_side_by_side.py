@@ -7,7 +7,7 @@ import xarray
 
 import teleopdesign as td
 from teleopdesign.studies.chosen_measures import measures_of
-from teleopdesign.studies.evaluate import StudyTask, block_size, evaluate, evaluate_unit, units_of
+from teleopdesign.studies.evaluate import StudyTask, evaluate, evaluate_unit, units_of
 from teleopdesign.studies.points import points_of
 
 AXES = {
@@ -41,40 +41,6 @@ def test_a_point_does_not_depend_on_those_beside_it():
     for first, last in ((0, 7), (6, 23), (30, 42)):
         part = evaluate_unit(whole, range(first, last))
         assert part == blocks[first:last]
-
-
-@pytest.mark.parametrize(
-    ("axes", "measures"),
-    [
-        (AXES, ["force_error", lambda simulation: 1.0]),  # it may need any signal
-        (AXES, td.measure("onset", parameter="C.dahl.level", low=0.1, high=9, signal="L")),
-        ({"computer.delay": [0.0, 1e-3]}, MEASURES),  # no parameter of the diagram varies
-    ],
-)
-def test_what_cannot_be_side_by_side_is_one_by_one(axes, measures):
-    assert block_size(task(axes, measures)) == 1
-
-
-def test_blocks_are_longer_for_shorter_simulations_and_bounded():
-    sizes = []
-    for duration in (0.01, 1.0, 10.0, 1000.0):
-        case = td.studies.SimulatedCase(models.interface(), duration=duration)
-        one = StudyTask(case, {}, points_of(AXES), measures_of("force_error"))
-        sizes.append(block_size(one))
-    assert sizes[0] == 512 and sizes[-1] == 16
-    assert sorted(sizes, reverse=True) == sizes
-
-
-def test_blocks_of_long_studies_are_larger_where_each_worker_still_has_some():
-    case = td.studies.SimulatedCase(models.interface(), duration=5.0)
-
-    def size(points):
-        axes = {"C.dahl.level": np.linspace(0.1, 1.5, points)}
-        return block_size(StudyTask(case, {}, points_of(axes), measures_of("force_error")))
-
-    assert size(800) == 400  # half a second of one core
-    assert size(8000) == 992  # an eighth of the study, in whole blocks of lanes
-    assert size(100_000) == 1600  # two seconds
 
 
 @pytest.mark.slow

@@ -179,52 +179,6 @@ def test_nothing_is_simulated_for_a_measure_that_needs_no_motion():
     assert list(dataset["level"].values) == [0.1, 0.2]
 
 
-def test_a_measure_that_needs_a_motion_says_that_none_is_simulated():
-    dataset = td.study(models.interface(), {"C.dahl.level": [0.1]}, measures="force_error")
-    assert "duration: found none" in next(iter(dataset.failures))
-
-
-@pytest.mark.parametrize(
-    ("axes", "measures", "text"),
-    [
-        ({"C.dahl.levl": [1]}, "force_error", 'did you mean "C.dahl.level"'),
-        ({"computer.dely": [1]}, "force_error", 'did you mean "computer.delay"'),
-        ({"inputs.R_X": [1]}, "force_error", "no parameter"),
-        ({"C.dahl.level": [1]}, "force_eror", 'did you mean "force_error"'),
-        ({"C.dahl.level": [1]}, [], "measures: found none"),
-        ({"C.dahl.level": [1]}, [3.0], "expected a measure: a function, or a name"),
-        ({"C.dahl.level": [1]}, ["force_error", "force_error"], "is there twice"),
-    ],
-)
-def test_an_unknown_parameter_or_measure_is_answered_with_the_nearest(axes, measures, text):
-    with pytest.raises(ModelError, match=text):
-        td.study(models.interface(), axes, measures=measures, **models.SIMULATED)
-
-
-@pytest.mark.parametrize("words", [{"units": {"value": "N"}}, {"labels": {"value": "v"}}])
-def test_a_misspelt_name_is_not_taken_for_the_reason_of_a_failure(words):
-    """ "value" is near "failure", which is no measure and has no unit."""
-    area = {"axes": {"x": [1.0], "y": [2.0]}, "measures": {"area": models.value}}
-    with pytest.raises(ModelError, match='"value", has area, x, y$'):
-        td.study(models.product, **area, **words)
-    with pytest.raises(ModelError, match='"value", has area, failure, x, y$'):
-        td.study(models.product, **area)["value"]
-
-
-def test_options_of_measures_are_held_against_those_that_there_are():
-    with pytest.raises(ModelError, match='no option "signl".*did you mean "signal"'):
-        td.measure("rms", signl="E")
-    with pytest.raises(ModelError, match='option "signal" has no value'):
-        td.measure("rms")
-
-
-def test_parameters_of_a_function_are_held_against_its_arguments():
-    with pytest.raises(ModelError, match='takes no parameter "z".*has x, y'):
-        td.study(models.product, {"x": [1], "z": [1]}, measures=models.value)
-    with pytest.raises(ModelError, match='parameter "y" has no axis'):
-        td.study(models.product, {"x": [1]}, measures=models.value)
-
-
 def test_a_motion_that_is_no_sine_has_no_amplitude():
     time = np.linspace(0, 1, 20)
     case = SimulatedCase(

@@ -157,23 +157,13 @@ def test_recordings_are_diagnosed_as_a_study(folder, capsys):
         ("[study]", "[stdy]", 'unknown key "stdy".*did you mean "study"'),
         ('model = "interface.toml"', "", "expected model .* or experiments"),
         ("interface.toml", "absent.toml", "absent.toml: cannot be read"),
-        ('"interface.toml"', '"haptic-interfac"', 'did you mean "haptic-interface"'),
         ('model = "interface.toml"', 'experiments = ["none"]', "no folder with an experiment.toml"),
         ("C.dahl.level", "C.dahl.levl", 'did you mean "C.dahl.level"'),
         ("points = 3", "points = 1.5", "found 1.5, expected a whole number"),
-        ("points = 3", "points = 1", "expected at least 2"),
-        ("points = 3", 'points = 3, scale = "lg"', 'did you mean "log"'),
         ("from = 0.2", 'from = 0, scale = "log"', "log scale needs from and to above 0"),
         ("[0, 1e-3]", "[]", "axes.computer.delay: found a list, expected numbers"),
-        ("[0, 1e-3]", "[0, 0]", "a value is there twice"),
         ("duration = 0.2", "duration = 0", "expected a finite number above 0"),
-        ("duration", "durration", 'did you mean "duration"'),
-        ("frequency = 5.0", "freqency = 5.0", 'did you mean "frequency"'),
-        ("motion.L", "motion.X", "X"),
         ("force_error = {}", "force_eror = {}", 'did you mean "force_error"'),
-        ('"peak"', '"peek"', 'did you mean "peak"'),
-        ("signal", "sgnal", 'did you mean "signal"'),
-        ('signal = "R_M"', "signal = true", "expected a number or a text"),
         ("[measures]", "[measures", "not valid TOML"),
         ("[measures]\nforce_error = {}", "[measures]\nforce_error = 1", "expected a table"),
     ],
@@ -197,16 +187,13 @@ def test_a_bad_toml_study_is_one_line_and_status_two(folder, capsys, old, new, m
     ("arguments", "message"),
     [
         (["absent.toml"], "absent.toml: cannot be read"),
-        (["s.txt"], "expected .toml or .py"),
         (["s.toml", "--out", "s.csv"], "expected .nc"),
         (["s.toml", "--out", "none/s.nc"], "there is no folder 'none'"),
-        (["s.toml", "--figure", "s.gif"], "expected .pdf or .svg or .png"),
         (["s.toml", "--workers", "2", "--scheduler", "tcp://a:1"], "a cluster has its own workers"),
         (["no_study.py"], "sets no STUDY"),
         (["not_python.py"], "line 1: "),
         (["wrong.py"], "unknown 'axis'.*did you mean \"axes\""),
         (["lacking.py"], "measures is missing"),
-        (["a_list.py"], "found list, expected a dict"),
     ],
 )
 def test_bad_arguments_are_one_line_and_status_two(folder, capsys, arguments, message):
@@ -216,18 +203,9 @@ def test_bad_arguments_are_one_line_and_status_two(folder, capsys, arguments, me
     (folder / "not_python.py").write_text("a b\n")
     (folder / "wrong.py").write_text("STUDY = dict(model=len, axis={}, measures=len)\n")
     (folder / "lacking.py").write_text("STUDY = dict(model=len, axes={})\n")
-    (folder / "a_list.py").write_text("STUDY = []\n")
     assert main(["study", *arguments]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and re.search(message, error), error
-
-
-@pytest.mark.parametrize("count", ["0", "-1", "two"])
-def test_a_number_of_workers_is_whole_and_above_zero(count, capsys):
-    with pytest.raises(SystemExit) as ended:
-        main(["study", "s.toml", "--workers", count])
-    assert ended.value.code == 2
-    assert "expected a whole number from 1" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -3,11 +3,9 @@
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from matplotlib.text import Text
 
 import teleopdesign as td
 from teleopdesign.base.errors import ModelError
-from teleopdesign.show.studies.data import words
 
 COLUMNS = {"x": (-np.pi, np.pi), "y": (-np.pi, np.pi), "z": (-np.pi, np.pi)}
 
@@ -106,17 +104,6 @@ def test_each_point_lies_in_the_middle_of_its_cell_on_even_and_on_logarithmic_ax
     np.testing.assert_allclose(0.5 * (y[1:] + y[:-1]), gridded["y"].values, atol=1e-12)
 
 
-def test_words_on_an_axis_stand_beside_their_cells():
-    axes = {"law": ["dahl", "lugre", "relay"], "x": [1.0, 2.0, 4.0]}
-    dataset = td.study(lambda x, law: x - len(law), axes, measures=value, workers=1)
-    figure = dataset.plot.map(x="x", y="law", onset=-2.0)
-    figure.canvas.draw()
-    axis, corners = figure.axes[0], figure.axes[0].collections[0].get_coordinates()
-    assert [t.get_text() for t in axis.get_yticklabels()] == axes["law"]
-    middle = 0.5 * (corners[1:, 0, 1] + corners[:-1, 0, 1])
-    np.testing.assert_allclose(axis.get_yticks(), middle, atol=1e-12)
-
-
 def test_points_that_failed_stay_empty_in_a_map():
     dataset = td.study(lambda x, y: x / (y > 0), {"x": [1.0, 2.0], "y": [0.0, 1.0]}, measures=value)
     shown = dataset.plot.map(x="x", y="y").axes[0].collections[0].get_array()
@@ -134,71 +121,78 @@ def test_a_region_that_a_measure_calls_proved_is_hatched_there_alone():
     assert shown.reshape(2, 3).tolist() == [[True, False, False], [True, True, False]]
 
 
-def test_panels_share_one_scale_of_colours(gridded):
-    figure = gridded.plot()
-    meshes = [a.collections[0] for a in figure.axes[:2]]
-    assert meshes[0].get_clim() == meshes[1].get_clim()
-    assert "z = 1" in figure.axes[1].get_title(loc="left")
+def study(function, axes):
+    return td.study(function, axes, measures=value, workers=1)
 
 
-def test_points_drawn_together_are_shown_over_each_parameter():
-    dataset = td.study(ishigami, td.latin_hypercube(COLUMNS, 20, seed=1), measures=value)
-    figure = dataset.plot()
-    assert [a.get_xlabel() for a in figure.axes] == ["x (1)", "y (1)", "z (1)"]
+def product(x, y, z=0.0, w=0.0):
+    return x * y + z + w
 
 
-@pytest.mark.parametrize(
-    ("call", "text"),
-    [
-        (lambda plot: plot.map("valu"), 'did you mean "value"'),
-        (lambda plot: plot.map(), "a map has two axes"),
-        (lambda plot: plot.map(at={"w": 1.0}), 'no axis "w"'),
-        (lambda plot: plot.curves(over="x"), "give values of all but two"),
-        (lambda plot: plot.panels(by="xx"), 'did you mean "x"'),
-        (lambda plot: plot.scatter(), "points drawn together"),
-    ],
-)
-def test_figures_that_the_axes_do_not_allow_are_refused(gridded, call, text):
-    with pytest.raises(ModelError, match=text):
-        call(gridded.plot)
+def test_a_map_of_unsorted_values_is_the_map_of_the_sorted_ones():
+    """The values 2, 0.1, 1 had cells that covered each other: of nine cells, four were visible."""
+    rows = ([2.0, 0.1, 1.0], [0.1, 1.0, 2.0])
+    maps = [study(product, {"x": x, "y": x}).plot.map(onset=1.5).axes[0].collections for x in rows]
+    for unsorted, in_order in zip(*maps, strict=True):
+        if hasattr(unsorted, "get_coordinates"):
+            np.testing.assert_array_equal(unsorted.get_coordinates(), in_order.get_coordinates())
+        np.testing.assert_array_equal(unsorted.get_array(), in_order.get_array())
+    line = study(lambda x: x, {"x": rows[0]}).plot().axes[0].get_lines()[0]
+    assert line.get_xdata().tolist() == rows[1]
 
 
-@pytest.mark.parametrize(
-    ("name", "shown"),
-    [
-        ("tracking_error", "tracking error"),
-        ("rms_R_FF", r"rms $R_{\mathrm{FF}}$"),
-        ("growth_X_s", "growth $X_{s}$"),
-        ("peak_X_m_velocity", r"peak $\dot X_{m}$"),
-        ("E", "E"),
-        ("cancelled friction $f_D$", "cancelled friction $f_D$"),
-        ("C_s.dahl.level", "C_s.dahl.level"),
-    ],
-)
-def test_a_label_shows_signals_as_symbols_and_leaves_formulas_and_paths(name, shown):
-    assert words(name) == shown
-
-
-def test_a_figure_has_the_house_font_also_where_matplotlib_writes_it(gridded):
-    """A generic family would be looked up when the figure is written, by whatever style is then."""
-    figure = gridded.plot.curves(over="x", at={"z": 1.0})
-    texts = [t for t in figure.findobj(Text) if t.get_text()]
-    assert {t.get_fontfamily()[0] for t in texts} == {"STIXGeneral"}
-
-
-@pytest.mark.parametrize("delays", [[0.0, 1e-3], np.linspace(0.0, 1e-3, 9)])
-def test_labels_of_small_values_do_not_lie_on_one_another(delays):
-    """Of two panels over a delay of the computer the numbers of the x-axis were one black line."""
-    axes = {"z": [0.0, 1.0], "y": [0.1, 0.2], "x": delays}
-    study = td.study(plane, axes, measures=value, units={"x": "s"}, workers=1)
-    figure = study.plot.panels("value", x="x", y="y")
+@pytest.mark.parametrize("many", [1, 4])
+def test_any_number_of_panels_is_drawn_each_with_its_ticks(many):
+    """Four, five, seven and eight panels ended in an error of matplotlib about its colour bar."""
+    axes = {"z": np.arange(float(many)), "y": [1.0, 2.0], "x": [1.0, 2.0]}
+    figure = study(product, axes).plot.panels(by="z")
+    panels = [a for a in figure.axes if a.get_title(loc="left")]
+    assert len(panels) == many
     figure.canvas.draw()
-    for axis in figure.axes:
-        boxes = [t.get_window_extent() for t in axis.get_xticklabels() if t.get_text()]
-        assert all(a.x1 < b.x0 for a, b in zip(boxes, boxes[1:], strict=False))
+    for k, panel in enumerate(panels):
+        lowest = k + min(many, 3) >= many
+        assert bool(panel.get_xlabel()) == lowest
+        assert any(t.get_visible() for t in panel.get_xticklabels()) == lowest
 
 
-def test_a_limit_of_no_such_name_lists_margins_and_claims():
-    """Only measures were listed: "delay margn" was none of them."""
-    with pytest.raises(ModelError, match=r'passive.*delay margin.*did you mean "delay margin"'):
-        td.limit("delay margn", least=1e-3)
+def test_infinite_values_have_the_colour_of_the_end_and_are_no_failures():
+    """A growth beyond all bounds was white, as a failed point, and -inf lay above an onset."""
+
+    def growth(x, y):
+        return {6.0: np.inf, 1.0: -np.inf}.get(x * y, x * y)
+
+    figure = study(growth, {"x": [1.0, 2.0, 3.0], "y": [1.0, 2.0]}).plot.map(onset=2.5)
+    shown = figure.axes[0].collections[0].get_array()
+    assert not np.ma.getmaskarray(shown).any()
+    assert shown.max() == 4.0 and shown.min() == 2.0
+    assert figure.axes[1]._colorbar.extend == "both"
+    corner = figure.axes[0].collections[1].get_paths()[0].vertices.sum(axis=1)
+    assert corner.min() > 2.9, "no line beside -inf"
+
+
+def test_an_array_hatches_the_region_at_its_coordinates():
+    result = study(product, {"x": [2.0, 1.0], "y": [1.0, 3.0]})
+    hatched = result.plot.map(x="x", y="y", proved=result["value"] > 5).axes[0].collections[1]
+    shown = ~np.ma.getmaskarray(hatched.get_array()).reshape(2, 2)
+    assert shown.tolist() == [[False, False], [False, True]]
+    with pytest.raises(ModelError, match="proved: found an array over x of shape"):
+        result.plot.map(proved=result["value"].isel(y=0))
+
+
+def fails(x):
+    raise ModelError("too stiff")
+
+
+@pytest.mark.parametrize(
+    ("function", "axes", "text"),
+    [
+        (product, {"x": 1.0, "y": 2.0}, "no parameter has several values"),
+        (product, {"x": [1.0], "y": 2.0}, "no parameter has several values"),
+        (fails, {"x": [1.0, 2.0]}, "every point failed"),
+        (lambda x: "a", {"x": [1.0, 2.0]}, "study: value: found texts, expected numbers"),
+        (product, [{"x": [1.0], "y": [1.0]}, td.sobol({"z": (0, 1)}, 2)], "over x, y, sample"),
+    ],
+)
+def test_a_study_without_anything_to_draw_is_refused_in_one_line(function, axes, text):
+    with pytest.raises(ModelError, match=text):
+        study(function, axes).plot()

@@ -36,6 +36,7 @@ def test_motion_decays_within_the_limit_and_grows_beyond_it(trials, hand):
     assert ((chosen["rate"] > 0) == (chosen["over_limit"] > 1)).all()
 
 
+@pytest.mark.slow
 def test_growth_against_the_worst_hand_is_the_damping_that_lacks(trials):
     """Near the limit the envelope grows at (share/limit - 1) b over twice the moving mass."""
     chosen = trials.isel(trial=(trials["hand"] == "any").values)

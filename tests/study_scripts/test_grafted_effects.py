@@ -37,6 +37,7 @@ def machine():
     return study.machine_of("rod", td.load_experiment(td.example("rod")), quick=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect", ["spring", "quadratic_drag", "position_dependent_friction"])
 def test_a_graft_changes_the_command_alone_and_has_the_size_asked_for(machine, effect):
     experiment = study.grafted(machine, effect, 2.0)
@@ -50,6 +51,7 @@ def test_a_graft_changes_the_command_alone_and_has_the_size_asked_for(machine, e
     np.testing.assert_allclose(rms, 2.0 * machine.left, rtol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect", ["torque_ripple", "load_dependent_friction"])
 def test_what_takes_a_share_of_the_command_takes_it_of_the_new_one(machine, effect):
     experiment = study.grafted(machine, effect, 0.5)
@@ -63,10 +65,12 @@ def test_what_takes_a_share_of_the_command_takes_it_of_the_new_one(machine, effe
     np.testing.assert_allclose(rms, 0.5 * machine.left, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_graft_that_would_take_half_of_the_command_is_none(machine):
     assert study.grafted(machine, "torque_ripple", 1e3) is None
 
 
+@pytest.mark.slow
 def test_what_a_model_has_is_not_grafted_nor_what_its_axis_has_not(machine):
     assert machine.takes("spring") and machine.takes("stribeck")
     assert not machine.takes("gravity")  # the rod is prismatic

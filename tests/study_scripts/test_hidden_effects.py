@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 import json
-import math
-from dataclasses import replace
 
 import hidden_effects
 import numpy as np
 import pytest
-from _campaign import plan, run_campaign, write_plan
-from _defects import DEFECTS, log_as_loggers_do
-from _recovery_tables import Campaign, collect, main_table, row_of
+from _campaign import plan
+from _defects import log_as_loggers_do
+from _recovery_tables import collect
 from _scoring import (
     Answer,
-    Share,
     Truth,
-    calibration,
-    estimates,
     judge,
     load_truth,
-    quantile_text,
 )
 from shared_data import shared_folder
 
@@ -123,60 +117,6 @@ def test_the_truth_itself_is_right_in_every_published_case():
         assert judge(true, response) == "right"
 
 
-def test_shares_have_the_exact_binomial_interval():
-    assert Share(0, 10).interval == pytest.approx((0.0, 1 - 0.025**0.1))  # closed form for none
-    assert str(Share(3, 4)) == "75 % (19 to 99), 3 of 4"
-    assert str(Share(0, 0)) == "–"
-
-
-def test_a_quantile_says_where_too_few_values_leave_its_interval_open():
-    assert quantile_text([1.0, 2.0, 3.0], 0.5) == "2.00 (? to ?), n = 3"
-    assert quantile_text(list(range(1, 101)), 0.5, digits=0) == "50 (40 to 61), n = 100"
-
-
-def test_calibration_error_is_what_sureness_exceeds_truth_by():
-    rng = np.random.default_rng(0)
-    probabilities = rng.uniform(size=4000)
-    fair = calibration([[(p, rng.uniform() < p)] for p in probabilities], rng)
-    # ten bins of 400: half a standard deviation of a share, 0.02, is left by chance
-    assert fair.error < 0.03
-    sure = calibration([[(0.9, k % 2 == 0)] for k in range(100)], rng)
-    assert sure.error == pytest.approx(0.4)
-    assert sure.interval[0] < 0.4 < sure.interval[1]
-    assert [s.n for s in sure.true] == [100]
-
-
-def test_a_phase_is_compared_on_the_circle():
-    cogging = ("cogging", "device")
-    true = truth(
-        cogging,
-        effects=[
-            {
-                "effect": "cogging",
-                "at": "device",
-                "parameters": {"phase": {"value": 6.2}, "period": {"value": 0.01}},
-            }
-        ],
-    )
-    parameters = {
-        "phase": {"value": 6.25 - 2 * math.pi, "stderr": 0.03},
-        "period": {"value": 0.0103, "stderr": 0.0001},
-    }
-    response = answer(
-        cogging,
-        candidates=[{"effect": "cogging", "at": "device", "parameters": parameters}],
-    )
-    assert {e.parameter: e.inside for e in estimates(true, response)} == {
-        "phase": True,
-        "period": False,
-    }
-
-
-def test_a_longer_plan_begins_with_the_shorter_one():
-    assert plan(60, seed=4)[:25] == plan(25, seed=4)
-    assert plan(25, seed=5) != plan(25, seed=4)
-
-
 def test_a_plan_hides_every_effect_of_the_catalogue_on_both_kinds_of_machine():
     cases = plan(400, seed=1)
     contact = {"contact_damping", "contact_hardening"}
@@ -194,14 +134,6 @@ def test_a_plan_hides_every_effect_of_the_catalogue_on_both_kinds_of_machine():
         assert len(pairs) == 2 * len({getattr(c, name) for c in cases})
 
 
-def test_a_folder_of_other_cases_is_refused(tmp_path):
-    write_plan(tmp_path, plan(3, seed=1))
-    write_plan(tmp_path, plan(5, seed=1))
-    assert len(json.loads((tmp_path / "plan.json").read_text())["cases"]) == 5
-    with pytest.raises(SystemExit, match="plan.json: case 000"):
-        write_plan(tmp_path, plan(3, seed=2))
-
-
 def finished(folder, case, response):
     """A case whose truth and answer are there already."""
     for part in ("truth", "answers", f"cases/{case.name}"):
@@ -215,23 +147,6 @@ def finished(folder, case, response):
     (folder / "answers" / f"{case.name}.json").write_text(json.dumps(response))
 
 
-def test_an_answer_that_is_there_is_not_made_again(tmp_path, capsys):
-    (case,) = plan(1, seed=1, levels=("null",))
-    response = {
-        "verdict": "model_adequate", "missing": [], "indistinguishable": [],
-        "ladder": [{"check_error": 0.021}], "processor_seconds": 9.0,
-        "candidates": [{"effect": "bias", "at": "device", "probability": 0.01}],
-    }  # fmt: skip
-    finished(tmp_path, case, response)
-    run_campaign(tmp_path, [case])
-    assert "1 cases" in (printed := capsys.readouterr().out) and "0 to do" in printed
-    campaign = collect(tmp_path, [case], ["answers"])
-    assert [r.outcome for r in campaign.rows] == ["right"]
-    assert campaign.rows[0].noise == "1 to 2 %"
-    assert campaign.best == ((0.01, False),)
-    assert "| nothing missing: false alarm | 0 % (0 to 98), 0 of 1 |" in main_table(campaign)
-
-
 def test_a_case_that_failed_counts_and_one_that_was_not_run_does_not(tmp_path):
     first, second = plan(2, seed=1, levels=("null",))
     for case in (first, second):
@@ -241,17 +156,6 @@ def test_a_case_that_failed_counts_and_one_that_was_not_run_does_not(tmp_path):
     (tmp_path / "failed" / f"{first.name}.answers.txt").write_text("why\n")
     campaign = collect(tmp_path, [first, second], ["answers"])
     assert [(r.case, r.outcome) for r in campaign.rows] == [(first.name, "no answer")]
-
-
-def test_a_table_without_any_answer_can_be_printed():
-    assert main_table(Campaign((), (), (), (), 0)).count("\n") > 3
-
-
-def test_an_unfinished_case_has_a_row_without_numbers():
-    (case,) = plan(1, seed=1)
-    true = truth(STRIBECK, axis="prismatic", check_error_true=0.02, noise_floor=0.02)
-    row = row_of(case, true, None, "answers")
-    assert row.outcome == "no answer" and math.isnan(row.error_after)
 
 
 def made_library():
@@ -345,20 +249,3 @@ def test_a_logger_writes_the_command_late_and_reads_whole_steps_at_jittering_mom
     assert log["u"][inside] == pytest.approx((row[inside] - shift) / 1000, abs=1e-9)
     assert np.abs(log["x"] / step - np.round(log["x"] / step)).max() < 1e-9
     assert np.abs(log["f_h"] - np.cos(log["t"])).max() < 1e-6
-
-
-def test_half_of_a_campaign_with_loggers_is_logged_so():
-    cases = plan(200, seed=3, loggers=True)
-    shifts = [c.logger for c in cases if c.logger is not None]
-    assert len(shifts) == 100 and min(shifts) >= -1 and shifts.count(1.0) >= 30
-    bare = plan(200, seed=3)
-    assert [replace(c, logger=None) for c in cases] == bare
-
-
-def test_a_repeated_row_holds_the_row_logged_before_it():
-    table = {"t": np.arange(400.0), "x": np.arange(400.0)}
-    (spoil,) = [d.spoil for d in DEFECTS if d.name == "repeated samples"]
-    x = spoil(table, np.random.default_rng(0), 0.3)["x"]
-    again = x != table["x"]
-    assert np.array_equal(x[1:][again[1:]], x[:-1][again[1:]])
-    assert 90 < again.sum() < 150 and (again[1:] & again[:-1]).any()

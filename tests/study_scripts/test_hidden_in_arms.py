@@ -12,11 +12,6 @@ from hidden_in_arms import JOINTS, Case, plan
 sys.path.append(str(Path(__file__).resolve().parents[1] / "arms"))
 
 
-def test_a_longer_campaign_begins_with_the_same_arms():
-    assert plan(30, 3)[:12] == plan(12, 3)
-    assert plan(12, 3) != plan(12, 4)
-
-
 def test_every_number_of_joints_meets_a_hidden_effect_and_none_at_joints_that_are_there():
     cases = plan(90, 1)
     for count in set(JOINTS):

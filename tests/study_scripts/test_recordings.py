@@ -10,31 +10,6 @@ import recordings
 from teleopdesign.base.errors import ExperimentError
 
 ROOT = Path(__file__).parents[2]
-ROW = {
-    "verdict": "effects_missing",
-    "ladder": [
-        {"added": None, "check_error": 0.2},
-        {"added": "spring at device", "check_error": 0.05},
-        {"added": "bias at device", "check_error": 0.04},
-    ],
-    "missing": ["spring at device"],
-    "indistinguishable": [["spring at device", "hardening_spring at device"]],
-    "seconds": {"wall": 30.0, "processor": 12.0},
-    "only": [],
-    "trees": 0.061,
-    "text": "ladder",
-}
-
-
-def test_a_row_says_errors_names_and_time_and_why_one_is_not_there():
-    rows = {"one": ROW, "gone": {"skipped": "no connection"}}
-    rows["quick"] = ROW | {"only": ["a", "b"], "missing": [], "verdict": "undecided", "trees": None}
-    lines = recordings.table(rows).splitlines()[2:]
-    assert lines[0] == (
-        "| `one` | 20.00 % | 4.00 % | 6.10 % | `spring` or `hardening_spring` | 12 s |"
-    )
-    assert lines[1] == "| `gone` | not here: no connection | | | | |"
-    assert "undecided, not named: `spring`, `bias`" in lines[2] and "of 2 effects" in lines[2]
 
 
 def test_a_users_folder_comes_before_the_public_recordings(tmp_path):

@@ -8,14 +8,10 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 
 import pytest
 from trust import stopping
 from trust.stopping import COMMANDS, environment, make_sources, prepare, run, violations
-
-from teleopdesign import cli
-from teleopdesign.cli import hear_ctrl_c
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="processes and signals of POSIX")
 
@@ -169,10 +165,6 @@ ctrl_c()"""
     assert ctrl_c_heard(code) == STOPPED
 
 
-def test_an_interrupt_at_the_exit_leaves_the_status_of_what_was_done():
-    assert ctrl_c_heard("import atexit\natexit.register(ctrl_c)") == ("", 0)
-
-
 def test_an_error_that_a_library_made_of_an_interrupt_is_no_mistake(monkeypatch, capsys):
     from teleopdesign.commands import _command_line, effects
 
@@ -184,17 +176,3 @@ def test_an_error_that_a_library_made_of_an_interrupt_is_no_mistake(monkeypatch,
         _command_line.run(["effects"], lambda: True)
     assert _command_line.run(["effects"]) == 70
     assert "please report it" in capsys.readouterr().err
-
-
-def test_a_command_that_is_called_from_python_leaves_signals_as_they_are(capsys):
-    before, hook = signal.getsignal(signal.SIGINT), sys.unraisablehook
-    assert cli.main(["effects"]) == 0
-    assert signal.getsignal(signal.SIGINT) is before and sys.unraisablehook is hook
-
-
-def test_what_is_not_the_main_thread_hears_no_signal():
-    heard = []
-    thread = threading.Thread(target=lambda: heard.append(hear_ctrl_c(threading.Event())))
-    thread.start()
-    thread.join(60)
-    assert heard == [False]

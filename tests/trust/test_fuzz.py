@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from trust.fuzzing import CORPUS, READERS, read_spoilt, spoilt
 
-EXAMPLES = int(os.environ.get("FUZZ", "12"))
+EXAMPLES = int(os.environ.get("FUZZ", "6"))
 SECONDS = 10  # of the processor: none of these files is large
 KEPT = Path(os.environ.get("FUZZ_KEPT", "build/fuzz"))
 

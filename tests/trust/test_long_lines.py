@@ -8,7 +8,7 @@ from teleopdesign.base.toml import parse_toml
 #: characters: a search that begins anew at each takes a minute
 LENGTH = 60_000
 DOTS = "." * 100
-PARTS = ["a", "-", "a.", " .", "a . ", '"', "'", '\\"', '""', "[", "9", "x = '", '# "', " "]
+PARTS = ["-", "a . ", "'", '\\"', "[", "9", '# "', " "]
 
 
 @pytest.mark.parametrize("part", PARTS)
@@ -27,10 +27,8 @@ def test_a_long_line_of_toml_is_read_or_refused_at_once(begin, part):
         (".".join(["a"] * 100) + " = 1", True),
         (" . ".join(["a", '"b c"', "'d'"] * 34) + " = 1", True),
         ("x = {" + ".".join(["a"] * 100) + " = 1}", True),
-        (f"'\\' = {{ {'.'.join(['a'] * 100)} = '\\' }}", True),
         (".".join(["a"] * 99) + " = 1", False),
         ('a = "' + ".".join(["a"] * 200) + '"', False),
-        ("a = '" + ".".join(["a"] * 200) + "'", False),
         ('a = "\\"' + ".".join(["a"] * 200) + '"', False),
     ],
 )

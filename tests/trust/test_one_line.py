@@ -4,7 +4,6 @@ import argparse
 import errno
 import io
 import json
-import sys
 from pathlib import Path
 
 import pytest
@@ -14,7 +13,7 @@ from teleopdesign.base.files import harmless_cell
 from teleopdesign.cli import _parser, main
 from teleopdesign.commands import _paths, effects
 from teleopdesign.commands._failures import TRACEBACK
-from teleopdesign.commands._terminal import PrintableStream, replace_line
+from teleopdesign.commands._terminal import PrintableStream
 
 ROD = Path(teleopdesign.__file__).parent / "examples" / "rod"
 DEEP = 100_000
@@ -47,20 +46,11 @@ EFFECT = Effect(
 
 RAISING = {
     "exit": "sys.exit()",
-    "exit 0": "sys.exit(0)",
     "exit with a text": "sys.exit('\\x1b[2J bye')",
-    "SystemExit": "raise SystemExit(0)",
     "ValueError": "raise ValueError('two\\nlines')",
-    "KeyError": "{}['key']",
-    "ZeroDivisionError": "1 / 0",
     "RecursionError": "exec('f = lambda: f()\\nf()', {})",
     "MemoryError": "raise MemoryError",
-    "OSError": "open('/no/such/file')",
-    "UnicodeError": "b'\\xff'.decode()",
-    "AssertionError": "assert False",
-    "StopIteration": "raise StopIteration",
     "GeneratorExit": "raise GeneratorExit",
-    "NotImplementedError": "raise NotImplementedError",
 }
 
 
@@ -88,8 +78,6 @@ NO_PYTHON = {
     "UTF-16": EFFECT.encode("utf-16"),
     "null characters": b"\0" * 100,
     "open brackets": b"x = " + b"(" * DEEP,
-    "nested lists": b"x = " + b"[" * 150 + b"]" * 150,
-    "signs": b"x = " + b"-" * DEEP + b"1",
     "nothing": b"",
     "bytes": bytes(range(256)),
 }
@@ -115,22 +103,19 @@ def test_a_law_that_raises_later_is_still_the_users_file(tmp_path, capsys, monke
 NO_TOML = {
     "open brackets": b"[" * DEEP,
     "nested lists": b"x = " + b"[" * DEEP,
-    "closed lists": b"x = " + b"[" * 5000 + b"]" * 5000,
     "nested tables": b"x = " + b"{a=" * DEEP,
     "a long key": b"a" + b".a" * 20_000 + b" = 1",
-    "a long table": b"[a" + b".a" * 20_000 + b"]",
     "digits": b"x = " + b"9" * DEEP,
     "UTF-16": "title = 'x'".encode("utf-16"),
     "null characters": b"\0" * 100,
     "bytes": bytes(range(256)),
     "nothing": b"",
-    "a date": b"title = 1979-05-27T07:32:00Z",
     "a code": b"title = '\x1b[2J'",
 }
 
 
 @pytest.mark.parametrize("what", NO_TOML)
-@pytest.mark.parametrize("command", ["check", "derive", "study", "passivity"])
+@pytest.mark.parametrize("command", ["check", "derive"])
 def test_a_toml_file_that_is_none_is_one_line_with_its_name(command, what, tmp_path, capsys):
     name = "experiment.toml" if command == "check" else "own.toml"
     (tmp_path / name).write_bytes(NO_TOML[what])
@@ -141,11 +126,9 @@ def test_a_toml_file_that_is_none_is_one_line_with_its_name(command, what, tmp_p
 NO_JSON = {
     "open brackets": b"[" * DEEP,
     "nested tables": b'{"claims":' * DEEP,
-    "closed lists": b'{"claims": ' + b"[" * 900 + b"]" * 900 + b"}",
     "digits": b"9" * DEEP,
     "UTF-16": '{"claims": []}'.encode("utf-16"),
     "half a pair": b'{"claims": [{"statement": "\\ud800", "certificates": [{}]}]}',
-    "claims of another kind": b'{"claims": {"statement": []}}',
     "certificates of another kind": b'{"claims": [{"statement": 1, "certificates": "x"}]}',
     "certificates in lists": b'{"claims": [{"statement": "", "certificates": [[[]]]}]}',
     "nothing": b"",
@@ -154,9 +137,7 @@ NO_JSON = {
 
 
 @pytest.mark.parametrize("what", NO_JSON)
-@pytest.mark.parametrize(
-    "option", [["passivity"], ["passivity", "--check"], ["design", ROD, "--answer"]]
-)
+@pytest.mark.parametrize("option", [["passivity", "--check"], ["design", ROD, "--answer"]])
 def test_a_json_file_that_holds_no_result_is_one_line_with_its_name(option, what, tmp_path, capsys):
     file = tmp_path / "own.json"
     file.write_bytes(NO_JSON[what])
@@ -182,10 +163,7 @@ OF_SYSTEM = {
     "recursion": (RecursionError("too deep"), "nested too deeply"),
     "not UTF-8": (UnicodeDecodeError("utf-8", b"\xff", 0, 1, "invalid"), "expected UTF-8"),
     "a file": (PermissionError(errno.EACCES, "Permission denied", "a\x1bb"), "a\\x1bb: Permission"),
-    "a full disk": (OSError(errno.ENOSPC, "No space left on device"), "No space left"),
-    "no text": (OSError(), "OSError"),
     "a text alone": (OSError("HDF5\nbroke"), "HDF5\\nbroke"),
-    "too many files": (OSError(errno.EMFILE, "Too many open files"), "Too many open"),
 }
 
 
@@ -234,7 +212,6 @@ def test_a_traceback_is_printed_where_it_is_asked_for(by, capsys, monkeypatch):
         ("\x1b[2J", "\\x1b[2J"),
         ("over\rwritten", "over\\rwritten"),
         ("\u202etxt.exe", "\\u202etxt.exe"),
-        ("\u2066\u2028\x85\x9b\x7f\0", "\\u2066\\u2028\\x85\\x9b\\x7f\\x00"),
         ("\ud800", "\\ud800"),
         ("5 \xb1 1 \u03bcm", "5 \xb1 1 \u03bcm"),
     ],
@@ -244,13 +221,6 @@ def test_a_terminal_is_given_text_alone(text, expected):
     stream = PrintableStream(io.TextIOWrapper(raw, encoding="utf-8", newline="\n"))
     print(text, end="", file=stream, flush=True)
     assert raw.getvalue().decode() == expected
-
-
-def test_an_ascii_terminal_is_given_ascii():
-    raw = io.BytesIO()
-    stream = PrintableStream(io.TextIOWrapper(raw, encoding="ascii"))
-    print("5 \xb1 1 \u03bcm", end="", file=stream, flush=True)
-    assert raw.getvalue() == b"5 \\xb1 1 \\u03bcm"
 
 
 def test_a_files_title_reaches_a_terminal_escaped(tmp_path, capsys):
@@ -276,24 +246,9 @@ def test_a_files_title_reaches_a_terminal_escaped(tmp_path, capsys):
         assert all(c.isprintable() or c in "\n\t" for c in stream)
 
 
-def test_progress_reaches_a_terminal_escaped(monkeypatch):
-    class Terminal(io.StringIO):
-        def isatty(self):
-            return True
-
-    terminal = Terminal()
-    monkeypatch.setattr(sys, "stderr", PrintableStream(terminal))
-    replace_line("half \x1b[2J")
-    assert terminal.getvalue() == "\r\x1b[Khalf \\x1b[2J"
-
-
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@x", "\t=1", "\r=1"])
 def test_a_cell_that_a_spreadsheet_would_compute_is_made_a_text(text):
     assert harmless_cell(text) == f"'{text}"
-
-
-def test_other_cells_stay():
-    assert [harmless_cell(t) for t in ("fit.csv", "x-1", "", "1")] == ["fit.csv", "x-1", "", "1"]
 
 
 # what is read is not written over

@@ -14,7 +14,7 @@ from trust.tiny_records import made
 
 from teleopdesign.cli import main
 
-DRAWN = int(os.environ.get("FUZZ", "20"))
+DRAWN = int(os.environ.get("FUZZ", "10"))
 SEED = os.environ.get("TELEOPDESIGN_SEED", "0")
 KEPT = Path(os.environ.get("FUZZ_KEPT", "build/fuzz"))
 CORPUS = Path(__file__).parent / "corpus_of_records"

@@ -187,6 +187,7 @@ def test_a_limit_that_is_missed_is_not_called_active():
     assert not passive.active and tuned.active == () and repr(passive).startswith("missed")
 
 
+@pytest.mark.slow
 def test_a_limit_on_a_claim_without_a_margin_says_so():
     """Friction of which the compensator cancels a part: proved, and no margin is computed."""
     rod = body(0.15, viscous__damping=4.0, coulomb__level=0.5)

@@ -66,7 +66,7 @@ def _overlay(ax: Any, comparison: SimulationComparison, use: str, at: str) -> No
 
 
 def _correlations(axes: Any, known: ResidualCorrelations) -> None:
-    pairs = (("o", known.own, "itself"), ("c", known.command, "the command"))
+    pairs = (("o", known.itself, "itself"), ("c", known.command, "the command"))
     for name, values, words in pairs:
         ax = axes[name]
         ax.axhspan(-known.band, known.band, color="0.9", label="99 %")

@@ -12,7 +12,7 @@ from ...blocks import Value
 from ...diagnose.adequacy import records_differ
 from ...diagnose.criteria import CRITERIA
 from ...diagnose.noise_floor import say_floors
-from ...diagnose.open_parameters import open_parameters_line
+from ...diagnose.undetermined import open_parameters_line
 from ..registry import shows
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ _LOADS = ("command", "acting_force", "carried_force")
 
 
 @dataclass(frozen=True)
-class Carrier:
+class CarryingVariable:
     """A variable of residual data: "velocity", "position" or "command".
 
     period: m or rad, into which the position is folded; 0: it is not
@@ -44,17 +44,19 @@ class Carrier:
         return np.mod(values, self.period) if self.period else values
 
 
-def carrier_of(diagnosis: Diagnosis, body: str) -> Carrier:
+def carrier_of(diagnosis: Diagnosis, body: str) -> CarryingVariable:
     """Of the first effect that the diagnosis added at a body; the velocity where it added none."""
     added = [r.added for r in diagnosis.rungs[1:] if r.added is not None and r.added.at == body]
     if not added:
-        return Carrier()
+        return CarryingVariable()
     effect = added[0].effect
     if depends_on_position(effect):
         length = period(effect)
         if isinstance(length, str):
             length = diagnosis.model.body(body).parameters[f"{effect.name}.{length}"].value
-        return Carrier("position", abs(length or 0.0))
+        return CarryingVariable("position", abs(length or 0.0))
     law = effect.expression()
     gains = effect.role == "actuation"
-    return Carrier("command" if gains or any(law.has(SIGNALS[n]) for n in _LOADS) else "velocity")
+    return CarryingVariable(
+        "command" if gains or any(law.has(SIGNALS[n]) for n in _LOADS) else "velocity"
+    )

@@ -9,7 +9,7 @@ import numpy as np
 from ...base.sentences import unit_at_axis
 from ...diagnose.comparison import Comparison, residual_data
 from ..registry import shows
-from .carrier import Carrier, carrier_of
+from .carrier import CarryingVariable, carrier_of
 from .style import house_style
 
 if TYPE_CHECKING:
@@ -174,10 +174,10 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
     return figure
 
 
-def _with_carrier(data: Any, carrier: Carrier, diagnosis: Diagnosis) -> Any:
+def _with_carrier(data: Any, carrier: CarryingVariable, diagnosis: Diagnosis) -> Any:
     """The data with the variable "carrier", beside the velocity; the position carries as well."""
     if carrier.name == "velocity":
-        carrier = Carrier("position")
+        carrier = CarryingVariable("position")
     axis = next(iter(diagnosis.model.bodies.values())).axis
     attributes = {"units": data[carrier.name].attrs["units"], "label": carrier.label(axis)}
     return data.assign(carrier=("sample", carrier.values(data), attributes))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...base.finding import Array, Graph, Series
 from ...base.sentences import unit_on_page as unit_text
 from ...base.units import unit_of
-from ..figures.carrier import Carrier
+from ..figures.carrier import CarryingVariable
 
 #: most points of a profile in each direction, and fewest samples of a point
 PROFILE, FEWEST = 24, 3
@@ -51,7 +51,9 @@ class BodySamples:
         return replace(self, residual=tuple(self.residual[i] for i in rungs))
 
 
-def plot_over_carrier(rows: BodySamples, axis: str, force: Scaled, carrier: Carrier) -> Graph:
+def plot_over_carrier(
+    rows: BodySamples, axis: str, force: Scaled, carrier: CarryingVariable
+) -> Graph:
     """Mean residual over the carrier on the first and last rung, with a band of 80 % of samples."""
     quantity = "force" if carrier.name == "command" else carrier.name
     places = carrier.values(vars(rows))

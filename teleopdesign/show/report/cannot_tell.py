@@ -107,8 +107,9 @@ def _group(row: LadderRow) -> Finding:
             f"{join_names(names)} explain these records equally well: added at the same step they "
             f"leave {join_names([percent(error) for error in errors])}, at most "
             f"{number(apart, 2)} standard deviations of chance apart (from "
-            f"{CRITERIA.close:g} on, the records would distinguish them). Along this motion they "
-            f"change the model's force in the same way: the correlation is {number(likeness, 4)}."
+            f"{CRITERIA.indistinguishable:g} on, the records would distinguish them). Along this "
+            "motion they change the model's force in the same way: the correlation is "
+            f"{number(likeness, 4)}."
         ),
         numbers=numbers | {"standard_deviations_apart": apart, "correlation": likeness},
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ...base.errors import ExperimentError
 from ...base.files import make_plain
@@ -31,15 +31,15 @@ class ParameterRow:
     meaning: str
     unit: str
     stated: float | None
-    before: float | None
-    before_stderr: float | None
-    after: float | None
-    stderr: float | None
-    low: float | None
-    high: float | None
-    fixed: bool
-    at_bound: bool
-    added: bool
+    before: float | None = None
+    before_stderr: float | None = None
+    after: float | None = None
+    stderr: float | None = None
+    low: float | None = None
+    high: float | None = None
+    fixed: bool = False
+    at_bound: bool = False
+    added: bool = False
     gave_way_to: str = ""
 
 
@@ -62,28 +62,20 @@ def parameter_rows(diagnosis: Diagnosis) -> tuple[ParameterRow, ...]:
     added = {r.added.key for r in diagnosis.rungs if r.added is not None}
     rows = []
     for name, value in diagnosis.model.parameters.items():
-        place, effect, parameter = _parts(name)
+        row, first = _row(diagnosis.model, name, stated), before.get(name)
         declared = diagnosis.model.declared(name)
-        first = before.get(name)
         low, high = _interval(value, declared.lower, declared.upper)
         rows.append(
-            ParameterRow(
-                name=name,
-                at=place,
-                effect=effect,
-                parameter=parameter,
-                meaning=declared.meaning,
-                unit=diagnosis.model.unit(name),
-                stated=stated.get(name),
+            replace(
+                row,
                 before=None if first is None else first.value,
                 before_stderr=None if first is None else make_plain(first.stderr),
                 after=value.value,
                 stderr=None if value.fixed else make_plain(value.stderr),
                 low=low,
                 high=high,
-                fixed=value.fixed,
                 at_bound=name in diagnosis.at_bound,
-                added=(effect, place) in added,
+                added=(row.effect, row.at) in added,
             )
         )
     return (*rows, *_rows_removed(diagnosis, stated))
@@ -95,32 +87,27 @@ def _rows_removed(diagnosis: Diagnosis, stated: Mapping[str, float]) -> list[Par
     instead = {(r.instead_of, r.added.at): r.added for r in diagnosis.rungs if r.added}
     rows = []
     for name, value in model.parameters.items():
-        place, effect, parameter = _parts(name)
-        by = instead.get((effect, place))
-        if name in there or by is None:
-            continue
-        rows.append(
-            ParameterRow(
-                name=name,
-                at=place,
-                effect=effect,
-                parameter=parameter,
-                meaning=model.declared(name).meaning,
-                unit=model.unit(name),
-                stated=stated.get(name),
-                before=value.value,
-                before_stderr=make_plain(value.stderr),
-                after=None,
-                stderr=None,
-                low=None,
-                high=None,
-                fixed=value.fixed,
-                at_bound=False,
-                added=False,
-                gave_way_to=by.effect.name,
-            )
-        )
+        row = _row(model, name, stated)
+        by = instead.get((row.effect, row.at))
+        if name not in there and by is not None:
+            first, error = value.value, make_plain(value.stderr)
+            rows.append(replace(row, before=first, before_stderr=error, gave_way_to=by.effect.name))
     return rows
+
+
+def _row(model: Model, name: str, stated: Mapping[str, float]) -> ParameterRow:
+    """The row of a parameter, without what was estimated."""
+    place, effect, parameter = _parts(name)
+    return ParameterRow(
+        name=name,
+        at=place,
+        effect=effect,
+        parameter=parameter,
+        meaning=model.declared(name).meaning,
+        unit=model.unit(name),
+        stated=stated.get(name),
+        fixed=model.parameters[name].fixed,
+    )
 
 
 def _parts(name: str) -> tuple[str, str, str]:

@@ -31,7 +31,7 @@ def random_samples(rng):
     return v * speed, f * size, float(period), largest
 
 
-@attacked(50, 800)
+@attacked(20, 800)
 def test_no_samples_take_energy_out_that_a_damper_may_take_back(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):

@@ -9,7 +9,7 @@ import scipy.linalg
 import scipy.special
 import sympy as sp
 from passivity.attacks.budget import attacked
-from passivity.attacks.late_modes import NEAR, count_growing, rightmost_of_two
+from passivity.attacks.late_modes import count_growing
 
 from teleopdesign.base.errors import ModelError, UnstableLoop
 from teleopdesign.frequency import LoopGain, delay_margin, gain_margin, phase_margin
@@ -72,21 +72,6 @@ class LateLoop:
             [(np.polymul(q, c), 0.0), (np.polymul(p, c), late), (np.polymul(q, b), more)]
         )
 
-    def history(self, further):
-        """Largest real part with so much more dead time, by both grids, over the largest pole."""
-        systems = [[np.asarray(m) for m in ct.ssdata(ct.tf2ss(ct.tf(*p)))] for p in self.parts]
-        now = scipy.linalg.block_diag(*(a for a, *_ in systems))
-        enters = np.vstack([b for _, b, *_ in systems])
-        late, start = [], 0
-        for k, (a, _, c, _) in enumerate(systems):
-            leaves = np.zeros((1, len(now)))
-            leaves[:, start : start + len(a)] = c
-            start += len(a)
-            more = 0.0 if self.inner and k == 1 else further
-            late.append((-enters @ leaves, self.times[k] + more))
-        size = np.abs(np.linalg.eigvals(now)).max()
-        return rightmost_of_two(now, late) / size
-
     @classmethod
     def of(cls, parts, times):
         """One that is not drawn."""
@@ -126,14 +111,6 @@ def test_the_attacker_counts_the_roots_that_lambert_knows(rate, time):
     """s + k e^(-s T) = 0 where s T e^(s T) = -k T: one root on each branch of the logarithm."""
     roots = scipy.special.lambertw(-rate * time, np.arange(-2000, 2001)) / time
     assert count_growing([([1.0, 0.0], 0.0), ([rate], time)]) == (roots.real > 0).sum() > 0
-
-
-def test_the_count_and_the_history_see_the_same_modes():
-    rng = np.random.default_rng(3)
-    for loop in (LateLoop(rng) for _ in range(15)):
-        history, count = loop.history(0.2), loop.growing(0.2)
-        if (abs(history) > NEAR).all() and (history[0] > 0) == (history[1] > 0):
-            assert (count > 0) == (history[0] > 0), (vars(loop), history, count)
 
 
 RIPPLES = [  # where its gain is 1, or its phase -180 degrees, for less than a step of a grid
@@ -190,7 +167,7 @@ def test_a_late_loop_grows_from_its_delay_margin_on_and_not_before(seed, number)
     assert counts["limit"] >= number / 10
 
 
-@attacked(6, 25)
+@attacked(3, 25)
 def test_a_late_loop_grows_at_its_gain_margin_and_not_before(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     while sum(counts.values()) < number:
@@ -211,7 +188,7 @@ def test_a_late_loop_grows_at_its_gain_margin_and_not_before(seed, number):
     assert counts["limit"] >= number / 10
 
 
-@attacked(6, 25)
+@attacked(3, 25)
 def test_a_late_loop_grows_at_its_phase_margin_and_not_before(seed, number):
     """Its gain is turned by an angle at all frequencies, which makes its numbers complex."""
     rng, counts = np.random.default_rng(seed), Counter()

@@ -15,11 +15,13 @@ from devices import body
 from passivity.attacks.budget import attacked
 from passivity.attacks.late_modes import count_growing
 
+from teleopdesign.base.errors import UnstableLoop
 from teleopdesign.controllers import controller, from_control
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
+from teleopdesign.frequency import delay_margin, gain_margin, loop_gain
 from teleopdesign.passivity import claim_over_intervals
 
-TIME = "T_1.delay.time"
+TIME, LAW = "T_1.delay.time", "P.proportional_derivative"
 
 
 def pick(rng, low, high):
@@ -190,7 +192,38 @@ class Coupled:
         return [(times(first, second), 0.0), ([-k * h], v[TIME] + v["T_2.delay.time"])]
 
 
-FAMILIES = [Neutral(), Hidden(), Unheard(), Origin(), Coupled()]
+class Filtered:
+    """A law K + B s/(1 + s/c) of the position that hears it late and acts late, and a second way
+    back without the law.
+    """
+
+    def draw(self, rng):
+        return {**mass(rng), f"{LAW}.stiffness": pick(rng, -1, 2.5),
+                f"{LAW}.damping": pick(rng, -2, 1), f"{LAW}.bandwidth": pick(rng, -1, 1.5),
+                "G.gain.gain": pick(rng, -1, 1.5) * float(rng.choice([-1, 0, 1])),
+                TIME: pick(rng, -3, 0.5), "T_2.delay.time": pick(rng, -3, 0.5)}  # fmt: skip
+
+    def diagram(self, v):
+        terms = {n: v[f"{LAW}.{n}"] for n in ("stiffness", "damping", "bandwidth")}
+        blocks = (
+            Moving("M", device(v), "x", "u", {"f": 1}, "f"),
+            delay("T_1", v, ("x", "heard")),
+            Control("P", controller("proportional_derivative", terms), "heard", "p", analog=True),
+            Control("G", controller("gain", {"gain": v["G.gain.gain"]}), "heard", "g", analog=True),
+            delay("T_2", v, ("p", "acts")),
+        )
+        back = (Junction("u", {"acts": -1, "g": -1}),)
+        return Diagram("filtered", blocks, back, {"f": "force"}, ("x",))
+
+    def terms(self, v):
+        k, b, c = (v[f"{LAW}.{n}"] for n in ("stiffness", "damping", "bandwidth"))
+        lag = [1, 2 * np.pi * c]
+        law = np.polyadd(np.multiply(k, lag), [b * 2 * np.pi * c, 0])
+        return [(times(impedance(v), lag), 0.0), (np.multiply(v["G.gain.gain"], lag), v[TIME]),
+                (law, v[TIME] + v["T_2.delay.time"])]  # fmt: skip
+
+
+FAMILIES = [Neutral(), Hidden(), Unheard(), Origin(), Coupled(), Filtered()]
 
 
 def random_box(rng, family, values):
@@ -256,3 +289,21 @@ def test_no_late_loop_of_this_kind_is_proved_stable_that_has_a_growing_pole(fami
     print(type(family).__name__, dict(counts))
     # of few draws of a kind all may be stable
     assert 0 < counts["proved"] and (counts["proved"] < number or number < 40)
+
+
+@pytest.mark.parametrize(("above", "below"), [([-1.0, 1.0], [1.0, 3.0]), ([-2.0, 5.0], [2.0, 9.0])])
+def test_a_loop_of_gain_minus_one_at_high_frequency_is_proved_nothing(above, below):
+    """1 + L = 4/(s + 3): no pole, until the gain is not exactly -1 at high frequency."""
+    held = {"M.inertia": 1.0, "M.viscous.damping": 30.0, "M.spring.stiffness": 400.0}
+    blocks = (
+        Moving("M", device(held), "x", "u", {"f": 1.0}, "f"),
+        Control("C", from_control(ct.tf(above, below)), "e", "y"),
+    )
+    sums = (Junction("e", {"x": 1.0, "y": -1.0}), Junction("u", {}))
+    diagram = Diagram("loop", blocks, sums, {"f": "force"}, ("x",))
+    assert claim_over_intervals(diagram, {}, claim="stable").status == "unknown"
+    for margin in (gain_margin, delay_margin):
+        with pytest.raises(UnstableLoop, match="-1 at high frequency"):
+            margin(loop_gain(diagram, controller="C"))
+    near = from_control(ct.tf([0.999 * above[0], above[1]], below))
+    assert gain_margin(loop_gain(diagram.with_block("C", near), controller="C")) < 1.0011

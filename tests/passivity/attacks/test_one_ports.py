@@ -133,7 +133,7 @@ def gives_out(wave):
     return float(-(power @ weight) @ half)
 
 
-@attacked(12, 50)
+@attacked(6, 50)
 def test_no_growing_wave_gives_out_energy_where_a_port_is_proved_passive(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter(interval_claim(rng, KINDS[k % len(KINDS)]) for k in range(number))

@@ -214,7 +214,7 @@ def best_round(k, step, b, left, positions):
     return float(np.diag(best).max())
 
 
-@attacked(15, 160)
+@attacked(6, 160)
 def test_no_round_takes_energy_out_of_a_quantised_spring_that_is_proved(seed, number):
     rng = np.random.default_rng(seed)
     counts = Counter()

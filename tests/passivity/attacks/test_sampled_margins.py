@@ -167,7 +167,7 @@ def test_a_sampled_loop_grows_from_its_delay_margin_on_and_not_before(seed, numb
     assert counts["delay limits"] and counts["grows"]
 
 
-@attacked(6, 15)
+@attacked(4, 15)
 def test_a_sampled_loop_grows_from_its_gain_and_phase_margins_on_and_not_before(seed, number):
     """Its gain times a factor, or turned by an angle at all frequencies."""
     rng, counts = np.random.default_rng(seed), Counter()

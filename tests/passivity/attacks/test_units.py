@@ -77,7 +77,7 @@ def agree(first, second):
 
 
 @pytest.mark.parametrize("function", FUNCTIONS, ids=lambda f: f.__name__)
-@attacked(2, 10)
+@attacked(1, 10)
 def test_numbers_in_other_units_have_the_same_claim(function, seed, number):
     rng, counts = random.Random(seed), Counter()
     for _ in range(number):

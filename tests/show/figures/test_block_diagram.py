@@ -9,18 +9,13 @@ from diagrams.several_axes import two_armed_teleoperator, two_rods
 from diagrams.test_wiring import pair
 from hypothesis import Phase, given, settings
 
-from teleopdesign.blocks import matrix_impedance
-from teleopdesign.controllers import controller
 from teleopdesign.diagrams import (
     ANY,
-    Control,
     Diagram,
     Junction,
-    Kinematics,
     Linked,
     Moving,
     haptic_interface,
-    position_symbol,
 )
 from teleopdesign.diagrams.world_haptics_2005 import world_haptics_2005
 from teleopdesign.show import draw_diagram
@@ -118,19 +113,6 @@ def check(diagram):
     return drawing
 
 
-def test_a_delay_is_drawn_as_what_it_does_with_the_name_of_its_time():
-    """e^(-s T_1), with -s T_1 as exponent, and no second line that says "delay"."""
-    delay = controller("delay", {"time": 0.02})
-    late = Control("T_1", delay, "x", "w", "")
-    body = Moving("M", ANY, "x", "u", {"f": 1}, "f")
-    pulled = Junction("u", {"w": -1})
-    drawing = check(Diagram("late", (body, late), (pulled,), {"f": "force"}, ("x",)))
-    titles = {t.plain: t for t in of(drawing, Text) if t.role not in ("signal", "sign")}
-    assert set(titles) == {"M\N{MINUS SIGN}1", "e\N{MINUS SIGN}sT1"}
-    runs = titles["e\N{MINUS SIGN}sT1"].runs
-    assert [run.level for run in runs] == [0, 1, 1, 1, 1]
-
-
 @pytest.mark.parametrize("name", SHOWN)
 def test_a_known_diagram_is_drawn_with_every_text_in_the_clear(name):
     drawing = check(SHOWN[name])
@@ -160,34 +142,6 @@ def test_every_term_of_a_sum_has_its_sign_or_weight():
     signs = [t.plain for t in of(draw_diagram(SHOWN["figure 3"]), Text) if t.role == "sign"]
     # E: + -, R_A: + + +, forces on Z_M: + -, R_M: - -
     assert sorted(s.replace("\u2212", "-") for s in signs) == sorted("+-++++---")
-
-
-@pytest.mark.slow
-def test_formulas_stand_in_their_boxes_if_they_are_short():
-    laws = [t.plain for t in of(draw_diagram(SHOWN["two arms"]), Text) if t.role == "law"]
-    assert "0.3 cos(q_m1)" in laws and "+ 0.2 cos(q_m1 + q_m2)" in laws
-    x, y = map(position_symbol, "xy")
-    long = sum((k * x**k / (y + k) ** k for k in range(1, 9)), y)
-    diagram = Diagram(
-        "long",
-        (Moving("M", ANY, "x", "u", {}, "u"), Moving("N", ANY, "y", "t", {}, "u")),
-        (Junction("t", {"u": long, "x": 2}),),
-        {"u": "force"},
-        measured=(),
-        kinematics=(Kinematics("z", long),),
-    )
-    laws = [t.plain for t in of(check(diagram), Text) if t.role == "law"]
-    assert laws == ["kinematics", "lever arms of x, y"]
-
-
-def test_a_matrix_of_many_motions_gathers_them_by_bars():
-    motions = [f"x{k}" for k in range(7)]
-    moving = tuple(Moving(f"M{k}", ANY, x, "u", {}, "u") for k, x in enumerate(motions))
-    full = matrix_impedance(stiffness=[[1.0] * 7] + [[0.0] * 7] * 6)
-    joined = Linked("Z", full, tuple(motions), tuple(f"f{k}" for k in range(7)))
-    drawing = check(Diagram("seven", (*moving, joined), (), {"u": "force"}, measured=()))
-    # seven signals: five into two bars in a row, which leaves three for the box
-    assert sum(not b.block for b in of(drawing, Box)) == 2
 
 
 def test_a_title_with_markup_is_escaped(tmp_path):

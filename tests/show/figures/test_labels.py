@@ -12,7 +12,6 @@ PLOTTED = (
     "simulation",
     "force over velocity",
     "frequency response",
-    "impedance over amplitude",
     "port energy",
     "study",
 )

@@ -11,7 +11,6 @@ from teleopdesign.diagnose import Diagnosis, LadderRow
 from teleopdesign.diagnose.recording import DiagnosedRecording
 from teleopdesign.diagnose.statements import EstimatedValue, JointErrors
 from teleopdesign.show.report import page_of, write_report
-from teleopdesign.show.report.words import verdict
 
 LINKS = {
     "I1zz": EstimatedValue(0.5, 0.01, "kg*m^2"),
@@ -65,32 +64,12 @@ def test_findings_on_what_is_left_stand_at_their_joint(two_joints):
     assert page.soundness == (one, one) and page.unexplained == ()
 
 
-def test_the_ladder_of_an_arm_counts_errors_in_its_floor(two_joints):
-    rows = page_of(two_joints).ladder
-    assert [r.name for r in rows] == ["your model, re-estimated", "stribeck at device"]
-    assert [r.brief for r in rows] == ["your model", "stribeck"]
-    assert [(r.fit_error, r.check_error) for r in rows] == [(0.04, 0.08), (0.01, 0.02)]
-    assert [two_joints.floor.value * r.floors for r in rows] == pytest.approx([0.08, 0.02])
-
-
 def test_base_parameters_come_with_their_errors_and_units(two_joints):
     rows = page_of(two_joints).links
     assert [(r.name, r.unit, r.value, r.stderr) for r in rows] == [
         ("I1zz", "kg*m^2", 0.5, 0.01),
         ("m2x2", "kg*m", 0.25, None),
     ]
-
-
-def test_the_verdict_on_an_arm_names_what_is_missing_or_that_nothing_is(two_joints):
-    sentence = verdict(two_joints)
-    assert sentence.startswith("Your model of the arm lacks stribeck at device. With all")
-    assert "falls from 8.00\u202f% to 2.00\u202f%" in sentence
-    adequate = verdict(replace(two_joints, verdict="model_adequate"))
-    assert "is adequate: it leaves 2.00\u202f%" in adequate
-    undecided = verdict(replace(two_joints, verdict="undecided"))
-    assert undecided.startswith("Undecided: with stribeck at device the force error")
-    nothing = verdict(replace(two_joints, verdict="undecided", rungs=two_joints.rungs[:1]))
-    assert "no candidate effect explains the 8.00\u202f%" in nothing
 
 
 @pytest.mark.slow

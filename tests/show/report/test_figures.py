@@ -1,14 +1,12 @@
 """What the figures of a page draw is what its data hold: bars, rings, maps, traces, scales."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from markupsafe import Markup
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
-from teleopdesign.base.finding import Graph, Series
+from teleopdesign.base.finding import Graph
 from teleopdesign.show.figures.diagnosis import AFTER, BEFORE
 from teleopdesign.show.report import figures
 from teleopdesign.show.report.before_and_after import Scaled
@@ -98,22 +96,6 @@ def test_bars_are_check_errors_rings_fit_errors_and_the_line_the_floor(drawn, nu
     assert f"Noise floor: {100 * floor:.2f}\u202f%" in alt
 
 
-@pytest.mark.parametrize("error", [np.inf, np.nan])
-def test_an_error_that_is_no_number_has_no_bar_and_hides_no_other(drawn, error):
-    rows = (LADDER[0], replace(LADDER[1], check_error=error, fit_error=error))
-    figures.ladder_figure(rows, 0.01)
-    ((figure, _),) = drawn
-    assert figure.axes[0].get_xlim()[1] == pytest.approx(122 * LADDER[0].check_error)
-
-
-def test_more_rungs_have_a_higher_figure_with_the_same_room_for_each(drawn):
-    for number in (1, 2, 3):
-        figures.ladder_figure(LADDER[:number], 0.01)
-    heights = [figure.get_figheight() for figure, _ in drawn]
-    assert heights[1] - heights[0] == pytest.approx(heights[2] - heights[1])
-    assert 0 < heights[1] - heights[0] < heights[0]
-
-
 @pytest.mark.parametrize("index", [0, 1])
 def test_a_map_shows_the_means_over_the_cells_edges_on_the_scale_of_the_body(drawn, index):
     figures.step_figure(VIEW, index)
@@ -149,59 +131,3 @@ def test_a_trace_is_the_band_of_its_step_on_the_scale_of_all_steps(drawn, index)
     assert [line.get_xdata()[0] for line in joints] == list(VIEW.joints)
     assert list(zero.get_ydata()) == [0, 0]
     assert below.get_ylabel() == "residual (mN)"
-
-
-@pytest.mark.parametrize(
-    ("joints", "label"), [((), "time (s)"), ((1.0,), "time along the records (s)")]
-)
-def test_time_is_called_along_the_records_where_several_stretches_follow(drawn, joints, label):
-    figures.step_figure(replace(VIEW, joints=joints), 0)
-    assert drawn[0][0].axes[1].get_xlabel() == label
-
-
-@pytest.mark.parametrize(("number", "across"), [(1, 2), (2, 2), (3, 3), (4, 2), (5, 3), (6, 3)])
-def test_maps_are_so_wide_that_two_or_three_of_them_fill_a_row(drawn, number, across):
-    figures.step_figure(replace(VIEW, steps=STEPS[:1] * number), 0)
-    figure = drawn[0][0]
-    assert figure.get_figwidth() == {2: figures.WIDE, 3: figures.PANEL}[across]
-    assert figures.PANEL < figures.WIDE
-    # a map above its trace: nearly as high as wide
-    assert 0.85 < figure.get_figheight() / figure.get_figwidth() < 1.1
-
-
-@pytest.mark.parametrize("noise", [0.0, 0.02])
-def test_a_colour_scale_reaches_from_minus_to_plus_the_limit(drawn, noise):
-    figures.colour_scale(replace(VIEW, noise=noise))
-    ((figure, alt),) = drawn
-    (axes,) = figure.axes
-    (image,) = axes.images
-    assert image.get_extent()[:2] == pytest.approx([-400.0, 400.0])
-    ramp = np.asarray(image.get_array())
-    assert ramp.shape[0] == 1 and np.all(np.diff(ramp[0]) > 0)
-    assert ramp[0, 0] == -ramp[0, -1]
-    assert list(axes.get_xticks()) == pytest.approx([-400, -200, 0, 200, 400])
-    note = "; rms of sensor noise 20" if noise else ""
-    assert axes.get_xlabel() == f"mean residual force (mN{note})"
-    assert "-400 mN" in alt and "+400" in alt
-
-
-def test_less_force_is_blue_more_is_orange_and_none_is_grey():
-    colours = figures.make_diverging_colormap()
-    red, _, blue, _ = np.transpose([colours(x) for x in (0.0, 0.25, 0.75, 1.0)])
-    assert np.all(blue[:2] > red[:2]) and np.all(red[2:] > blue[2:])
-    assert np.ptp(colours(0.5)[:3]) < 0.03
-    # the further from none the darker, both ways
-    light = [sum(colours(x)[:3]) for x in (0.0, 0.2, 0.5, 0.8, 1.0)]
-    assert light[0] < light[1] < light[2] > light[3] > light[4]
-
-
-def test_a_graph_with_the_only_model_has_the_colour_of_what_was_before(drawn):
-    x = np.arange(3.0)
-    both = (Series("your model", x, x, "model"), Series("measured", x, x))
-    figures.graph_figure(Graph("time (s)", "force (N)", both), "what it shows", width=2.0)
-    ((figure, alt),) = drawn
-    assert alt == "what it shows"
-    assert 0.5 < figure.get_figheight() / figure.get_figwidth() < 0.8
-    assert figure.get_figwidth() == 2.0
-    model = next(line for line in figure.axes[0].lines if line.get_linestyle() == "-")
-    assert to_rgba(model.get_color()) == to_rgba(BEFORE)

@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-import math
 import os
 import re
 import subprocess
@@ -88,29 +87,6 @@ def test_the_verdict_and_the_fall_of_the_error_come_first(html, diagnosis):
     assert "Your model lacks stribeck at device" in first
     for error in (diagnosis.before.check_error, diagnosis.after.check_error, diagnosis.floor.value):
         assert f"{100 * error:.2f}" in first
-
-
-def test_every_number_shown_is_in_the_data(html, page):
-    def numbers(value):
-        if isinstance(value, dict):
-            return {x for v in value.values() for x in numbers(v)}
-        if isinstance(value, list):
-            return {x for v in value for x in numbers(v)}
-        known = isinstance(value, int | float) and not isinstance(value, bool)
-        return {float(value)} if known else set()
-
-    known = numbers(html.data)
-    shown = [float(e.attributes["value"]) for e in html.all("data")]
-    assert len(shown) > 60
-    assert set(shown) <= known
-    assert not any(re.search(r"\d", cell.text) for cell in html.all("td") if not _numbered(cell))
-
-
-def _numbered(cell):
-    """Cells whose digits are numbers of the data, or names."""
-    return "n" in cell.attributes.get("class", "").split() or re.search(
-        r"[a-z]|[A-Z]|[·²³]", cell.text
-    )
 
 
 def test_the_data_hold_the_answer(html, diagnosis):
@@ -239,19 +215,8 @@ def test_findings_are_escaped_in_text_names_and_figures(text, page, bare):
     assert sum(e.attributes["class"] == "finding warning" for e in marks) == 3
 
 
-def test_sections_without_findings_are_left_out(page, figures):
-    names = {e.attributes.get("id") for e in HtmlPage(render(page, figures, {})).all("section")}
-    assert {"ladder", "where", "parameters", "candidates", "provenance"} <= names
-    assert names.isdisjoint({"soundness", "unexplained", "next"})
-
-
 @given(st.recursive(st.floats() | st.text() | st.integers(), st.lists, max_leaves=5))
 def test_embedded_json_reads_back_and_cannot_end_its_element(value):
     text = embedded_json(make_plain({"value": value}))
     assert "<" not in text and "&" not in text
     assert json.loads(text) == make_plain({"value": value})
-
-
-def test_numbers_that_are_not_finite_are_null():
-    plain = make_plain({"a": math.nan, "b": np.array([1.0, np.inf]), "c": np.float64(2.0)})
-    assert plain == {"a": None, "b": [1.0, None], "c": 2.0}
