@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.arguments import check_types
 from ..base.errors import ModelError, did_you_mean, quote
 from ..base.files import make_plain
 from ..base.frozen import ByValue
@@ -33,6 +32,7 @@ from ..model import Model
 from .cores import map_in_threads
 from .driven import Driven, driven_stretches
 from .error import force_error
+from .horizon_errors import HorizonError, RecordedLoop
 from .model_data import model_of_body
 from .parts import PreparedParts, prepare_parts, remove_links, with_bodies_of
 from .parts_fit import error_over_joints
@@ -44,48 +44,6 @@ if TYPE_CHECKING:
 HORIZONS = (0.1, 0.3, 1.0, 3.0, 10.0)
 #: horizons whose courses are kept, to be drawn
 DRAWN = (1.0, float("inf"))
-
-
-@check_types
-@dataclass(frozen=True)
-class RecordedLoop:
-    """The controller of the device during the recording, as a spring and a damper.
-
-    stiffness: N/m or N m/rad;  damping: N s/m or N m s/rad;  both finite and not negative
-    """
-
-    stiffness: float
-    damping: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not (0.0 <= self.stiffness < np.inf and 0.0 <= self.damping < np.inf):
-            raise ModelError(
-                "RecordedLoop: expected stiffness and damping of zero or more, found "
-                f"{self.stiffness:g}, {self.damping:g}"
-            )
-
-
-@dataclass(frozen=True)
-class HorizonError:
-    """Errors of one body that restarts on the measured motion after each horizon.
-
-    horizon: s; inf: each whole stretch of a record
-    position, velocity: rms difference from the measured motion (SI); inf: the motion is not finite
-    of_travel, of_speed: the same over the standard deviation of the position, the rms velocity
-    """
-
-    use: str
-    at: str
-    horizon: float
-    position: float
-    velocity: float
-    of_travel: float
-    of_speed: float
-
-    @property
-    def fit(self) -> float:
-        """Fit of the position in %: 100 for the measured motion, 0 for its mean (NRMSE)."""
-        return 100.0 * (1.0 - self.of_travel)
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,10 +180,9 @@ def simulation_data(comparison: SimulationComparison) -> dict[str, Any]:
     """The comparison as an answer writes it, in SI units; `null`: infinite."""
     axes = {place: body.axis for place, body in comparison.model.bodies.items()}
     loop = comparison.loop
+    each = isinstance(loop, Mapping)
     return {
-        "loop": {j: _loop_data(one) for j, one in loop.items()}
-        if isinstance(loop, Mapping)
-        else _loop_data(loop),
+        "loop": {j: _loop_data(c) for j, c in loop.items()} if each else _loop_data(loop),
         "horizons": [
             {
                 "use": e.use,

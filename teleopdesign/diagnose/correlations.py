@@ -26,7 +26,7 @@ LAGS = 25
 class ResidualCorrelations:
     """Correlations of the residual force of one body, dimensionless, -1 to 1.
 
-    lag: s, (2 k + 1,);  itself: with its own past, later by the lag;  command: with the command, the
+    lag: s, (2 k + 1,);  itself: with its own past, by the lag;  command: with the command, the
         residual later by the lag
     band: 99 % of the correlations of a residual that depends on neither are smaller
     """

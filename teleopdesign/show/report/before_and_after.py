@@ -54,7 +54,7 @@ class BodySamples:
 def plot_over_carrier(
     rows: BodySamples, axis: str, force: Scaled, carrier: CarryingVariable
 ) -> Graph:
-    """Mean residual over the carrier on the first and last rung, with a band of 80 % of samples."""
+    """Mean residual over the carrier on the first and last rung, and 80 % of the samples."""
     quantity = "force" if carrier.name == "command" else carrier.name
     places = carrier.values(vars(rows))
     scale = choose_prefix(unit_of(quantity, axis), size_of(places))
