@@ -40,7 +40,7 @@ from .parts_fit import error_over_joints
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: s: times after which the simulation restarts on the measured motion; at last the whole record
+#: s: times until the simulation restarts on the measured motion; at last the whole record
 HORIZONS = (0.1, 0.3, 1.0, 3.0, 10.0)
 #: horizons whose courses are kept, to be drawn
 DRAWN = (1.0, float("inf"))
@@ -180,9 +180,10 @@ def simulation_data(comparison: SimulationComparison) -> dict[str, Any]:
     """The comparison as an answer writes it, in SI units; `null`: infinite."""
     axes = {place: body.axis for place, body in comparison.model.bodies.items()}
     loop = comparison.loop
-    each = isinstance(loop, Mapping)
     return {
-        "loop": {j: _loop_data(c) for j, c in loop.items()} if each else _loop_data(loop),
+        "loop": {j: _loop_data(c) for j, c in loop.items()}
+        if isinstance(loop, Mapping)
+        else _loop_data(loop),
         "horizons": [
             {
                 "use": e.use,

@@ -18,8 +18,9 @@ from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from ..realise.along_motion import residual_along
-from .by_simulation import RecordedLoop, SimulationComparison, compare_by_simulation
+from .by_simulation import SimulationComparison, compare_by_simulation
 from .error import force_error
+from .horizon_errors import RecordedLoop
 from .noise_floor import NoiseFloor, noise_floor
 from .record_offsets import as_logged
 
