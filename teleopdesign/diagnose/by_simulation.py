@@ -235,9 +235,7 @@ def _courses(
     """(use, body, horizon) -> of each stretch: time, measured and simulated position, (3, n)."""
     made = {}
     for body, at in enumerate(driven[0].places if driven else ()):
-        for h, horizon in enumerate(horizons):
-            if horizon not in DRAWN:
-                continue
+        for h, horizon in [(h, one) for h, one in enumerate(horizons) if one in DRAWN]:
             rows = []
             for one, part in zip(driven, parts, strict=True):
                 motion, off = one.motions[body], part[h][0, body]
