@@ -147,6 +147,7 @@ if TYPE_CHECKING:
     from .frequency import measured_impedance as measured_impedance
     from .measurement import Experiment as Experiment
     from .measurement import Record as Record
+    from .measurement.curve_from_arrays import friction_curve as friction_curve
     from .measurement.from_arrays import experiment as experiment
     from .measurement.recordings import fetch as fetch
     from .model import Model as Model
@@ -216,8 +217,8 @@ FURTHER = {
         "sensitivity_samples", "limit", "trade_off", "sensitivities", "fit_simulation",
     ),
     "recordings": (
-        "Record", "DiagramExperiment", "diagram_experiment", "fetch", "measured_impedance",
-        "verify",
+        "Record", "DiagramExperiment", "diagram_experiment", "friction_curve", "fetch",
+        "measured_impedance", "verify",
     ),
     "exchange": ("to_iosystem", "from_control"),
 }

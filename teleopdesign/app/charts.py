@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..show.figures.diagnosis import AFTER, BACKWARD, BEFORE, FORWARD
+from ..show.figures.diagnosis import BACKWARD, FORWARD
+from ..show.figures.style import AFTER, BEFORE
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -13,9 +13,10 @@ from ..base.toml import Table, read_toml
 from ..base.units import to_si
 from ..diagrams import Diagram, read_diagram
 from ..measurement.channel import Channel, channel_from, frequency_from
-from ..measurement.experiment import Experiment, folder_of_experiment, record_entries
+from ..measurement.experiment import Experiment, folder_of_experiment
 from ..measurement.experiment import load_experiment as load_body_experiment
 from ..measurement.from_arrays import log_of
+from ..measurement.record_entries import record_entries
 from ..measurement.spans import cut_to
 from ..measurement.tables import columns_of, read_columns
 from .diagram_experiment import DiagramExperiment, RecordedLog, StatedComputer, body_of_axis

@@ -30,7 +30,7 @@ from .body_equation import (
 )
 from .carried_force import carried_force
 from .environment import contact_force
-from .value import Value
+from .value import Value, with_held
 
 #: roles that one effect of a body can have, in the words of messages
 ONE_ONLY = {
@@ -79,7 +79,7 @@ class Body:
                     f"body: {name} = {value:g}{unit_after_number(self.unit(name))} is outside "
                     f"{parameter.lower:g} .. {parameter.upper:g}"
                 )
-        object.__setattr__(self, "parameters", Frozen(parameters))
+        object.__setattr__(self, "parameters", Frozen(with_held(parameters, declared)))
 
     def declared(self) -> list[tuple[str, Parameter]]:
         """Every parameter of the body: its name in answers, and its declaration."""

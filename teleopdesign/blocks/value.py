@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 from ..base.arguments import instance, number
 from ..base.frozen import ByValue
 from ..base.shown import html_table
+from ..effects import Parameter
 
 #: half width of a 95 % interval in standard errors, for a normal distribution
 NINETY_FIVE = 1.96
@@ -39,3 +41,9 @@ class Value(ByValue):
         known = "fixed" if self.fixed else "free"
         row = (f"{self.value:.6g}", "-" if unknown else f"{self.stderr:.2g}", known)
         return html_table("Value (SI)", ("value", "standard error", "in a fit"), [row])
+
+
+def with_held(values: Mapping[str, Value], declared: Mapping[str, Parameter]) -> dict[str, Value]:
+    """The values by name, with those that are never estimated fixed (`FitSearch.held`)."""
+    held = {n: replace(values[n], fixed=True) for n, p in declared.items() if p.search.held}
+    return {**values, **held}

@@ -20,17 +20,18 @@ CHECKS: Mapping[str, RecordingCheck] = Shelf(
 )
 
 
-def in_turn(checks: Mapping[str, RecordingCheck]) -> list[RecordingCheck]:
-    """Checks in the order in which they are asked."""
-    return sorted(checks.values(), key=lambda check: check.order)
+def in_turn(checks: Mapping[str, RecordingCheck], kind: str = "") -> list[RecordingCheck]:
+    """Checks of this kind of experiment, in the order in which they are asked."""
+    return sorted((c for c in checks.values() if c.kind == kind), key=lambda check: check.order)
 
 
 def findings_of(recording: CheckedRecording) -> list[Finding]:
     """What all checks of this folder find; also that the channels are in order, where they are."""
-    by_check = [(check, list(check.find(recording))) for check in in_turn(CHECKS)]
+    checks = in_turn(CHECKS, recording.experiment.kind)
+    by_check = [(check, list(check.find(recording))) for check in checks]
     findings = [f for _, some in by_check for f in some]
     of_channels = [(check, some) for check, some in by_check if check.in_order]
-    if not any(f.concern == "warning" for _, some in of_channels for f in some):
+    if of_channels and not any(f.concern == "warning" for _, some in of_channels for f in some):
         names = ", ".join(dict.fromkeys(s.name for s in recording.signals))
         *first, last = (check.in_order for check, _ in of_channels)
         words = f"{', '.join(first)}; {last}"
@@ -41,7 +42,7 @@ def findings_of(recording: CheckedRecording) -> list[Finding]:
 
 def stopping_findings(recording: CheckedRecording) -> Iterator[Finding]:
     """Findings that end a diagnosis: these records tell no effect, whatever is fitted."""
-    for check in in_turn(CHECKS):
+    for check in in_turn(CHECKS, recording.experiment.kind):
         if check.may_stop:
             yield from (f for f in check.find(recording) if f.stops)
 

@@ -175,6 +175,9 @@ def look_at(
 
     model: None: that of the experiment
     """
+    if experiment.is_curve:
+        model = model or Model.from_experiment(experiment)
+        return CheckedRecording(experiment, model, prepare(experiment), seed=seed)
     resting = [
         body
         for body in experiment.bodies
@@ -205,6 +208,7 @@ class RecordingCheck:
     order: its place in the list
     in_order: what is in order where it gives no warning, in words for a line about the channels
     may_stop: whether a finding of it may end a diagnosis (`Finding.stops`)
+    kind: of the experiments that it looks at: "" for records over time, "friction curve"
     unless: topic -> what to do first: the check is not asked after a warning of that topic
     """
 
@@ -212,4 +216,5 @@ class RecordingCheck:
     find: Callable[[CheckedRecording], Iterable[Finding]]
     in_order: str = ""
     may_stop: bool = False
+    kind: str = ""
     unless: Mapping[str, str] = field(default_factory=dict)

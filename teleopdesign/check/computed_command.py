@@ -45,6 +45,8 @@ def describe_computed(experiment: Experiment, body: str) -> str | None:
     """
     if f"{body}.interaction_force" in experiment.channels:
         return None
+    if experiment.is_curve:
+        return ""  # points of a friction curve have no position
     laws = [_law_of_record(record, body) for record in experiment.fit_records]
     law = laws[0] if all(laws) else None
     if law is None:

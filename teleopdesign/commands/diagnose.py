@@ -178,14 +178,14 @@ def _suggest_commands(diagnosis: Diagnosis, source: str) -> list[str]:
     lines = []
     for joint, one in (diagnosis.joints or {"": diagnosis}).items():
         at = f"{source} --body {joint}" if joint else source
-        if one.groups:
+        if one.groups and not one.kind:
             lines.append(f"what to measure to distinguish them: teleopdesign next {at}")
         if one.verdict != "model_adequate" and one.more_is_missing:
             lines.append(f"where the model fails: teleopdesign describe {at}")
-            if not joint:
+            if not (joint or one.kind):
                 wrong_band = check_bandwidth(one.model, one.prepared)
                 lines[:0] = [f.sentence for f in wrong_band]
-    if not diagnosis.joints:
+    if not (diagnosis.joints or diagnosis.kind):
         lines.append(f"to design a compensation: teleopdesign design {source} --output design")
     return lines
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError
+from ._new_curve import is_curve, make_curve
 from ._paths import shell_word
 
 if TYPE_CHECKING:
@@ -41,10 +42,12 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--yes", action="store_true", help="accept every guess without a question")
     parser.add_argument("--title", help="title of the experiment (default: the name of the log)")
+    parser.add_argument("--kind", choices=("friction curve",), help="a table of points, no time")
     parser.add_argument("--axis", choices=("prismatic", "revolute"), help="kind of motion")
     for name, text in (
         ("time", "time"),
         ("position", "the position"),
+        ("velocity", "the speed of a friction curve"),
         ("force", "the force or current commanded to the actuator"),
         ("hand", "the measured force of the hand or environment, or none"),
     ):
@@ -103,6 +106,8 @@ def run(options: argparse.Namespace) -> int:
     logs = [open_log(path, path.name) for path in options.logs]
     files = [path.name for path in options.logs]
     require_same_columns(logs, files)
+    if is_curve(options, logs[0]):
+        return make_curve(options, choices, logs[0], folder, options.title or stem)
     survey = survey_logs(logs, files, choices)
     ask = not options.yes and sys.stdin.isatty()
     if ask:

@@ -53,6 +53,7 @@ def run(options: argparse.Namespace) -> int:
 def write_page(diagnosis: Diagnosis, path: Path) -> None:
     """Write the page, with findings on the recording, the residual, and what to measure next."""
     from ..fitted_checks import check_experiment
+    from ..show.figures.friction_curve import curve_finding
     from ..show.report import write_report
     from ..unexplained import where_it_fails
 
@@ -63,6 +64,8 @@ def write_page(diagnosis: Diagnosis, path: Path) -> None:
     for part, one in (diagnosis.joints or {"": diagnosis}).items():
         say(f"describing what is left{f' at {part}' if part else ''}")
         left[part] = where_it_fails(one.model, one.prepared, one.floor)
+        if one.kind:
+            left[part] = (curve_finding(one), *left[part])
     steps = _next_steps(diagnosis)
     say("")
     write_report(diagnosis, path, soundness=soundness, unexplained=left, next_steps=steps)
@@ -72,7 +75,11 @@ def _next_steps(diagnosis: Diagnosis) -> tuple[Finding, ...]:
     """What to measure next; nothing where nothing is open, or no motion was shown to be safe."""
     from ..next_experiment import propose, shown_limits
 
-    if diagnosis.joints or (diagnosis.verdict != "undecided" and not diagnosis.groups):
+    if (
+        diagnosis.joints
+        or diagnosis.kind
+        or (diagnosis.verdict != "undecided" and not diagnosis.groups)
+    ):
         return ()
     try:
         shown_limits(diagnosis.prepared)

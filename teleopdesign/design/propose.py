@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from ..base.errors import ModelError
+from ..base.errors import ExperimentError, ModelError
 from ..blocks import Body, free_space
 from ..diagnose import Diagnosis
 from ..diagrams import Diagram, four_cases, haptic_interface
@@ -88,6 +88,11 @@ def design(
     error.
     raises ModelError: no such body, an assumption that cannot hold, a motion beyond the records
     """
+    if diagnosis.kind:
+        raise ExperimentError(
+            "design: a friction curve tells no inertia and no motion: td.cancel(model.body("
+            '"device"), smoothing_velocity=...) cancels its friction'
+        )
     at = _place(diagnosis.model, place)
     reach = reach_of(diagnosis.experiment, at)
     body = free_space(diagnosis.model.body(at))

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 import sympy as sp
 
+from ..base.errors import ExperimentError
 from ..blocks.body import ONE_ONLY
 from ..effects import (
     CONTACT_ROLES,
@@ -62,7 +63,8 @@ def candidates(
 ) -> tuple[Candidate, ...]:
     """Effects that the model lacks and could take, at each of its places.
 
-    An effect that could imitate other effects is a candidate only after these were added
+    A curve without a named law (`Effect.free`) is no candidate: it would do better than any law. An
+    effect that could imitate other effects is a candidate only after these were added
     (`Effect.after`). An effect whose law uses a channel that the records lack is no candidate. Nor
     is an effect of the position, where a body never returns to a place at another time: there it
     cannot be separated from a drift. A periodic effect also returns after each of its periods. Nor
@@ -79,7 +81,7 @@ def candidates(
         roles = {e.role for e in body.effects} & set(ONE_ONLY)
         motions_here = [m for m in motions if m.body == model.holder(place)]
         for effect in model.known.values():
-            if (place in model.bodies) == (effect.role in CONTACT_ROLES):
+            if effect.free or (place in model.bodies) == (effect.role in CONTACT_ROLES):
                 continue
             if model.holder(place) in measured and _acts_before_what_is_measured(effect):
                 continue
@@ -99,6 +101,21 @@ def comes_too_early(effect: Effect, at: str, model: Model) -> bool:
     return any(n in model.known and not model.body(at).has(n) for n in effect.after)
 
 
+def restrict_to_curve(model: Model) -> Model:
+    """The model to which only friction of the speed and a constant force may be added.
+
+    raises ExperimentError: the model has another effect, which needs a time
+    """
+    for place, body in model.bodies.items():
+        for effect in body.effects:
+            if not is_static(effect):
+                raise ExperimentError(
+                    f"model.{place}.effects: {effect.name} needs a time, which a friction curve "
+                    "has not: expected friction of the speed, and bias"
+                )
+    return replace(model, known={n: e for n, e in model.known.items() if is_static(e)})
+
+
 def list_look_alikes(candidate: Candidate, model: Model) -> list[Candidate]:
     """Effects that the model lacks and that look like the candidate, at the same place.
 
@@ -115,6 +132,14 @@ def list_look_alikes(candidate: Candidate, model: Model) -> list[Candidate]:
 def bodies_with_measured_force(experiment: Experiment) -> set[str]:
     """Bodies whose actuator force was measured, as their channels state."""
     return {c.body for c in experiment.channels.values() if c.measured and c.body is not None}
+
+
+@lru_cache(maxsize=256)
+def is_static(effect: Effect) -> bool:
+    """Whether an effect is a friction of the speed alone, or a constant force."""
+    of_speed = {SIGNALS["velocity"], SIGNALS["direction"]}
+    signals = effect.expression().free_symbols & set(SIGNALS.values())
+    return effect.role in ("force", "friction_level") and not effect.states and signals <= of_speed
 
 
 @lru_cache(maxsize=256)
@@ -206,13 +231,15 @@ def make_starts(model: Model, scale: dict[str, float]) -> list[Model]:
     models = [model]
     for name, place in model.absent:
         parameters = model.body(place).effect(name).parameters
+        turns = model.body(place).axis == "revolute"
+        stated = {n: model.parameters[f"{place}.{name}.{n}"].value for n in parameters}
+        held = any(stated[n] for n, p in parameters.items() if p.search.held)
         free = [
             n
             for n, p in parameters.items()
-            if p.search.chosen or not model.parameters[f"{place}.{name}.{n}"].fixed
+            if (p.search.chosen and not (p.search.held and held))
+            or not model.parameters[f"{place}.{name}.{n}"].fixed
         ]
-        turns = model.body(place).axis == "revolute"
-        stated = {n: model.parameters[f"{place}.{name}.{n}"].value for n in parameters}
         starts = [{n: v for n, v in stated.items() if n not in free}]
         for n in free:
             starts = [

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
-from ..base.errors import ModelError
+from ..base.errors import ExperimentError, ModelError
 from ..base.files import write_netcdf
 from ..base.frozen import ByValue
 from ..base.shown import figure_of, html_table
@@ -19,6 +19,7 @@ from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from ..realise.along_motion import residual_along
 from .by_simulation import SimulationComparison, compare_by_simulation
+from .candidates import restrict_to_curve
 from .error import force_error
 from .horizon_errors import RecordedLoop
 from .noise_floor import NoiseFloor, noise_floor
@@ -58,11 +59,17 @@ class Comparison(ByValue):
         rows = [("fit error", self.fit_error), ("check error", self.check_error)]
         rows += [("noise floor", self.floor.value)]
         shown = [(name, f"{100 * error:.2f} %") for name, error in rows if error == error]
-        title = f"Comparison below {self.prepared.bandwidth:.3g} Hz"
+        title = self._title
         return html_table(title, ("", "relative force error"), shown, note=self.floor.source)
 
+    @property
+    def _title(self) -> str:
+        if self.prepared.is_curve:
+            return "Comparison on a friction curve"
+        return f"Comparison below {self.prepared.bandwidth:.3g} Hz"
+
     def __repr__(self) -> str:
-        lines = [f"Comparison below {self.prepared.bandwidth:.3g} Hz"]
+        lines = [self._title]
         for use, error in (("fit", self.fit_error), ("check", self.check_error)):
             if error == error:
                 lines.append(f"  {use + ' error':<12} {100 * error:.2f} %")
@@ -105,10 +112,14 @@ def compare(
     raises ModelError: a loop is given without a simulation, or the model cannot be simulated
     """
     if by == "simulation":
+        if experiment.is_curve:
+            raise ExperimentError("compare: a friction curve has no time, so nothing is simulated")
         return compare_by_simulation(model, experiment, loop=loop)
     if loop is not None:
         raise ModelError('compare: a loop is simulated: found by="force", expected "simulation"')
     prepared = prepare(experiment)
+    if prepared.is_curve:
+        model = restrict_to_curve(model)
     fit_error, check_error = (force_error(model, prepared.of(use)) for use in ("fit", "check"))
     drawn = noise_floor(model, prepared, np.random.default_rng(seed))
     # the noise is no more than what the records themselves leave

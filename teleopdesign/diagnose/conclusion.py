@@ -28,6 +28,7 @@ from .identifiability import doubt, explains_most
 from .ladder_end import LadderEnd
 from .ladder_state import LadderSearch, LadderState
 from .learnable import error_near_reversals, learnable
+from .no_named_law import free_form
 from .order import select_other_helpers
 from .plausibility import implausible_effects
 from .probability import probable
@@ -63,8 +64,9 @@ def conclude(
             rungs, estimated = steady, steady[-1].fit
     last, whole = rungs[-1].fit, search.whole
     search.progress("what could be learned")
-    trees = learnable(last.model, whole, beside=beside, seed=search.seed)
-    repeats = repeatability(last.model, whole, beside=beside)
+    timed = not whole.is_curve
+    trees = learnable(last.model, whole, beside=beside, seed=search.seed) if timed else None
+    repeats = repeatability(last.model, whole, beside=beside) if timed else None
     end = LadderEnd(
         search=search,
         verdict=verdict(rungs, floor),
@@ -74,7 +76,7 @@ def conclude(
         estimated=estimated,
         floor=floor,
         learnable=trees,
-        near_reversals=error_near_reversals(last.model, whole),
+        near_reversals=error_near_reversals(last.model, whole) if timed else None,
         repeats=repeats,
         undetermined=find_undetermined(rungs, whole),
         set_aside=_select_left_out(state.set_aside, rungs),
@@ -83,6 +85,9 @@ def conclude(
     )
     if end.silence:
         return replace(end, verdict="undecided")
+    if end.more_is_missing:
+        search.progress("a force without a named law")
+        end = replace(end, free_form=free_form(rungs[-1].fit, floor, prepared))
     named = probable(end)
     end = replace(end, rungs=tuple(_leave_unnamed(r, named) for r in rungs))
     if end.verdict == "effects_missing" and not named:

@@ -25,6 +25,7 @@ from .candidates import Candidate
 from .fingerprint import Fingerprint
 from .learnable import Learnable, NearReversals
 from .model_data import model_of_body
+from .no_named_law import FreeForm
 from .noise_floor import NoiseFloor
 from .record_offsets import Offset
 from .record_shift import RecordShift
@@ -79,6 +80,8 @@ class Diagnosis(Shown, ByValue):
     estimated: the final model, not yet corrected for errors of the readings; None: as `fitted`
     open: questions that the records leave open; None: an older answer does not say
     not_accepted, nearest: candidates that leave less than the final model, and do not count
+    no_named_law: the final model with a curve through values, which surely leaves less and explains
+        nothing; None: there is none
     silence: why the records tell no effect, as the end of a verdict; "": they may tell one
     remarks: further sentences on the records
     left_out: parts of a full search that this one left out, in words
@@ -88,6 +91,7 @@ class Diagnosis(Shown, ByValue):
     links: name -> base parameter of the links of an arm
     friction_cells: body -> least friction that model and residual show together, by cells of its
         travel; an older answer, and an arm's joint, have none
+    kind: "friction curve": the records have no time, and the bandwidth is NaN; "": others
     simulation: comparison of the final model by simulation, as plain data
     recording: of the experiment; no part of the content
     """
@@ -117,6 +121,7 @@ class Diagnosis(Shown, ByValue):
     open: tuple[OpenQuestion, ...] | None = None
     not_accepted: tuple[NotAccepted, ...] = ()
     nearest: Nearest | None = None
+    no_named_law: Annotated[FreeForm | None, OMIT] = None
     silence: str = ""
     remarks: tuple[str, ...] = ()
     left_out: Annotated[tuple[str, ...], OMIT] = ()
@@ -127,6 +132,7 @@ class Diagnosis(Shown, ByValue):
     friction_cells: Annotated[Mapping[str, tuple[FrictionCell, ...]], OMIT] = field(
         default_factory=dict
     )
+    kind: Annotated[str, OMIT] = ""
     simulation: Annotated[Any, OMIT] = None
     recording: Annotated[DiagnosedRecording, NEVER] = field(
         default=DiagnosedRecording(), compare=False, repr=False
@@ -184,10 +190,11 @@ class Diagnosis(Shown, ByValue):
     def parameters(self) -> dict[str, EstimatedValue]:
         """Parameters of the final model without those of added effects; base parameters of links.
 
-        The inertia of an arm's joint is left out: it includes that of the links.
+        The inertia of an arm's joint is left out: it includes that of the links. So is that of a
+        friction curve, which tells none.
         """
         added = {f"{r.added.at}.{r.added.effect.name}" for r in self.rungs if r.added is not None}
-        ours = {f"{joint}.inertia" for joint in self.joints}
+        ours = {f"{joint}.inertia" for joint in (self.model.bodies if self.kind else self.joints)}
         rows = {
             name: estimate_of(self.model, name)
             for name in self.model.parameters

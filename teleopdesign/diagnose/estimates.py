@@ -6,6 +6,7 @@ from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .adequacy import is_adequate, limit_noise_floor
+from .candidates import restrict_to_curve
 from .criteria import CRITERIA
 from .effort import EFFORTS
 from .evidence import check_squares
@@ -33,6 +34,8 @@ def fit(model: Model, experiment: Experiment, *, seed: int = 0) -> Model:
     """
     search = search_for(experiment, model, seed=seed)
     fit = estimate_stated(search.stated, search.prepared)
+    if not search.plan.corrected:
+        return fit.model
     drawn = noise_floor(fit.model, search.prepared, search.generator())
     return correct_fit(search, fit, limit_noise_floor(drawn, fit, Ranking(fit, ()))).model
 
@@ -44,6 +47,7 @@ def rank(model: Model, experiment: Experiment) -> Ranking:
     returns: candidates with their fits and errors on fit and check records
     """
     prepared = prepare(experiment)
+    model = restrict_to_curve(model) if prepared.is_curve else model
     return rank_candidates(estimate_stated(model, prepared), prepared)
 
 

@@ -107,7 +107,7 @@ def _memory_and_derivatives(motion: Motion, ranges: MotionRanges) -> Array:
     return np.vstack([_memory(motion, ranges), *more])
 
 
-FAMILIES: Mapping[str, FreeForce] = {
+_ALL: Mapping[str, FreeForce] = {
     "velocity": _curve_of_velocity,
     "position": _curve_of_position,
     "position and direction": lambda m, r: m.direction * _curve_of_position(m, r),
@@ -115,3 +115,8 @@ FAMILIES: Mapping[str, FreeForce] = {
     "the past": _memory,
     "the past and derivatives": _memory_and_derivatives,
 }
+
+
+def families(motion: Motion) -> Mapping[str, FreeForce]:
+    """The free functions of a motion: on a friction curve those of the velocity alone."""
+    return {n: f for n, f in _ALL.items() if n == "velocity" or not motion.is_curve}

@@ -21,7 +21,7 @@ from ..base.frozen import ByValue
 from ..measurement.filtering import Array
 from ..measurement.prepare import FOLDS, Prepared, Stretch
 from .fit import Fit
-from .free_forces import FAMILIES, MotionRanges
+from .free_forces import MotionRanges, families
 from .residual import relative_residuals
 
 #: weights of the ridge, over the mean square of a column, one of which the folds choose
@@ -139,17 +139,17 @@ class _Problem:
         """body: whose motion the free functions follow; None: there are none"""
         known, check, stiff = prepared.of("fit"), prepared.of("check"), len(fit.free)
         ranges = MotionRanges.of([s.motion for s in known if s.motion.body == body])
-        families: dict[str, range] = {}
+        columns: dict[str, range] = {}
         if body is not None:
             first = stiff
-            for name, force in FAMILIES.items():
+            for name, force in families(known[0].motion).items():
                 count = len(force(known[0].motion, ranges))
-                families[name] = range(first, first + count)
+                columns[name] = range(first, first + count)
                 first += count
         rows = _rows(fit, known, ranges, body)
         parts = [_sums([r[:, _block(r.shape[1], k)] for r in rows]) for k in range(FOLDS)]
         checked = _sums(_rows(fit, check, ranges, body)) if check else None
-        return cls(tuple(parts), checked, stiff, families)
+        return cls(tuple(parts), checked, stiff, columns)
 
     def squares(self, free: Sequence[int] = ()) -> float:
         """Squares on rows that were not fitted: of the check records, or of each block in turn.
@@ -208,7 +208,7 @@ def _rows(
     forces = None
     if body is not None:
         forces = [
-            np.vstack([force(s.motion, ranges) for force in FAMILIES.values()])
+            np.vstack([force(s.motion, ranges) for force in families(s.motion).values()])
             * (s.motion.body == body)
             for s in stretches
         ]

@@ -12,6 +12,7 @@ from .fit import Fit
 from .free_functions import Belief
 from .ladder_state import LadderSearch
 from .learnable import Learnable, NearReversals
+from .no_named_law import FreeForm
 from .noise_floor import NoiseFloor
 from .ranking import Ranking
 from .repeats import Repeatability
@@ -28,6 +29,7 @@ class LadderEnd(ByValue):
     estimated: the last rung's fit, parameters not yet corrected for errors of the readings
     beliefs: accepted effect (name, place) -> what it explains beside free functions
     named: accepted effects that are probable enough to be called missing
+    free_form: a curve without a named law that leaves less than the final model
     silence: why the records tell no effect; "": they may tell one
     The other fields are those of `Diagnosis`.
     """
@@ -47,6 +49,7 @@ class LadderEnd(ByValue):
     named: tuple[Candidate, ...] = ()
     beliefs: Mapping[tuple[str, str], Belief] = field(default_factory=dict)
     silence: str = ""
+    free_form: FreeForm | None = None
 
     @property
     def before(self) -> Fit:

@@ -13,7 +13,7 @@ from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .adequacy import is_noise, limit_noise_floor
-from .candidates import Candidate
+from .candidates import Candidate, restrict_to_curve
 from .clock import with_late_hand, with_late_starts, with_paying_shift
 from .decision import is_supported, worth_pursuing
 from .fit import Fit
@@ -149,6 +149,8 @@ def search_for(
     whole = experiment if isinstance(experiment, Prepared) else prepare(experiment)
     experiment = whole.experiment
     stated = model or Model.from_experiment(experiment)
+    if whole.is_curve:
+        stated, plan = restrict_to_curve(stated), plan.for_curve()
     if why_silent(whole, stated):
         stated = restrict_candidates((), stated)
     return LadderSearch(

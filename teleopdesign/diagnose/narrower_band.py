@@ -72,9 +72,9 @@ def narrower_to_search(diagnosis: Diagnosis) -> NarrowerBand | None:
     """The band for a second search, where the first search leaves more than noise.
 
     returns: None where only noise is left, or the user's model leaves no less in a narrower band;
-        and for an arm, where a band is one for all joints
+        for an arm, where a band is one for all joints, and for a friction curve, without time
     """
-    if diagnosis.joints or not diagnosis.more_is_missing:
+    if diagnosis.joints or diagnosis.kind or not diagnosis.more_is_missing:
         return None
     return narrower_band(diagnosis.before.model, diagnosis.prepared)
 

@@ -12,6 +12,7 @@ Readings are simulated: the smoothed motion is read by an encoder of the stated 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
 
@@ -21,6 +22,7 @@ from ..base.codec import At, Size
 from ..base.frozen import ByValue
 from ..check.sample_clock import jitter_of
 from ..measurement.filtering import Array
+from ..measurement.friction_curve import noise_of_points
 from ..measurement.motion import Motion, motion_of
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
@@ -80,6 +82,8 @@ def noise_floor(
     generator: of the random errors of the readings
     """
     stretches = prepared.of(use) or prepared.of("fit")
+    if prepared.is_curve:
+        return _floor_of_points(model, prepared, stretches, generator)
     channels = prepared.experiment.channels
     stated = all(channels[f"{s.motion.body}.position"].resolution is not None for s in stretches)
     errors, before = [], residuals(model, stretches)
@@ -102,6 +106,41 @@ def noise_floor(
     # one that amplifies it; the floor is at least the error that sensor noise makes in the force
     jitters = any(_jitter(s, prepared) > 0.0 for s in stretches)
     return NoiseFloor(left, source, drawn=left, at_command=max(back, 1.0), jitters=jitters)
+
+
+def _floor_of_points(
+    model: Model,
+    prepared: Prepared,
+    stretches: Sequence[Stretch],
+    generator: np.random.Generator,
+) -> NoiseFloor:
+    """The floor of a friction curve: the noise of its force, stated or read from the points.
+
+    A stated noise of the speed counts by the slope of the model's friction.
+    """
+    noise = prepared.experiment.channels["device.actuator_force"].noise
+    source = "stated noise of the force"
+    if noise is None:
+        velocity = np.concatenate([s.motion.velocity for s in stretches])
+        noise, source = noise_of_points(
+            velocity, np.concatenate([s.motion.command for s in stretches])
+        )
+    rows = sum(len(s.keep) for s in stretches)
+    of_speed = prepared.experiment.channels["device.velocity"].noise
+    squares = rows * noise**2
+    if of_speed is not None and "stated" in source:  # read from the points it is in the scatter
+        drawn = [_with_speeds_drawn(s, of_speed, generator) for s in stretches]
+        pairs = zip(residuals(model, drawn), residuals(model, stretches), strict=True)
+        squares += sum(float(np.sum((r - before) ** 2)) for (r, _), (before, _) in pairs)
+    left = float(np.sqrt(squares / sum(s.measured for s in stretches)))
+    return NoiseFloor(left, source, drawn=left)
+
+
+def _with_speeds_drawn(stretch: Stretch, noise: float, generator: np.random.Generator) -> Stretch:
+    """The points of a friction curve with noise on their speeds; directions stay."""
+    velocity = stretch.motion.velocity
+    moved = velocity + noise * generator.standard_normal(len(velocity))
+    return replace(stretch, motion=replace(stretch.motion, velocity=moved))
 
 
 def _draw_reading(

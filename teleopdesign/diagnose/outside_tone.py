@@ -62,7 +62,7 @@ def best_tone(fitted: Fit, prepared: Prepared) -> Tone:
     The frequency is estimated on the fit records, amplitude and phase on each check stretch.
     """
     fit, check = prepared.of("fit"), prepared.of("check")
-    if not check:
+    if not check or prepared.is_curve:
         return Tone()
     before = _parts(fitted.fit_residual, fit)
     after = _parts(fitted.check_residual, check)

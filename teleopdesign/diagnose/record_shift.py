@@ -155,7 +155,7 @@ def record_shifts(
     late = {} if model is None else model.record_shift
     for s in stretches:
         hand = name_of_hand(s.motion.body)
-        if np.ptp(s.motion.command) > 0.0:
+        if np.ptp(s.motion.command) > 0.0 and not s.motion.is_curve:
             row[s.motion.body] = min(s.row, row.get(s.motion.body, np.inf))
             sensed[s.motion.body] = s.force_is_sensed
         if hand in late:

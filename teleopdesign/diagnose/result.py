@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from ..check.log_reading import short_segment_lines
+from ..effects import CONTACT_ROLES, EFFECTS
 from ..measurement.bandwidth import slower_sensors
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared
 from ..measurement.reading import reading_data
+from ..model import Model
 from .answer import with_recording
-from .candidates import Candidate, list_look_alikes
+from .candidates import Candidate, is_static, list_look_alikes
 from .diagnosis import Diagnosis
 from .evidence import whole_score
 from .fingerprint import fingerprint_of
@@ -49,7 +51,8 @@ def diagnosis_of(end: LadderEnd) -> Diagnosis:
         indistinguishable=_indistinguishable(end),
         check="records" if experiment.check_records else "blocks of fit",
         held_out=not whole.of("check"),
-        bandwidth=whole.bandwidth,
+        kind=experiment.kind,
+        bandwidth=finite(whole.bandwidth),
         bandwidth_source=_bandwidth_source(experiment, whole.bandwidth),
         undetermined=end.undetermined,
         set_aside=end.set_aside,
@@ -67,11 +70,12 @@ def diagnosis_of(end: LadderEnd) -> Diagnosis:
         open=open_questions(end),
         not_accepted=not_accepted(end),
         nearest=nearest(end),
+        no_named_law=end.free_form,
         silence=end.silence,
-        remarks=tuple(short_segment_lines(experiment)),
-        left_out=search.plan.omissions(),
+        remarks=(*_without_law(model), *_of_segments(experiment)),
+        left_out=(*search.plan.omissions(), *_needs_time(experiment)),
         considered=tuple(model.known),
-        friction_cells=all_friction_cells(model, whole),
+        friction_cells={} if experiment.is_curve else all_friction_cells(model, whole),
     )
     return with_recording(diagnosis, recording_of(experiment, whole))
 
@@ -85,8 +89,36 @@ def recording_of(experiment: Experiment, prepared: Prepared) -> DiagnosedRecordi
     return recording
 
 
+def _without_law(model: Model) -> tuple[str, ...]:
+    """A sentence on each curve of the model that has no named law."""
+    return tuple(
+        f"no named law: {name} at {place} follows a force through its values and explains none"
+        for name, place in model.effects
+        if model.body(place).effect(name).free
+    )
+
+
+def _of_segments(experiment: Experiment) -> tuple[str, ...]:
+    return () if experiment.is_curve else tuple(short_segment_lines(experiment))
+
+
+def _needs_time(experiment: Experiment) -> tuple[str, ...]:
+    """The effects of a body that a friction curve cannot test, in words."""
+    if not experiment.is_curve:
+        return ()
+    axis = experiment.axis("device")
+    names = [
+        n
+        for n, e in EFFECTS.items()
+        if not (is_static(e) or e.free or e.role in CONTACT_ROLES or axis in e.elsewhere)
+    ]
+    return (f"not tested, because a friction curve has no time: {', '.join(names)}",)
+
+
 def _bandwidth_source(experiment: Experiment, used: float) -> str:
     """Where the frequencies that the errors include come from, in words."""
+    if experiment.is_curve:
+        return "none: the points of a friction curve have no time"
     stated = experiment.bandwidth
     if stated is None:
         return "chosen: up to there the positions show motion"

@@ -101,6 +101,10 @@ class SearchPlan:
             draws=0,
         )
 
+    def for_curve(self) -> SearchPlan:
+        """The plan for a friction curve, whose readings have no time: no motion is simulated."""
+        return replace(self, corrected=False, stand_ins=False, draws=0)
+
     def omissions(self) -> tuple[str, ...]:
         """Parts of the search with `PLAN` that this plan leaves out, in words; empty: none."""
         words = []

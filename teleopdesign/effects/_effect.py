@@ -89,6 +89,8 @@ class Effect:
     effect out, and says so. It never comes from differentiating sgn.
     absent: parameter values at which the effect is absent
     canonical: of equivalent parameter values, those to report
+    free: whether the law is a curve through values, which no named law describes: a diagnosis does
+        not try it, for it would do better than any law
     order: order(p, body): equivalent values with interchangeable parts sorted by their numbers;
         body: the numbers of the body by their names, "coulomb.level"; None: no such parts
     after: effects that a search adds first, because without them this one may imitate them
@@ -122,6 +124,7 @@ class Effect:
     elsewhere: Mapping[str, str] = field(default_factory=dict)
     always: frozenset[str] = frozenset()
     commoner: str = ""
+    free: bool = False
     canonical: Callable[[Mapping[str, float]], dict[str, float]] = dict
     order: Callable[[Mapping[str, float], Mapping[str, float]], dict[str, float]] | None = None
     after: frozenset[str] = frozenset()

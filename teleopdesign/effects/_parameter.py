@@ -38,6 +38,7 @@ class FitSearch:
     limit: upper bound in that scale for a search only: no larger value can have acted. A parameter
         at it keeps its meaning, and does not count as at a bound
     chosen: fixed at the first start, not estimated: other parameters are relative to this one
+    held: fixed where a model states it, too: the other parameters belong to its value
     essential: must surely exceed zero, because at zero the effect is another one; and other values
         of it must leave more, with all other parameters fitted again
     """
@@ -49,6 +50,7 @@ class FitSearch:
     within: float = float("inf")
     limit: float = float("inf")
     chosen: bool = False
+    held: bool = False
     essential: bool = False
 
 

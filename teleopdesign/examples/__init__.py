@@ -10,7 +10,7 @@ from ..base.errors import ExperimentError, unknown
 
 @check_types
 def example(name: str = "rod") -> Path:
-    """The folder of an experiment that comes with the package: "rod".
+    """The folder of an experiment that comes with the package: "rod", "friction_curve".
 
     raises ExperimentError: no such experiment; the message has the nearest name
     """

@@ -40,7 +40,7 @@ def check_experiment(
     # where no model is tested none is fitted; which sign makes the work negative shows in a fit
     if any(f.stops and f.topic != "work" for f in findings):
         return Findings(findings)
-    for check in in_turn(FITTED_CHECKS):
+    for check in in_turn(FITTED_CHECKS, experiment.kind):
         wrong = {f.topic for f in findings if f.concern == "warning"}
         if first := [what for topic, what in check.unless.items() if topic in wrong]:
             findings.append(not_checked(f"first {first[0]}", "note"))

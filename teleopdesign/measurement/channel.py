@@ -1,6 +1,6 @@
 """Channels: which column of a record is which quantity of which body, its unit and its accuracy."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +20,6 @@ BODY_QUANTITIES = {
     "temperature": "temperature",
     "other_position": "position",
 }
-_REQUIRED = ("position", "actuator_force")
 _OF_THE_RECORD = ("time", "segment")
 
 
@@ -59,10 +58,16 @@ class Channel:
         return 0.0 if self.conversion is None else self.conversion.delay
 
 
-def channels_from(table: Table, bodies: Mapping[str, BodyDescription]) -> dict[str, Channel]:
+def channels_from(
+    table: Table,
+    bodies: Mapping[str, BodyDescription],
+    required: Sequence[str] = ("position", "actuator_force"),
+) -> dict[str, Channel]:
     """Read [channels]: a dict from names ("device.position", "time", "segment") to channels.
 
     The name of a body's channel always contains the body.
+
+    required: channels that each body must have
 
     raises ExperimentError: unknown or missing channel, wrong kind of unit, a column used twice
     """
@@ -82,7 +87,7 @@ def channels_from(table: Table, bodies: Mapping[str, BodyDescription]) -> dict[s
         if name in channels:
             raise ExperimentError(f"{table.where(key)}: {quote(name)} is given twice")
         channels[name] = channel_from(table.table(key), name, bodies)
-    _refuse_missing(table, channels, bodies)
+    _refuse_missing(table, channels, bodies, required)
     _refuse_shared_columns(table, channels)
     return channels
 
@@ -196,10 +201,13 @@ def channel_from(table: Table, name: str, bodies: Mapping[str, BodyDescription])
 
 
 def _refuse_missing(
-    table: Table, channels: Mapping[str, Channel], bodies: Mapping[str, BodyDescription]
+    table: Table,
+    channels: Mapping[str, Channel],
+    bodies: Mapping[str, BodyDescription],
+    required: Sequence[str],
 ) -> None:
     for body in bodies:
-        for quantity in _REQUIRED:
+        for quantity in required:
             if f"{body}.{quantity}" not in channels:
                 name = quantity if tuple(bodies) == ONE_BODY else f"{body}.{quantity}"
                 listed = ", ".join(table.content) or "no channel"

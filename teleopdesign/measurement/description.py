@@ -103,12 +103,16 @@ def environment_from(
 
 
 def _require_inertia(name: str, table: Table) -> BodyDescription:
-    """Read a body whose motion is recorded; its inertia, if written, must be above 0."""
+    """Read a body whose motion is recorded; its inertia, if written, must be above 0.
+
+    A fixed one may be 0: on a friction curve nothing accelerates.
+    """
     table.allow(BODY)
     body = body_from(name, table)
-    if body.inertia is not None and body.inertia.value <= 0:
+    inertia = body.inertia
+    if inertia is not None and (inertia.value < 0 or inertia.value == 0 and not inertia.fixed):
         raise ExperimentError(
-            f"{body.inertia.where}: found {body.inertia.value:g}, expected a number above 0"
+            f"{inertia.where}: found {inertia.value:g}, expected a number above 0"
         )
     return body
 

@@ -10,15 +10,16 @@ from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.files import follow_links
 from ..base.frozen import ByValue
 from ..base.shown import html_table
-from ..base.toml import Table, describe_toml_value, read_toml
+from ..base.toml import Table, read_toml
 from ..base.units import unit_of
 from .arm_description import ArmDescription, arm_from
 from .channel import BODY_QUANTITIES, Channel, channels_from, frequency_from, sample_rate_from
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
-from .doors.bag import is_bag
+from .friction_curve import CURVE, bodies_and_channels, curve_record
 from .reading import ReadingStep, reading_table
-from .record import SEPARATE, Record, read_record
-from .tables import is_log, tables_in
+from .record import Record, read_record, wanted_columns
+from .record_entries import choice_of, record_entries
+from .tables import is_log, read_columns
 
 _FILE = "experiment.toml"
 
@@ -32,6 +33,7 @@ class Experiment(ByValue):
     channels: "device.position" and the like, "time", "segment"
     bandwidth: Hz; model and measurement are compared below it; None: chosen from the records
     arm: the links that couple the bodies, where these are the joints of an arm; else None
+    kind: "friction curve": points of speed and force, without time; "": records over time
     guesses: entries that `teleopdesign new` guessed and nobody confirmed: key -> reason
     """
 
@@ -44,6 +46,12 @@ class Experiment(ByValue):
     records: tuple[Record, ...]
     guesses: Mapping[str, str] = field(default_factory=dict)
     arm: ArmDescription | None = None
+    kind: str = ""
+
+    @property
+    def is_curve(self) -> bool:
+        """Whether the records are points of a friction curve, without time."""
+        return self.kind == CURVE
 
     @property
     def fit_records(self) -> tuple[Record, ...]:
@@ -123,6 +131,8 @@ def load_experiment(folder: str | Path) -> Experiment:
             f"{experiment.where('diagram')}: found a whole diagram, expected [model]: it is "
             "compared by `teleopdesign diagnose` and td.find_missing"
         )
+    if "kind" in experiment.content:
+        return _load_curve(experiment, folder)
     experiment.allow(
         ("title", "model", "channels", "comparison", "records", "sample_rate", "guessed")
     )
@@ -153,6 +163,26 @@ def load_experiment(folder: str | Path) -> Experiment:
     guesses = {key: guessed.text(key) for key in guessed.content}
     return Experiment(
         folder, title, bodies, environment, channels, bandwidth, records, guesses, arm
+    )
+
+
+def _load_curve(experiment: Table, folder: Path) -> Experiment:
+    """A friction curve: an experiment whose records are points of speed and force."""
+    choice_of(experiment, "kind", (CURVE,))
+    experiment.allow(("kind", "title", "model", "channels", "records", "guessed"))
+    bodies, channels = bodies_and_channels(experiment)
+    records = []
+    for file, use, offset_names, span in record_entries(experiment, folder):
+        name = f"{folder.name}/{file}"
+        if span is not None:
+            raise ExperimentError(f"{experiment.where('records')}: span: a {CURVE} has no time")
+        columns = read_columns(folder / file, name, wanted_columns(channels))
+        records.append(curve_record(columns, file, use, channels, bodies, offset_names))
+    guessed = experiment.table("guessed")
+    guesses = {key: guessed.text(key) for key in guessed.content}
+    title = experiment.text("title", folder.name)
+    return Experiment(
+        folder, title, bodies, None, channels, None, tuple(records), guesses, kind=CURVE
     )
 
 
@@ -188,88 +218,6 @@ def folder_of_experiment(path: Path) -> Path:
             f"found {listed or 'an empty folder'}{did_you_mean(_FILE, names)}"
         )
     return path
-
-
-def record_entries(
-    experiment: Table, folder: Path
-) -> list[tuple[str, str, frozenset[str], tuple[float, ...] | None]]:
-    """(file, use, separate offsets, span) of each [[records]], checked before any file is read."""
-    entries: list[tuple[str, str, frozenset[str], tuple[float, ...] | None]] = []
-    for table in experiment.tables("records"):
-        table.allow(("file", "use", "span", *SEPARATE))
-        file, span = table.text("file"), _span(table)
-        _check_path(table, folder, file)
-        for other, _, _, other_span in entries:
-            if file == other and (span is None or other_span is None or _overlap(span, other_span)):
-                what = (
-                    "is listed twice" if span == other_span else "is listed with spans that overlap"
-                )
-                raise ExperimentError(f"{table.where('file')}: {quote(file)} {what}")
-        use = _choice(table, "use", ("fit", "check"))
-        separate = {
-            name for name in SEPARATE if _choice(table, name, ("common", "own"), "common") == "own"
-        }
-        entries.append((file, use, frozenset(separate), span))
-    if not any(use == "fit" for _, use, _, _ in entries):
-        raise ExperimentError(
-            f'{experiment.where("records")}: found {len(entries)} records, none with use = "fit", '
-            "expected at least one"
-        )
-    return entries
-
-
-def _span(table: Table) -> tuple[float, ...] | None:
-    """Read [begin, end] in s from the first row of the log; None: the whole file."""
-    if "span" not in table.content:
-        return None
-    span = table.content["span"]
-    numbers = isinstance(span, list) and all(
-        isinstance(v, int | float) and not isinstance(v, bool) for v in span
-    )
-    if not numbers or len(span) != 2 or not 0 <= span[0] < span[1] < 1e9:
-        raise ExperimentError(
-            f"{table.where('span')}: found {describe_toml_value(span)}, "
-            "expected [begin, end] in s, from the "
-            "log's first row"
-        )
-    return (float(span[0]), float(span[1]))
-
-
-def _overlap(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
-    return max(one[0], other[0]) < min(one[1], other[1])
-
-
-def _choice(table: Table, key: str, choices: tuple[str, ...], default: str | None = None) -> str:
-    value = table.text(key, default)
-    if value not in choices:
-        listed = " or ".join(quote(choice) for choice in choices)
-        raise ExperimentError(
-            f"{table.where(key)}: found {quote(value)}, "
-            f"expected {listed}{did_you_mean(value, choices)}"
-        )
-    return value
-
-
-def _check_path(table: Table, folder: Path, file: str) -> None:
-    where = table.where("file")
-    try:
-        path = follow_links(folder / file)
-        inside = path.is_relative_to(folder)
-        exists = path.is_file() or is_bag(path) or path.is_dir() and bool(tables_in(path))
-    except (OSError, ValueError) as problem:
-        reason = getattr(problem, "strerror", None) or str(problem)
-        raise ExperimentError(f"{where}: {quote(file)} cannot be read: {reason}") from None
-    if not inside:
-        raise ExperimentError(
-            f"{where}: found {quote(file)}, expected a file inside {folder.name}/"
-        )
-    if not exists:
-        names = sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
-        others = [name for name in names if name != _FILE]
-        listed = ", ".join(others[:10]) + (", ..." if len(others) > 10 else "")
-        raise ExperimentError(
-            f"{where}: no file {quote(file)}, found {listed or 'none'}{did_you_mean(file, others)}"
-        )
 
 
 def _check_bandwidth(

@@ -69,6 +69,8 @@ class Motion(ByValue):
     merged: rows of the record from one sample to the next; 1 unless samples were left out
     links: of the arm, if the body is a joint of an arm;  carried: (n,) the force that the links
         need
+    The points of a friction curve are a motion without time: their bandwidth is inf, nothing is
+    filtered, acceleration and position are 0.
     """
 
     body: str
@@ -93,6 +95,11 @@ class Motion(ByValue):
     carried: Array | None = None
 
     @property
+    def is_curve(self) -> bool:
+        """Whether the samples are points of a friction curve, without time."""
+        return self.bandwidth == np.inf
+
+    @property
     def sample_time(self) -> float:
         """Time between samples, s."""
         return self.spectrum.sample_time
@@ -104,6 +111,8 @@ class Motion(ByValue):
 
         staircase: (..., n), or (..., k n) with k values in turn for equal parts of each row
         """
+        if self.is_curve:
+            return staircase
         if staircase is self.command:
             held = held_command(self.command, self.spectrum)
             return held.smooth(self.command_late, self.smoothing)
@@ -116,6 +125,8 @@ class Motion(ByValue):
 
     def lowpassed(self, y: Array, at: NDArray[np.intp] | None = None) -> Array:
         """Signals (..., n) through the low-pass of the comparison; at: only these rows."""
+        if self.is_curve:
+            return y if at is None else y[..., at]
         from .zero_phase import zero_phase  # numba: only where something is filtered
 
         return zero_phase(y, self.bandwidth, self.sample_time, at)

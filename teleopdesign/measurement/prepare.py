@@ -14,6 +14,7 @@ from ..base.frozen import ByValue
 from .bandwidth import bandwidth_of
 from .experiment import Experiment
 from .filtering import Array, spectrum
+from .friction_curve import curve_motion
 from .motion import SHORTEST, SMOOTHING, Motion, motions
 from .record import Record
 from .scales import LARGEST, scales
@@ -92,6 +93,11 @@ class Prepared(ByValue):
         return tuple(s for s in self.stretches if s.use == use)
 
     @property
+    def is_curve(self) -> bool:
+        """Whether the records are points of a friction curve, without time."""
+        return self.bandwidth == np.inf
+
+    @property
     def is_linked(self) -> bool:
         """Whether the records are of an arm's joint, whose link parameters are estimated too.
 
@@ -132,6 +138,8 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
             f"{experiment.folder.name}/experiment.toml: model.arm: found an arm, expected one body "
             "or two: only `teleopdesign diagnose` (find_missing) compares an arm"
         )
+    if experiment.is_curve:
+        return prepare_curve(experiment)
     chosen = bandwidth or bandwidth_of(experiment)
     stretches = []
     for record in experiment.records:
@@ -162,6 +170,27 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
             )
     _refuse_without_force(experiment, stretches)
     return Prepared(experiment, chosen, tuple(stretches))
+
+
+def prepare_curve(experiment: Experiment) -> Prepared:
+    """The points of a friction curve; its bandwidth is inf, for nothing is filtered.
+
+    raises ExperimentError: a record has fewer points than blocks that are held out
+    """
+    (body,) = experiment.bodies
+    stretches = []
+    for record in experiment.records:
+        _refuse_huge(experiment, record)
+        motion = curve_motion(record, body)
+        if len(motion.time) < FOLDS:
+            raise ExperimentError(
+                f"{experiment.folder.name}/{record.file}: found {len(motion.time)} points with a "
+                f"speed, expected {FOLDS} or more"
+            )
+        keep = np.arange(len(motion.time))
+        stretches.append(Stretch(motion, record.use, keep, 1.0, _squares(motion, keep, 1.0)))
+    _refuse_without_force(experiment, stretches)
+    return Prepared(experiment, np.inf, tuple(stretches))
 
 
 def _why_too_short(records: Sequence[Record]) -> str:

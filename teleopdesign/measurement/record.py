@@ -51,6 +51,11 @@ class Record(ByValue):
         return len(self.time) * self.sample_time
 
     @property
+    def is_curve(self) -> bool:
+        """Whether the samples are points of a friction curve, without time."""
+        return not any(name.endswith(".position") for name in self.signals)
+
+    @property
     def longest(self) -> slice:
         """Rows of the longest segment."""
         return max(self.segments, key=lambda rows: rows.stop - rows.start)
@@ -61,6 +66,8 @@ class Record(ByValue):
         return min([*rates, 1.0 / self.sample_time])
 
     def __repr__(self) -> str:
+        if self.is_curve:
+            return f"Record {self.file} ({self.use}): {len(self.time)} points"
         segments = f", {len(self.segments)} segments" if len(self.segments) > 1 else ""
         return (
             f"Record {self.file} ({self.use}): {len(self.time)} samples, {self.duration:.6g} s "

@@ -35,7 +35,9 @@ def write_experiment(experiment: Experiment, folder: str | Path) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         names = _file_names(experiment)
         for record, name in zip(experiment.records, names, strict=True):
-            columns = {"t": record.time, **record.signals}
+            columns = dict(record.signals)
+            if not experiment.is_curve:
+                columns = {"t": record.time, **columns}
             if len(record.segments) > 1:
                 labels = np.zeros(len(record.time))
                 for k, rows in enumerate(record.segments):
@@ -64,7 +66,8 @@ def _file_names(experiment: Experiment) -> list[str]:
 
 def experiment_text(experiment: Experiment, names: list[str]) -> str:
     """The text of experiment.toml for records that are written in SI."""
-    lines = [f"title = {string_text(experiment.title)}", ""]
+    lines = [f"kind = {string_text(experiment.kind)}"] * experiment.is_curve
+    lines += [f"title = {string_text(experiment.title)}", ""]
     for body in experiment.bodies.values():
         lines += body_lines(body)
     if experiment.environment is not None:
@@ -76,7 +79,7 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
             lines.append(f"{name} = {inline_text({k: _value(v) for k, v in parameters.items()})}")
         lines.append("")
     lines += [comment_text(line) for line in reading_table(experiment.reading)]
-    lines += ["[channels]", 'time = { column = "t", unit = "s" }']
+    lines += ["[channels]", *['time = { column = "t", unit = "s" }'] * (not experiment.is_curve)]
     one = tuple(experiment.bodies) == ("device",)
     present = [k for k in experiment.channels if all(k in r.signals for r in experiment.records)]
     for key in present:

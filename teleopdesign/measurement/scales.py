@@ -16,6 +16,7 @@ LEAST, LARGEST = 1e-60, 1e60
 def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
     """Quantity -> typical size along these motions (SI): rms values and their quotients.
 
+    "lowest_position", "highest_position" and "largest_velocity" are ends of all motions together;
     "travel" is the widest range of positions in one motion, "duration" the longest.
     """
 
@@ -45,6 +46,9 @@ def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:
         "cubic_stiffness": force / position**3,
         "per_square_of_position": 1.0 / position**2,
         "travel": max(float(np.ptp(m.position)) for m in motions) or 1e-12,
+        "lowest_position": min(float(m.position.min()) for m in motions),
+        "highest_position": max(float(m.position.max()) for m in motions),
+        "largest_velocity": max(float(np.abs(m.velocity).max()) for m in motions) or 1e-12,
         "duration": max(float(np.ptp(m.time)) for m in motions),
         "frequency": bandwidth,
         "angle": 1.0,

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ExperimentError, ModelError, did_you_mean
 from ..base.shown import Shown
 from ..base.units import si_factor
 from ..diagnose.diagnosis import Diagnosis
@@ -53,6 +53,7 @@ def propose(
     progress: called with a line of text at each step;  seed: of the sensors' errors
     raises ModelError: limits of a body that is not in the experiment
     """
+    _refuse_curve(diagnosis)
     say = progress or (lambda _: None)
     say("searching for effects that the records leave open")
     rivals = rivals_of(diagnosis)
@@ -94,6 +95,14 @@ def propose(
     )
     say("simulating changes of the set-up")
     return replace(proposal, remedies=_remedies(proposal, candidates, setting, seed))
+
+
+def _refuse_curve(diagnosis: Diagnosis) -> None:
+    if diagnosis.kind:
+        raise ExperimentError(
+            "next: a friction curve has no time: points that are missing, such as slower runs, are "
+            "listed by `teleopdesign check`"
+        )
 
 
 def _merge_limits(diagnosis: Diagnosis, stated: Mapping[str, Limits]) -> dict[str, Limits]:

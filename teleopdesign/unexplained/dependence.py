@@ -24,7 +24,7 @@ from ..measurement.filtering import Array
 from ..measurement.prepare import FOLDS
 from .library import wave_number
 from .rows import RESTED, Rows
-from .shapes import SHAPES, Shape, columns_of, knots_of, roughness
+from .shapes import SHAPES, Shape, columns_of, knots_of, roughness, shapes_of
 
 #: weights of the roughness penalty that are compared, relative to the weight of the data
 SMOOTHNESS = np.logspace(-4, 3, 8)
@@ -209,7 +209,7 @@ def dependences(
     """
     target = rows.residual * rows.root
     whole = float(np.sum(target[rows.checked] ** 2))
-    known = {s: shape_columns(rows, s, target) for s in SHAPES}
+    known = {s: shape_columns(rows, s, target) for s in shapes_of(rows)}
     beside, chosen = model_columns(rows), list[Dependence]()
     first: tuple[Dependence, ...] = ()
     while len(chosen) < most:

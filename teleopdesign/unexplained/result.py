@@ -138,7 +138,9 @@ def _body(part: BodyResidual) -> dict[str, Any]:
             }
             for t in part.tests
         ],
-        "whiteness": {
+        "whiteness": None
+        if part.whiteness is None
+        else {
             "probability_of_chance": part.whiteness.probability,
             "half_between_hertz": list(part.whiteness.band),
         },
@@ -197,6 +199,7 @@ class BodyResidual:
     at_rest: part of the residual's squares on rows where no motion is certain
     dependences: dependences of the residual, largest first
     tests: of every dependence, best first;  views: name -> graph of the residual
+    whiteness: None for a friction curve, whose points have no time
     """
 
     body: str
@@ -207,7 +210,7 @@ class BodyResidual:
     at_rest: float
     dependences: tuple[DescribedDependence, ...]
     tests: tuple[Dependence, ...]
-    whiteness: Whiteness
+    whiteness: Whiteness | None
     views: Mapping[str, Graph]
 
     @property
@@ -239,7 +242,7 @@ def describe_body(
     squares = float(np.sum((weight * rows.residual**2)[used]))
     resting = float(np.sum((weight * rows.residual**2)[used & (rows.root == 0)]))
     chosen, tests = dependences(rows, floor**2 * whole)
-    whiteness = whiteness_of(rows)
+    whiteness = None if rows.is_curve else whiteness_of(rows)
     descriptions = _describe_dependences(rows, chosen)
     after = descriptions[-1].dependence.squares if descriptions else squares
     return BodyResidual(

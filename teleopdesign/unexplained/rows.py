@@ -77,6 +77,11 @@ class Rows:
     splits: tuple[tuple[NDArray[np.bool_], NDArray[np.bool_]], ...]
 
     @property
+    def is_curve(self) -> bool:
+        """Whether the rows are points of a friction curve, without time and position."""
+        return self.bandwidth == np.inf
+
+    @property
     def checked(self) -> NDArray[np.bool_]:
         """Mask of the rows on which dependences are tested."""
         return np.asarray(sum(test for _, test in self.splits), dtype=bool)

@@ -127,6 +127,14 @@ SHAPES = (
 )
 
 
+def shapes_of(rows: Rows) -> tuple[Shape, ...]:
+    """The dependences that are tested; on a friction curve those on the speed."""
+    speeds = (None, SPEED, VELOCITY)
+    alone = (FORCE, FRICTION, DAMPING)
+    of_speed = (s for s in SHAPES if s.carrier in alone and s.variable in speeds)
+    return tuple(of_speed) if rows.is_curve else SHAPES
+
+
 def knots_of(variable: Variable, rows: Rows) -> Array:
     """Knots of f over the range of the learning rows; empty where these have no range."""
     values = rows.at(variable.name)
@@ -145,6 +153,8 @@ def knots_of(variable: Variable, rows: Rows) -> Array:
 
 def smallest_resolved(variable: Variable, rows: Rows) -> float:
     """The smallest value of the variable that the comparison resolves."""
+    if rows.is_curve:
+        return float(np.min(rows.at("speed")))
     step = max(a.stretch.motion.step for a in rows.alongs)
     time = 1.0 / (2 * np.pi * rows.bandwidth)
     return {"position": step, "velocity": step / time, "time": time}[variable.quantity]

@@ -131,8 +131,10 @@ def label(words: str, quantity: str, axis: str, largest: float = np.inf) -> tupl
     return factor, f"{words} ({unit})"
 
 
-def views_of(rows: Rows, whiteness: Whiteness) -> dict[str, Graph]:
+def views_of(rows: Rows, whiteness: Whiteness | None) -> dict[str, Graph]:
     """Graphs of the residual against each view, forward and backward separately, with means."""
+    if whiteness is None:
+        return {"velocity": _view(rows, *VIEWS["velocity"])}
     return {
         **{name: _view(rows, *VIEWS[name]) for name in VIEWS},
         "frequency": _frequency(rows, whiteness),

@@ -39,6 +39,10 @@ OTHER = {
     "actuator_dead_zone.half_width": 0.3,  # N; a part of the commands
     "stops.lower": -2e-3,  # m; part of the travel
     "stops.upper": 2e-3,
+    "free_force.lower": -3e-3,  # m; a value that the motion passes, and no place of another one
+    "free_force.upper": 4e-3,
+    **{f"free_force.value_{i}": 0.1 * (-1) ** i + 0.05 * i for i in range(1, 9)},  # N
+    **{f"free_friction.value_{i}": 0.3 - 0.02 * i for i in range(1, 9)},
     # N, N/m: of elements that slip in turn, together less than `LEVEL`
     "maxwell_slip.level_2": 0.1,
     "maxwell_slip.level_3": 0.06,

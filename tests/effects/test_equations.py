@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import sympy as sp
+from scipy.interpolate import CubicSpline, interp1d
 
 from teleopdesign.effects import BLOCK_EFFECTS, EFFECTS, SIGNALS
 
@@ -66,6 +67,12 @@ LAWS = {
     "presliding": lambda s, p, o: (
         p.stiffness * s.bristle + p.bristle_damping * bristle_rate(s.bristle, s, p.stiffness)
     ),
+    "free_force": lambda s, p, o: through_values(
+        CubicSpline, s.position, np.linspace(p.lower, max(p.upper, p.lower + 1e-9), 8), p
+    ),
+    "free_friction": lambda s, p, o: through_values(
+        interp1d, abs(s.velocity), p.upper * np.linspace(0.0, 1.0, 8) ** 2, p
+    ),
     "quadratic_drag": lambda s, p, o: p.drag * s.velocity**2 * sgn(s.velocity),
     "shear_thinning": lambda s, p, o: (
         p.drag * s.velocity * (s.velocity**2 + 1e-10) ** ((p.exponent - 1) / 2)
@@ -94,6 +101,12 @@ LAWS = {
     "arm": lambda s, p, o: grip(s, p),
     "environment": lambda s, p, o: p.stiffness * s.penetration + p.damping * s.velocity,
 }
+
+
+def through_values(interpolation, at, places, p):
+    """Value at a place, by scipy; constant beyond both ends."""
+    values = [getattr(p, f"value_{i}") for i in range(1, 9)]
+    return float(interpolation(places, values)(min(max(at, places[0]), places[-1])))
 
 
 def bristle_rate(bristle, s, stiffness):

@@ -34,7 +34,11 @@ def brief_text(diagnosis: Diagnosis) -> str:
     lines = [*(_arm(diagnosis) if diagnosis.joints else _body(diagnosis, with_values=True))]
     if not diagnosis.joints and len(lines) > LINES:
         lines = [*_body(diagnosis, with_values=False)]
-    if diagnosis.left_out:
+    if diagnosis.no_named_law is not None:
+        lines += textwrap.wrap(str(diagnosis.no_named_law), WIDTH)
+    if diagnosis.kind:  # the list of what needs a time is long
+        lines += [textwrap.shorten(f"left out: {diagnosis.left_out[-1]}", WIDTH)]
+    elif diagnosis.left_out:
         lines += textwrap.wrap(f"left out: {'; '.join(diagnosis.left_out)}", WIDTH)
     if more := _more(diagnosis):
         lines.append(f"not shown: {more}")

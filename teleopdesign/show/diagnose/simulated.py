@@ -10,8 +10,7 @@ from ...base.sentences import unit_at_axis
 from ...base.units import unit_of
 from ...diagnose.by_simulation import SimulationComparison
 from ...diagnose.correlations import ResidualCorrelations, residual_correlations
-from ..figures.diagnosis import AFTER, BEFORE, MEASURED
-from ..figures.style import TWO_COLUMNS, house_style
+from ..figures.style import AFTER, BEFORE, MEASURED, TWO_COLUMNS, house_style
 from ..registry import shows
 
 if TYPE_CHECKING:

@@ -70,13 +70,15 @@ def ladder_text(diagnosis: Diagnosis) -> str:
         f"  ({diagnosis.floor.source})"
     )
     source = f" ({diagnosis.bandwidth_source})" if diagnosis.bandwidth_source else ""
-    lines.append(f"compared up to {diagnosis.bandwidth:.3g} Hz{source}")
+    band = "" if diagnosis.kind else f" up to {diagnosis.bandwidth:.3g} Hz"
+    lines.append(f"compared{band}{source}")
     if diagnosis.left > CRITERIA.countable:
         lines.append(
             f"{'':<42}the floor contains no noise of the force: state `noise` at the channel"
         )
     lines += [*_lines_of_rest(diagnosis), *_lines_not_accepted(diagnosis)]
     lines += [f"set aside: {one}" for one in diagnosis.set_aside]
+    lines += [str(diagnosis.no_named_law)] * (diagnosis.no_named_law is not None)
     lines += [f"left out: {words}" for words in diagnosis.left_out]
     if records_differ(diagnosis.after):
         lines.append(records_line(diagnosis))

@@ -8,9 +8,12 @@ import numpy as np
 
 from ...base.sentences import unit_at_axis
 from ...diagnose.comparison import Comparison, residual_data
+from ...diagnose.recording import DiagnosedRecording
 from ..registry import shows
 from .carrier import CarryingVariable, carrier_of
-from .style import house_style
+from .friction_curve import draw_friction_curve
+from .ladder import draw_ladder
+from .style import AFTER, BEFORE, MEASURED, house_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,7 +23,6 @@ if TYPE_CHECKING:
     from ...measurement.prepare import Prepared
     from ...model import Model
 
-MEASURED, BEFORE, AFTER = "0.55", "#D55E00", "#0072B2"
 FORWARD, BACKWARD, UNTOLD = "#009E73", "#CC79A7", "0.6"
 #: inches: of a joint's row, of what stands around all rows; of the ladder, and each of its rungs
 ROW, AROUND, LADDER, RUNG = 1.4, 0.6, 0.75, 0.22
@@ -92,6 +94,15 @@ def plot_comparison(comparison: Comparison) -> Figure:
     """Measured and modelled force, and the residual over time, velocity and position."""
     import matplotlib.pyplot as plt
 
+    if comparison.prepared.is_curve:
+        with plt.style.context(house_style()):
+            figure, axes = plt.subplots(1, 2, figsize=(7.16, 2.9))
+            recording = DiagnosedRecording(stated=comparison.prepared.experiment)
+            fit = recording.evaluate(comparison.model)
+            draw_friction_curve(axes[0], comparison.prepared, {"model": (fit, AFTER)})
+            draw_by_direction(axes[1], comparison.data, "velocity")
+            direction_legend(axes[1])
+        return figure
     data = check_rows(comparison.data)
     with plt.style.context(house_style()):
         figure, axes = plt.subplots(2, 2, figsize=(7.16, 4.6))
@@ -137,6 +148,8 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
 
     if diagnosis.joints:
         return _plot_joints(diagnosis)
+    if diagnosis.kind:
+        return _plot_friction_curve(diagnosis)
     carrier = carrier_of(diagnosis, next(iter(diagnosis.model.bodies)))
     before, after = (
         _with_carrier(check_rows(residual_data(model, diagnosis.prepared)), carrier, diagnosis)
@@ -170,7 +183,34 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
         ax.set(xlabel=label_of(before, "time"), ylabel=label_of(before, "residual"))
         ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
         _residual_maps(axes, before, after, changed=changed)
-        _draw_ladder(axes["ladder"], diagnosis, of="the measured force")
+        draw_ladder(axes["ladder"], diagnosis, of="the measured force")
+    return figure
+
+
+def _plot_friction_curve(diagnosis: Diagnosis) -> Figure:
+    """The points of a friction curve and the models' curves, the residual, and the ladder."""
+    import matplotlib.pyplot as plt
+
+    rows = [residual_data(r.model, diagnosis.prepared) for r in (diagnosis.before, diagnosis.after)]
+    changed = len(diagnosis.rungs) > 1
+    curves = {"your model": (diagnosis.fit(diagnosis.before.model), BEFORE)}
+    if changed:
+        curves["with what was missing"] = (diagnosis.last_fit, AFTER)
+    with plt.style.context(house_style()):
+        figure, axes = plt.subplot_mosaic(
+            [["curve", "curve"], ["v0", "v1"], ["ladder", "ladder"]],
+            figsize=(7.16, 6.4),
+            height_ratios=[1.7, 1.0, 0.35 + 0.22 * len(diagnosis.rungs)],
+        )
+        draw_friction_curve(axes["curve"], diagnosis.prepared, curves)
+        figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
+        for ax, data, word in zip((axes["v0"], axes["v1"]), rows, ("before", "after"), strict=True):
+            draw_by_direction(ax, data, "velocity")
+            ax.set_ylabel(label_of(data, "residual").replace("residual", f"residual {word}"))
+            for points in ax.lines:
+                points.set_markersize(3.0)
+        axes["v1"].set_ylim(axes["v0"].get_ylim())
+        draw_ladder(axes["ladder"], diagnosis, of="the measured force")
     return figure
 
 
@@ -210,7 +250,7 @@ def _plot_joints(diagnosis: Diagnosis) -> Figure:
         # anybody's text: no formula in it
         upper.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
         of = "the measured force, root of the mean square over joints"
-        _draw_ladder(lower.subplots(), diagnosis, of=of)
+        draw_ladder(lower.subplots(), diagnosis, of=of)
     return figure
 
 
@@ -256,35 +296,3 @@ def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None
         else:
             axes[second].set_axis_off()
     direction_legend(axes["v0"])
-
-
-def _draw_ladder(ax: Axes, diagnosis: Diagnosis, *, of: str) -> None:
-    """Check errors of the ladder as bars, with the noise floor.
-
-    of: words for what the errors are relative to
-    """
-    rungs, floor = diagnosis.rungs, 100 * diagnosis.floor.value
-    names = ["your model, re-estimated" if r.added is None else f"+ {r.title}" for r in rungs]
-    errors = [100 * r.check_error for r in rungs]
-    rows = np.arange(len(names))
-    colors = [BEFORE] + [AFTER] * (len(names) - 1)
-    ax.barh(rows, errors, height=0.62, color=colors)
-    for y, error in zip(rows, errors, strict=True):
-        # the label stands clear of the floor's line
-        end = max(error, floor) if error > floor - 0.12 * max(errors) else error
-        ax.annotate(
-            f"{error:.2f} %", (end, y), xytext=(3, 0), textcoords="offset points", va="center"
-        )
-    ax.axvline(floor, color="k", lw=0.8, ls="--")
-    ax.annotate(
-        f"noise floor {floor:.2f} %",
-        (floor, 1.0),
-        xycoords=("data", "axes fraction"),
-        xytext=(2, 2),
-        textcoords="offset points",
-        va="bottom",
-    )
-    ax.set_yticks(rows, names)
-    ax.invert_yaxis()
-    ax.set_xlim(0, 1.15 * max(*errors, floor))
-    ax.set_xlabel(f"check error (% of {of})")

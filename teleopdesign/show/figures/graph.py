@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.finding import Array, Graph, Series
-from .diagnosis import AFTER, BACKWARD, BEFORE, FORWARD, MEASURED
+from .diagnosis import BACKWARD, FORWARD
+from .style import AFTER, BEFORE, MEASURED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

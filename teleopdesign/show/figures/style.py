@@ -32,6 +32,8 @@ CASES = {
     "hybrid": ("#009E73", "-", "hybrid"),
 }
 #: colours of what is proved, what is refuted, a theory, and all else
+#: of measured signals, of the model before and of the model after
+MEASURED, BEFORE, AFTER = "0.55", "#D55E00", "#0072B2"
 PROVED, REFUTED, THEORY, GREY = "#009E73", "#D55E00", "#0072B2", "#7F7F7F"
 #: symbols of signals that are no letter with an index
 _SYMBOLS = {

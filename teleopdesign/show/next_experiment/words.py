@@ -54,6 +54,9 @@ def _sentences(proposal: Proposal) -> list[str]:
 
 
 def _explain_nothing_open(proposal: Proposal) -> str:
+    if (curve := proposal.diagnosis.no_named_law) is not None:
+        words = str(curve)
+        return f"{words[0].upper()}{words[1:]}. No motion is proposed: a curve has no rival."
     if proposal.diagnosis.verdict == "undecided":
         return (
             "No candidate effect lowers the error: there are no rivals to distinguish, and no "

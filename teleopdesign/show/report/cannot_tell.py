@@ -44,6 +44,7 @@ def cannot_tell(diagnosis: Diagnosis) -> tuple[Finding, ...]:
         *_open_parameters(diagnosis),
         *_find_correlated(diagnosis.last_fit),
         *_open_candidates(diagnosis),
+        *_no_named_law(diagnosis),
         *_excluded_effects(diagnosis),
         *_findings_on_exclusions(diagnosis),
         *_findings_unchecked(diagnosis),
@@ -72,6 +73,15 @@ def _set_aside(diagnosis: Diagnosis) -> list[Finding]:
         )
         for one in diagnosis.set_aside
     ]
+
+
+def _no_named_law(diagnosis: Diagnosis) -> list[Finding]:
+    """The curve that leaves less than the final model, and explains nothing."""
+    one = diagnosis.no_named_law
+    if one is None:
+        return []
+    numbers = {"check_error": one.check_error, "fit_error": one.fit_error}
+    return [Finding("no named law", "warning", f"{one}.", numbers, one.candidate.at)]
 
 
 def _clock(diagnosis: Diagnosis) -> list[Finding]:

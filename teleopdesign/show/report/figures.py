@@ -21,9 +21,8 @@ from markupsafe import Markup
 from ...base.finding import Graph
 from ...base.sentences import number_on_page as number
 from ...base.sentences import percent_on_page as percent
-from ..figures.diagnosis import AFTER, BEFORE
 from ..figures.graph import draw_graph
-from ..figures.style import STYLE, further_fonts
+from ..figures.style import AFTER, BEFORE, STYLE, further_fonts
 from .before_and_after import YOURS
 from .residuals import BodyView, RungResidual
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
@@ -149,7 +150,9 @@ def page_of(
             for name, one in diagnosis.links.items()
         ),
         added=() if body is None else added_effects(body, rows),
-        views=() if body is None else body_views(body, tuple(line.name for line in ladder)),
+        views=()
+        if body is None or body.kind
+        else body_views(body, tuple(line.name for line in ladder)),
         parameters=rows,
         candidate_steps=() if body is None else candidate_steps(body),
         candidates=() if body is None else candidate_rows(body),
@@ -210,7 +213,7 @@ _BLOCK = 1 << 20
 
 @dataclass(frozen=True)
 class RecordRow:
-    """A record file and its content; duration in s, rate in Hz, digest: SHA-256 of its log."""
+    """A record and its content; duration: s, rate: Hz, NaN on friction curves; digest: SHA-256."""
 
     file: str
     use: str
@@ -241,8 +244,8 @@ def record_rows(experiment: Experiment) -> tuple[RecordRow, ...]:
             file=r.file,
             use=r.use,
             samples=len(r.time),
-            duration=r.duration,
-            rate=1.0 / r.sample_time,
+            duration=math.nan if r.is_curve else r.duration,
+            rate=math.nan if r.is_curve else 1.0 / r.sample_time,
             segments=len(r.segments),
             offset_names=tuple(sorted(n.replace("_", " ") for n in r.offset_names)),
             digest=_digest(experiment, r.file),

@@ -16,7 +16,8 @@ from ...base.sentences import number, percent
 from ...diagnose.criteria import CRITERIA
 from ...unexplained.dependence import ALARM
 from ...unexplained.shapes import SHAPES
-from ..figures.diagnosis import AFTER, BACKWARD, FORWARD, MEASURED
+from ..figures.diagnosis import BACKWARD, FORWARD
+from ..figures.style import AFTER, MEASURED
 from ..registry import shows
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
     from ...base.finding import Graph, Series
     from ...unexplained import BodyResidual, DescribedDependence, ResidualDescription
+    from ...unexplained.views import Whiteness
 
 
 #: part of the residual that may remain undescribed without a remark: a description to first order,
@@ -52,7 +54,7 @@ def _findings_on(part: BodyResidual, *, name_body: bool) -> tuple[Finding, ...]:
     where = part.body if name_body else ""
     numbers = {"error": part.error, "noise floor": part.floor, "noise floors": part.floors}
     error, floors = percent(part.error, ".2g"), number(part.floors)
-    time = part.views["time"]
+    time = part.views.get("time", part.views["velocity"])
     if part.is_adequate:
         sentence = f"the model leaves {error} of the force, no more than sensor noise would leave"
         return (Finding("what is left", "fine", f"{sentence}.", numbers, where, time),)
@@ -88,20 +90,7 @@ def _finding(one: DescribedDependence, where: str) -> Finding:
 
 def _rest(part: BodyResidual, where: str) -> list[Finding]:
     """Findings on the remaining residual: its frequencies, correlation in time, and size."""
-    low, high = part.whiteness.band
-    numbers = {"low": low, "high": high, "probability of chance": part.whiteness.probability}
-    sentence = f"Half of what is left lies between {number(low)} and {number(high)} Hz"
-    if low < 1.0:  # the first band
-        sentence = f"Three quarters of what is left lies below {number(max(high, 1.0))} Hz"
-    if part.whiteness.probability < ALARM:
-        largest = int(np.argmax(np.abs(part.whiteness.correlation) / part.whiteness.noise))
-        lag, r = part.whiteness.lag[largest], part.whiteness.correlation[largest]
-        numbers |= {"lag": float(lag), "correlation": float(r)}
-        sentence += f"; its autocorrelation at {number(1e3 * lag)} ms is {r:.2f}"
-        sentence += ", unlike sensor noise"
-    findings = [
-        Finding("frequency", "note", f"{sentence}.", numbers, where, part.views["frequency"])
-    ]
+    findings = [] if part.whiteness is None else [_frequencies(part, part.whiteness, where)]
     if part.at_rest > MOSTLY:
         share = percent(part.at_rest, ".0f")
         sentence = f"{share} of the residual lies where no motion can be seen."
@@ -118,10 +107,31 @@ def _rest(part: BodyResidual, where: str) -> list[Finding]:
         )
         findings.append(
             Finding(
-                "undescribed", "note", sentence, {"noise floors": floors}, where, part.views["time"]
+                "undescribed",
+                "note",
+                sentence,
+                {"noise floors": floors},
+                where,
+                part.views.get("time"),
             )
         )
     return findings
+
+
+def _frequencies(part: BodyResidual, white: Whiteness, where: str) -> Finding:
+    """Where in frequency the residual lies, and whether it is correlated in time."""
+    low, high = white.band
+    numbers = {"low": low, "high": high, "probability of chance": white.probability}
+    sentence = f"Half of what is left lies between {number(low)} and {number(high)} Hz"
+    if low < 1.0:  # the first band
+        sentence = f"Three quarters of what is left lies below {number(max(high, 1.0))} Hz"
+    if white.probability < ALARM:
+        largest = int(np.argmax(np.abs(white.correlation) / white.noise))
+        lag, r = white.lag[largest], white.correlation[largest]
+        numbers |= {"lag": float(lag), "correlation": float(r)}
+        sentence += f"; its autocorrelation at {number(1e3 * lag)} ms is {r:.2f}"
+        sentence += ", unlike sensor noise"
+    return Finding("frequency", "note", f"{sentence}.", numbers, where, part.views["frequency"])
 
 
 #: panels side by side; height of a row of them (in)

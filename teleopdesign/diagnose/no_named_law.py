@@ -1,0 +1,87 @@
+"""A force that no law of the catalogue describes: the final model with a curve in its place.
+
+Where more than noise is left, each curve of the catalogue that has no named law (`Effect.free`) is
+added to the final model. Of those that surely leave less, the best is stated with its model, so
+that work can go on with it. It is no candidate, and the verdict does not change.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from ..base.codec import INLINE, Error
+from ..base.frozen import ByValue
+from ..effects import EFFECTS, depends_on_position
+from ..measurement.prepare import Prepared
+from ..model import Model
+from .candidates import Candidate, is_static, tells_place_from_time
+from .decision import is_better
+from .fit import Fit
+from .noise_floor import NoiseFloor
+from .search import estimate_from_starts
+
+
+@dataclass(frozen=True, eq=False)
+class FreeForm(ByValue):
+    """A curve through values that explains a force which no named law describes.
+
+    candidate: the curve and its place;  model: the final model with it
+    fit_error, check_error: of this model
+    """
+
+    candidate: Annotated[Candidate, INLINE]
+    model: Model
+    fit_error: Error
+    check_error: Error
+
+    def __str__(self) -> str:
+        of = "position" if depends_on_position(self.candidate.effect) else "speed"
+        what = "force" if of == "position" else "friction"
+        return (
+            f"no named law: a {what} of the {of} that no law of the catalogue describes is there; "
+            f"with {self.candidate} the model leaves {100 * self.check_error:.3g} % "
+            f"(fit {100 * self.fit_error:.3g} %)"
+        )
+
+
+def free_form(fit: Fit, floor: NoiseFloor, prepared: Prepared) -> FreeForm | None:
+    """The curve that leaves least beside the final model; None where none surely leaves less.
+
+    fit: of the final model, on these records. At a joint of an arm no curve is tried: the links
+    would have to be estimated with it.
+    """
+    if prepared.is_linked:
+        return None
+    fits = {c: _with_curve(fit, c, prepared) for c in _curves(fit.model, prepared)}
+    better = {c: one for c, one in fits.items() if is_better(fit, one, floor)}
+    if not better:
+        return None
+    best = min(better, key=lambda c: better[c].check_error)
+    one = better[best]
+    return FreeForm(best, one.model, one.fit_error, one.check_error)
+
+
+def _curves(model: Model, prepared: Prepared) -> list[Candidate]:
+    """The curves that the bodies lack and that their motions can tell from a drift."""
+    curves = []
+    for place, body in model.bodies.items():
+        motions = [s.motion for s in prepared.stretches if s.motion.body == place]
+        separate = {s.motion.file for s in prepared.stretches if s.has_zero_offset}
+        for effect in EFFECTS.values():
+            if not effect.free or body.has(effect.name):
+                continue
+            if prepared.is_curve and not is_static(effect):
+                continue
+            of_place = depends_on_position(effect)
+            if of_place and not tells_place_from_time(motions, separate_zeros=separate):
+                continue
+            curves.append(Candidate(effect, place))
+    return curves
+
+
+def _with_curve(fit: Fit, curve: Candidate, prepared: Prepared) -> Fit:
+    """The model with a curve, estimated anew."""
+    return estimate_from_starts(
+        fit.model.with_effect(curve.effect, at=curve.at), prepared, fit, worth=0.0
+    )

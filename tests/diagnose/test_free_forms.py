@@ -1,0 +1,102 @@
+"""Curves without a named law: they take any force, and the catalogue's search leaves them out."""
+
+import numpy as np
+import pytest
+
+import teleopdesign as td
+from teleopdesign.diagnose.candidates import candidates
+from teleopdesign.diagnose.model_data import model_data, model_from
+from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.diagnose.stated_fit import estimate_stated
+from teleopdesign.measurement.prepare import prepare
+
+RANGE = {"lower": -0.05, "upper": 0.06}
+
+
+def odd_force(x):
+    """A force of the position that no file of the catalogue describes."""
+    return 0.8 * np.tanh(x / 0.012) + 6.0 * x
+
+
+def level(v):
+    return 0.4 + 0.3 * np.exp(-(np.abs(v) / 0.02)) + 2.0 * np.abs(v)
+
+
+@pytest.fixture(scope="module")
+def recording():
+    t = np.arange(0.0, 6.0, 2e-3)
+    x = 0.03 * np.sin(2.3 * t) + 0.01 * np.sin(10.7 * t)
+    v = 0.069 * np.cos(2.3 * t) + 0.107 * np.cos(10.7 * t)
+    a = -0.1587 * np.sin(2.3 * t) - 1.1449 * np.sin(10.7 * t)
+    u = 0.15 * a + odd_force(x) + level(v) * np.sign(v)
+    u += 0.005 * np.random.default_rng(1).standard_normal(len(t))
+    return {"t_s": t, "x_m": x, "u_N": u}
+
+
+def stated(recording, *effects):
+    return td.experiment(
+        recording,
+        axis="prismatic",
+        position="x_m",
+        actuator_force="u_N",
+        time="t_s",
+        effects=effects,
+        bandwidth=30.0,
+    )
+
+
+@pytest.mark.slow
+def test_they_follow_a_force_and_a_friction_that_no_law_describes(recording):
+    experiment = stated(recording, "free_force", "free_friction")
+    fit = estimate_stated(td.Model.from_experiment(experiment), prepare(experiment))
+    assert fit.check_error < 0.015
+    assert fit.model.parameters["device.inertia"].value == pytest.approx(0.15, rel=0.02)
+    values = {n: v.value for n, v in fit.model.body("device").parameters.items()}
+    places = np.linspace(values["free_force.lower"], values["free_force.upper"], 8)
+    assert places[[0, -1]] == pytest.approx([recording["x_m"].min(), recording["x_m"].max()], 1e-3)
+    forces = [values[f"free_force.value_{i}"] for i in range(1, 9)]
+    assert forces[1:-1] == pytest.approx(odd_force(places[1:-1]), abs=0.04)
+    speeds = values["free_friction.upper"] * np.linspace(0.0, 1.0, 8) ** 2
+    levels = [values[f"free_friction.value_{i}"] for i in range(2, 9)]
+    assert levels == pytest.approx(level(speeds[1:]), abs=0.04)
+
+
+def test_no_search_tries_them(recording):
+    model = td.Model.from_experiment(stated(recording, "coulomb"))
+    assert not {"free_force", "free_friction"} & {c.effect.name for c in candidates(model)}
+
+
+def test_range_that_a_user_states_is_kept_and_not_estimated(recording):
+    model = td.Model.from_experiment(stated(recording, "coulomb", "viscous"))
+    model = model.with_effect("free_force", values=RANGE)
+    fit = estimate_from_starts(model, prepare(stated(recording)))
+    for name, place in RANGE.items():
+        assert fit.model.parameters[f"device.free_force.{name}"].value == place
+        assert f"device.free_force.{name}" not in fit.free
+    assert fit.model.parameters["device.free_force.value_5"].value != 0.0
+
+
+@pytest.mark.slow
+def test_fitted_curves_can_be_cancelled_and_simulated():
+    values = {f"value_{i}": 0.1 * (-1) ** i + 0.02 * i for i in range(1, 9)} | RANGE
+    friction = {f"value_{i}": 0.5 - 0.04 * i for i in range(1, 9)} | {"upper": 0.3}
+    body = td.Body("prismatic", {"inertia": 1e-3})
+    body = body.with_effect(td.EFFECTS["free_force"], values)
+    body = body.with_effect(td.EFFECTS["free_friction"], friction)
+    computer = td.Sampling(period=2e-4, delay=0.0, velocity_bandwidth=500.0)
+    motion = {"L": td.sine(amplitude=0.04, frequency=1.0)}
+
+    def left(**parts):
+        diagram = td.haptic_interface(body, **parts)
+        run = td.simulate_diagram(diagram, duration=1.0, motion=motion, computer=computer)
+        return float(np.sqrt(np.mean(np.asarray(run["E"]) ** 2)))
+
+    # left: smoothing near reversals
+    assert left(cancellation=td.cancel(body, smoothing_velocity=2e-3)) < 0.15 * left()
+
+
+def test_saved_model_with_them_is_the_same(recording):
+    model = td.Model.from_experiment(stated(recording, "coulomb", "viscous"))
+    model = model.with_effect("free_force", values={"value_3": 0.2} | RANGE)
+    again = model_from(model_data(model), td.EFFECTS, "here")
+    assert again.parameters == model.parameters
