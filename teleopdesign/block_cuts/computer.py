@@ -197,7 +197,7 @@ class _Evaluation:
         source = self.value(block.input)
         here = [p.effect for p in self.placed if p.at == block.name]
         same = not any(e.on_velocity or e.of_law for e in here)
-        same = same and not self.changed & {block.input, block.motion}
+        same = same and not self.changed & {block.input, block.motion, *block.others}
         key = (self.rows.file, block.name)
         law = self.part.kept.get(key) if same else None
         if law is None:
@@ -228,7 +228,12 @@ class _Evaluation:
         here = [p for p in self.placed if p.at == block.name and p.effect.of_law]
         law = block.controller.with_values({p.effect.parameter: p.value for p in here})
         return controller_along(
-            law, input=source, velocity=velocity, travel_rate=travel, period=period
+            law,
+            input=source,
+            velocity=velocity,
+            travel_rate=travel,
+            period=period,
+            command=self.value(block.others[0]) if law.reads_command else None,
         )
 
 

@@ -19,6 +19,7 @@ from ..base.files import read_whole
 #: options that name what a command reads, and what it writes: a file or a folder
 INPUTS = (
     *("folder", "logs", "source", "file", "diagram", "answer", "check", "effect", "law", "design"),
+    "without",
 )
 OUTPUTS = ("json", "predictions", "figure", "report", "output", "out", "effect_file")
 

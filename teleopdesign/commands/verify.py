@@ -16,6 +16,13 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("design", type=Path, help="file that `design --json` wrote")
     parser.add_argument("folder", type=Path, help="experiment with the compensation switched on")
+    parser.add_argument(
+        "--without",
+        type=Path,
+        metavar="FOLDER",
+        help="experiment of the same day without compensation: tells a changed device from a "
+        "changed compensator",
+    )
     parser.add_argument("--body", metavar="NAME", help="body, if the design has several")
     parser.add_argument(
         "--case",
@@ -33,8 +40,9 @@ def run(options: argparse.Namespace) -> int:
 
     plan = read_plan(options.design, options.body)
     experiment = load_experiment(options.folder)
-    say("simulating along the recorded motion")
-    verified = verify(plan, experiment, case=options.case)
+    without = None if options.without is None else load_experiment(options.without)
+    say("comparing along the recorded motion")
+    verified = verify(plan, experiment, case=options.case, without=without)
     say("")
     print(verified)
     if options.figure is not None:

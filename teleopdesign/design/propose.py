@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from ..base.errors import ExperimentError, ModelError
+from ..base.errors import ModelError
 from ..block_cuts import BlockDiagnosis
 from ..blocks import Body, free_space
 from ..diagnose import Diagnosis
@@ -93,11 +93,6 @@ def design(
     """
     if isinstance(diagnosis, BlockDiagnosis):
         diagnosis, place, assumptions = device_of_diagram(diagnosis, place, assumptions)
-    if diagnosis.kind:
-        raise ExperimentError(
-            "design: a friction curve tells no inertia and no motion: td.cancel(model.body("
-            '"device"), smoothing_velocity=...) cancels its friction'
-        )
     at = _place(diagnosis.model, place)
     reach = reach_of(diagnosis.experiment, at)
     body = free_space(diagnosis.model.body(at))

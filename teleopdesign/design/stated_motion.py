@@ -93,8 +93,13 @@ def stated_motion(reach: Reach, assumptions: Assumptions, axis: str) -> StatedMo
 def reach_of(experiment: Experiment, place: str) -> Reach:
     """The recorded range of one body: travel, speed, command, sensors and sampling.
 
-    raises ExperimentError: the body does not move in the records
+    raises ExperimentError: the body does not move in the records, or is a friction curve
     """
+    if experiment.kind:
+        raise ExperimentError(
+            "design: a friction curve tells no inertia and no motion: td.cancel(model.body("
+            '"device"), smoothing_velocity=...) cancels its friction'
+        )
     motions = [s.motion for s in prepare(experiment).stretches if s.motion.body == place]
     position = np.concatenate([m.position for m in motions])
     speed = np.abs(np.concatenate([m.velocity for m in motions]))

@@ -1,15 +1,17 @@
 """A second recording, made with the compensation on, against what the design predicted for it.
 
-The hand moves the device, and the desired force is zero. Along the recorded motion the design's own
-diagram is simulated, with the body drawn within its standard errors. The force error R_D - R_M is
-then the interaction force, measured and predicted, both below the bandwidth of the comparison.
+The hand moves the device, and the desired force is zero. The computer's laws run along the recorded
+readings, and the body, drawn within its standard errors, needs a force for the recorded motion. The
+force error R_D - R_M is then the interaction force, measured and predicted, both below the
+bandwidth of the comparison. What readings and the diagnosis leave moves its rms by at most their
+own. While the body rests, friction balances the hand: these moments test nothing.
 """
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,18 +22,21 @@ from ..base.errors import ExperimentError, ModelError, did_you_mean
 from ..base.files import write_text
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
+from ..blocks import Body
+from ..diagnose.criteria import CRITERIA
+from ..diagnose.noise_floor import noise_floor
 from ..diagrams import Diagram, four_cases, read_diagram
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
-from ..measurement.motion import Motion
-from ..measurement.prepare import TRIM, prepare
-from ..simulate import Sampling, Trajectory, simulate_many
+from ..model import Model
+from ..simulate import Sampling
+from .deviations import Deviation, deviations_of
 from .expected import drawn_values
 from .outcome import Design
-from .prediction import BRISTLE_SHARE
+from .second_recording import SecondRecording
 
-#: s: longest part of a record that is simulated; several cycles of a slow motion
-LONGEST = 20.0
+#: bodies that are drawn: the spread of the rms is then known to a fifth
+DRAWS = 16
 _NO_DESIGN = "holds no design, expected a file that `teleopdesign design --json` wrote"
 
 
@@ -43,6 +48,8 @@ class Verification(Shown, ByValue):
     measured: the rms about its mean;  without: predicted without compensation
     rows: name -> (n,): "time", "velocity", "measured", "predicted" and "without"
     axis: "prismatic" or "revolute"
+    deviations: numbers of compensator and device that differ from the design, each first of those
+        that explain the recording as well
     """
 
     case: str
@@ -52,6 +59,7 @@ class Verification(Shown, ByValue):
     without: float
     rows: Mapping[str, Array]
     axis: str
+    deviations: tuple[tuple[Deviation, ...], ...] = ()
 
     @property
     def holds(self) -> bool:
@@ -129,12 +137,18 @@ def _diagram_of(text: str, path: Path) -> Diagram:
 
 
 def verify(
-    design: Design | Plan, experiment: Experiment, *, case: str | None = None
+    design: Design | Plan,
+    experiment: Experiment,
+    *,
+    case: str | None = None,
+    without: Experiment | None = None,
 ) -> Verification:
     """Compare a recording with the compensation on with what the design predicts along it.
 
     experiment: of the same body, with its interaction force; the desired force was zero
     case: "MBC", "FF" or "hybrid", as it was switched on; default: as the design leads with
+    without: a recording of the same time without compensation, which tells a changed device from a
+        changed compensator where the command with C was not recorded
     raises ExperimentError: no interaction force, or no motion;  ModelError: no such case
     """
     plan = Plan.of(design) if isinstance(design, Design) else design
@@ -142,69 +156,59 @@ def verify(
     case = case or plan.case
     if case not in cases:
         raise ModelError(f'verify: no case "{case}", has {", ".join(cases)}')
-    motion = _longest_motion(experiment, plan.place)
-    counted = _rows_that_count(motion)
-    measured = _about_mean(motion.lowpassed(motion.interaction)[counted])
-    predicted = _force_along(cases[case], motion, plan.sampling)[:, counted]
-    without = _force_along(cases["none"], motion, plan.sampling, draws=1)[0, counted]
-    sizes = np.std(predicted, axis=1)
-    middle, half = float(np.mean(sizes)), 1.96 * float(np.std(sizes))
-    rows = {
-        "time": motion.time[: len(counted)][counted],
-        "velocity": motion.velocity[: len(counted)][counted],
-        "measured": measured,
-        "predicted": _about_mean(predicted[0]),
-        "without": _about_mean(without),
-    }
-    low, high = max(middle - half, 0.0), math.hypot(middle + half, plan.unexplained)
-    axis = experiment.bodies[plan.place].axis
-    size = float(np.std(measured))
-    return Verification(case, low, high, size, float(np.std(without)), rows, axis)
+    if f"{plan.place}.interaction_force" not in experiment.channels:
+        raise ExperimentError(
+            f"{experiment.folder.name}: {plan.place}.interaction_force: is no channel: without it "
+            "no recording shows the force error"
+        )
+    on = SecondRecording.of(cases[case], plan.sampling, experiment, plan.place)
+    hand, commands = np.concatenate(on.hand()), on.commands()
+
+    def predicted(body: Body, commands: list[Array]) -> Array:
+        return hand - np.concatenate(on.left(commands, body))
+
+    drawn = [predicted(body, commands) for body in _drawn_bodies(on)]
+    alone = predicted(on.body, [np.zeros(len(u)) for u in commands])
+    floor = _floor(on, plan.place)
+    left = math.hypot(floor, plan.unexplained)
+    sizes = [float(np.std(one)) for one in drawn]
+    middle, half = float(np.mean(sizes)), 1.96 * float(np.std(sizes)) + left
+    off = without and SecondRecording.of(on.diagram, plan.sampling, without, plan.place)
+    return Verification(
+        case,
+        max(middle - half, 0.0),
+        middle + half,
+        float(np.std(hand)),
+        float(np.std(alone)),
+        {
+            "time": on.along("time"),
+            "velocity": on.along("velocity"),
+            "measured": _about_mean(hand),
+            "predicted": _about_mean(drawn[0]),
+            "without": _about_mean(alone),
+        },
+        on.body.axis,
+        deviations_of(on, off, enough=CRITERIA.adequate * left),
+    )
 
 
 def _about_mean(values: Array) -> Array:
     return np.asarray(values - np.mean(values))
 
 
-def _longest_motion(experiment: Experiment, place: str) -> Motion:
-    if f"{place}.interaction_force" not in experiment.channels:
-        raise ExperimentError(
-            f"{experiment.folder.name}: {place}.interaction_force: is no channel: without it no "
-            "recording shows the force error"
-        )
-    motions = [s.motion for s in prepare(experiment).stretches if s.motion.body == place]
-    return max(motions, key=lambda m: len(m.time))
+def _drawn_bodies(on: SecondRecording) -> Iterator[Body]:
+    """The body within its standard errors, the estimates first."""
+    values = drawn_values(on.diagram, DRAWS, first_exact=True)
+    names = {n: n.partition(".")[2] for n in values}
+    for k in range(DRAWS):
+        yield on.body.with_values({names[n]: float(np.asarray(v)[k]) for n, v in values.items()})
 
 
-def _rows_that_count(motion: Motion) -> Array:
-    """Which of the simulated samples count, (n,)."""
-    number = min(len(motion.time), int(LONGEST / motion.sample_time))
-    at = np.arange(number) * motion.sample_time
-    return np.asarray((at >= TRIM) & (at <= at[-1] - TRIM))
-
-
-def _force_along(diagram: Diagram, motion: Motion, sampling: Sampling, *, draws: int = 16) -> Array:
-    """Force error of a diagram along a recorded motion, low-passed, (draws, n).
-
-    The first draw has the estimates.
-    """
-    number = len(_rows_that_count(motion))
-    at = np.arange(number) * motion.sample_time
-
-    def course(samples: Array) -> Any:
-        return lambda t: np.interp(t, at, samples[:number])
-
-    parts = motion.position, motion.velocity, motion.acceleration
-    run = simulate_many(
-        diagram,
-        drawn_values(diagram, draws, first_exact=True),
-        duration=at[-1],
-        motion={"L": Trajectory(*map(course, parts))},
-        computer=sampling,
-        step=sampling.period / 10,
-        give=BRISTLE_SHARE * float(np.ptp(motion.position)) / 2,
-        keep=["E"],
+def _floor(on: SecondRecording, place: str) -> float:
+    """Rms force that the readings alone leave of the right device, N or N m."""
+    model = Model({place: on.body})
+    floor = noise_floor(model, on.prepared, np.random.default_rng(0)).value
+    force = np.concatenate(
+        [on.low(i, s.motion.command + s.motion.interaction) for i, s in enumerate(on.stretches)]
     )
-    times = run["time"].values
-    forces = np.array([np.interp(at, times, row) for row in run["E"].values])
-    return np.array([motion.lowpassed(row) for row in forces])
+    return floor * float(np.sqrt(np.mean(force**2)))

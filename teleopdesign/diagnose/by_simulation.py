@@ -16,16 +16,15 @@ reference was.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.arguments import check_types
 from ..base.errors import ModelError, did_you_mean, quote
 from ..base.files import make_plain
 from ..base.frozen import ByValue
-from ..base.shown import html_table
+from ..base.shown import figure_of, html_table
 from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
@@ -33,49 +32,18 @@ from ..model import Model
 from .cores import map_in_threads
 from .driven import Driven, driven_stretches
 from .error import force_error
+from .horizon_errors import HorizonError, RecordedLoop
 from .model_data import model_of_body
 from .parts import PreparedParts, prepare_parts, remove_links, with_bodies_of
 from .parts_fit import error_over_joints
 
-#: s: times after which the simulation restarts on the measured motion; at last the whole record
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: s: times until the simulation restarts on the measured motion; at last the whole record
 HORIZONS = (0.1, 0.3, 1.0, 3.0, 10.0)
-
-
-@check_types
-@dataclass(frozen=True)
-class RecordedLoop:
-    """The controller of the device during the recording, as a spring and a damper.
-
-    stiffness: N/m or N m/rad;  damping: N s/m or N m s/rad;  both finite and not negative
-    """
-
-    stiffness: float
-    damping: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not (0.0 <= self.stiffness < np.inf and 0.0 <= self.damping < np.inf):
-            raise ModelError(
-                "RecordedLoop: expected stiffness and damping of zero or more, found "
-                f"{self.stiffness:g}, {self.damping:g}"
-            )
-
-
-@dataclass(frozen=True)
-class HorizonError:
-    """Errors of one body that restarts on the measured motion after each horizon.
-
-    horizon: s; inf: each whole stretch of a record
-    position, velocity: rms difference from the measured motion (SI); inf: the motion is not finite
-    of_travel, of_speed: the same over the standard deviation of the position, the rms velocity
-    """
-
-    use: str
-    at: str
-    horizon: float
-    position: float
-    velocity: float
-    of_travel: float
-    of_speed: float
+#: horizons whose courses are kept, to be drawn
+DRAWN = (1.0, float("inf"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +54,7 @@ class SimulationComparison(ByValue):
         record)
     errors: for each use and body, the shortest horizon first
     loop: controller that holds the body, or joint -> controller of that joint of an arm; None: none
+    courses: (use, body, horizon) -> (stretches) of time, measured and simulated position, (3, n)
     """
 
     model: Model
@@ -94,6 +63,11 @@ class SimulationComparison(ByValue):
     check_error: float
     errors: tuple[HorizonError, ...]
     loop: RecordedLoop | Mapping[str, RecordedLoop] | None = None
+    courses: Mapping[tuple[str, str, float], tuple[Array, ...]] = field(default_factory=dict)
+
+    def plot(self) -> Figure:
+        """Measured and simulated position with the fit in %, and correlations of the residual."""
+        return figure_of(self)
 
     def error(self, horizon: float, *, use: str = "check", at: str | None = None) -> HorizonError:
         """The errors of one horizon (s; inf: the whole record).
@@ -167,15 +141,20 @@ def compare_by_simulation(
     model = model if model.links else model.with_links(prepared.initial)
     prepared = with_bodies_of(model, prepared)
     models = {j: model_of_body(model, j) if j else model for j in prepared.parts}
-    errors, by_force = [], {}
+    errors: list[HorizonError] = []
+    by_force, courses = {}, dict[tuple[str, str, float], tuple[Array, ...]]()
     for use in ("fit", "check"):
         for driven in driven_stretches(models, prepared, use, _gains(loop, tuple(model.bodies))):
-            errors += _horizon_errors(driven, use)
+            longest = max((one.length for one in driven), default=0.0)
+            horizons = [h for h in HORIZONS if h < longest] + [np.inf] * bool(driven)
+            parts = map_in_threads(lambda one, h=horizons: _deviations(one, h), driven)
+            errors += _horizon_errors(driven, parts, horizons, use)
+            courses |= _courses(driven, parts, horizons, use)
         by_force[use] = error_over_joints(
             {j: force_error(models[j], remove_links(p.of(use))) for j, p in prepared.parts.items()}
         )
     return SimulationComparison(
-        model, prepared, by_force["fit"], by_force["check"], tuple(errors), loop
+        model, prepared, by_force["fit"], by_force["check"], tuple(errors), loop, courses
     )
 
 
@@ -202,7 +181,7 @@ def simulation_data(comparison: SimulationComparison) -> dict[str, Any]:
     axes = {place: body.axis for place, body in comparison.model.bodies.items()}
     loop = comparison.loop
     return {
-        "loop": {j: _loop_data(one) for j, one in loop.items()}
+        "loop": {j: _loop_data(c) for j, c in loop.items()}
         if isinstance(loop, Mapping)
         else _loop_data(loop),
         "horizons": [
@@ -230,14 +209,16 @@ def _loop_data(loop: RecordedLoop | None) -> dict[str, float] | None:
     return None if loop is None else {"stiffness": loop.stiffness, "damping": loop.damping}
 
 
-def _horizon_errors(driven: Sequence[Driven], use: str) -> list[HorizonError]:
+def _horizon_errors(
+    driven: Sequence[Driven],
+    parts: Sequence[Sequence[Array]],
+    horizons: Sequence[float],
+    use: str,
+) -> list[HorizonError]:
     """Errors of bodies that move together, body by body, the shortest horizon first.
 
-    driven: the bodies along all stretches of one use
+    driven: the bodies along all stretches of one use;  parts: of each, `_deviations`
     """
-    longest = max((one.length for one in driven), default=0.0)
-    horizons = [h for h in HORIZONS if h < longest] + [np.inf] * bool(driven)
-    parts = map_in_threads(lambda one: _deviations(one, horizons), driven)
     return [
         _horizon_error(driven, parts, use, body, (h, horizon))
         for body in range(len(driven[0].places) if driven else 0)
@@ -245,25 +226,43 @@ def _horizon_errors(driven: Sequence[Driven], use: str) -> list[HorizonError]:
     ]
 
 
+def _courses(
+    driven: Sequence[Driven],
+    parts: Sequence[Sequence[Array]],
+    horizons: Sequence[float],
+    use: str,
+) -> dict[tuple[str, str, float], tuple[Array, ...]]:
+    """(use, body, horizon) -> of each stretch: time, measured and simulated position, (3, n)."""
+    made = {}
+    for body, at in enumerate(driven[0].places if driven else ()):
+        for h, horizon in [(h, one) for h, one in enumerate(horizons) if one in DRAWN]:
+            rows = []
+            for one, part in zip(driven, parts, strict=True):
+                motion, off = one.motions[body], part[h][0, body]
+                at_rows = np.concatenate([np.r_[span] for span in _spans(one, horizon)])
+                measured = motion.position[at_rows]
+                rows.append(np.array([motion.time[at_rows], measured, measured + off]))
+            made[use, at, horizon] = tuple(rows)
+    return made
+
+
 def _deviations(driven: Driven, horizons: Sequence[float]) -> list[Array]:
     """Simulated less measured position and velocity (2, k, rows) along one stretch, per horizon."""
-    rows, step = driven.end - driven.first, driven.motions[0].sample_time
-    spans: list[list[slice]] = []
-    for horizon in horizons:
-        each = rows if np.isinf(horizon) else max(round(horizon / step), 2)
-        # one extra row, which is not counted: no command follows the last row of a course
-        spans.append(
-            [
-                slice(begin, min(begin + each + 1, driven.end))
-                for begin in range(driven.first, driven.end - 1, each)
-            ]
-        )
+    spans = [_spans(driven, horizon) for horizon in horizons]
     measured = np.array([[getattr(m, q) for m in driven.motions] for q in ("position", "velocity")])
     courses = iter(driven.courses([span for part in spans for span in part]))
     return [
         np.concatenate([next(courses) - measured[:, :, span] for span in part], axis=2)
         for part in spans
     ]
+
+
+def _spans(driven: Driven, horizon: float) -> list[slice]:
+    """Rows of each restart; one extra row, after which no command follows, is shared by two."""
+    rows, step = driven.end - driven.first, driven.motions[0].sample_time
+    each = rows if np.isinf(horizon) else max(round(horizon / step), 2)
+    starts = range(driven.first, driven.end - 1, each)
+    return [slice(begin, min(begin + each + 1, driven.end)) for begin in starts]
 
 
 def _horizon_error(

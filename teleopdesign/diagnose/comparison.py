@@ -18,9 +18,10 @@ from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from ..realise.along_motion import residual_along
-from .by_simulation import RecordedLoop, SimulationComparison, compare_by_simulation
+from .by_simulation import SimulationComparison, compare_by_simulation
 from .candidates import restrict_to_curve
 from .error import force_error
+from .horizon_errors import RecordedLoop
 from .noise_floor import NoiseFloor, noise_floor
 from .record_offsets import as_logged
 
@@ -35,8 +36,8 @@ class Comparison(ByValue):
 
     fit_error, check_error: relative force errors (NaN where there is no such record)
     data: per sample of every record and body (dimension "sample"): record, use, body, segment,
-        time, position, velocity, direction, the low-passed measured, model and residual force, and
-        whether the sample counts in the error (samples at the ends do not)
+        time, position, velocity, direction, the low-passed command, measured, model and residual
+        force, and whether the sample counts in the error (samples at the ends do not)
     """
 
     model: Model
@@ -155,6 +156,7 @@ def residual_data(model: Model, prepared: Prepared) -> Dataset:
             "position": motion.position,
             "velocity": motion.velocity,
             "direction": motion.direction,
+            "command": motion.lowpassed(motion.at_rows(motion.command)),
             "measured": measured,
             "model": measured - residual,
             "residual": residual,
@@ -162,8 +164,8 @@ def residual_data(model: Model, prepared: Prepared) -> Dataset:
         }.items():
             columns.setdefault(name, []).append(values)
     axis = next(iter(model.bodies.values())).axis
-    quantity = {"measured": "force", "model": "force", "residual": "force"}
+    quantity = dict.fromkeys(("command", "measured", "model", "residual"), "force")
     data = xr.Dataset({k: ("sample", np.concatenate(v)) for k, v in columns.items()})
-    for name in ("time", "position", "velocity", "measured", "model", "residual"):
+    for name in ("time", "position", "velocity", *quantity):
         data[name].attrs["units"] = unit_of(quantity.get(name, name), axis)
     return data.set_coords(["record", "use", "body", "segment", "time"])

@@ -78,6 +78,22 @@ class Fit(ByValue):
         """Share of the sliding samples in which the command has no influence."""
         return self.at_command.blind
 
+    @property
+    def correlations(self) -> dict[tuple[str, str], float]:
+        """Correlation of each pair of estimates that the records move, the largest first."""
+        size = np.linalg.norm(self.jacobian, axis=0)
+        moving = [i for i in range(len(self.free)) if size[i] > 0]
+        columns = self.jacobian[:, moving] / size[moving]
+        covariance = np.linalg.pinv(columns.T @ columns, rcond=1e-12, hermitian=True)
+        spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+        correlation = covariance / np.outer(spread, spread)
+        pairs = {
+            (self.free[moving[i]], self.free[moving[j]]): float(correlation[i, j])
+            for i in range(len(moving))
+            for j in range(i)
+        }
+        return dict(sorted(pairs.items(), key=lambda one: (-abs(one[1]), one[0])))
+
     def __repr__(self) -> str:
         return (
             f"Fit of {len(self.free)} parameters: fit error {100 * self.fit_error:.2f} %, check "

@@ -22,16 +22,23 @@ from .laws import assignments, indent
 from .simulated import without_no_delay
 
 _PERIOD = SIGNALS["period"]
-_ROWS = ("input", "velocity", "travel_rate")
+_ROWS = ("input", "velocity", "travel_rate", "command")
 
 
 def controller_along(
-    controller: Controller, *, input: Array, velocity: Array, travel_rate: Array, period: float
+    controller: Controller,
+    *,
+    input: Array,
+    velocity: Array,
+    travel_rate: Array,
+    period: float,
+    command: Array | None = None,
 ) -> Array:
     """Output of a controller at the rows of its recorded signals, all states zero at first.
 
     input: of the block, SI;  velocity, travel_rate: of its motion, as the computer knows them, m/s
         or rad/s;  period: of the computer and of the rows, s
+    command: force commanded without this controller, N or N m, for a law that reads it; None: 0
     returns: (n,), in the unit of the output
     raises ModelError: a law is known as code only, or only in continuous time
     """
@@ -46,7 +53,8 @@ def controller_along(
         [delay_in_samples(float(d.subs(at)), period, what="controller") for d in delays],
         dtype=float,
     )
-    known = np.ascontiguousarray([input, velocity, travel_rate], dtype=float)
+    beside = np.zeros_like(velocity) if command is None else command
+    known = np.ascontiguousarray([input, velocity, travel_rate, beside], dtype=float)
     out = np.empty(known.shape[1])
     past = np.zeros((len(late), known.shape[1]))
     compile_source(source, "follow")(

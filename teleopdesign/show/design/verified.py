@@ -28,11 +28,15 @@ def verification_text(verified: Verification) -> str:
         f"without compensation {verified.without:.3g} {unit} are predicted along this motion",
         "assumed: no desired force, the compensation as designed",
     ]
-    if not verified.holds:
+    if not (verified.holds or verified.deviations):
         more = "more" if verified.measured > verified.high else "less"
+        lines.append(f"{more} force is left than predicted: no number of the design explains it")
+    for group in verified.deviations:
+        lines.append("differs: " + "; or ".join(map(str, group)))
+    if any(len({one.at for one in group}) > 1 for group in verified.deviations):
         lines.append(
-            f"{more} force is left than predicted: diagnose this recording with its commands less "
-            "C to see what changed"
+            "to tell these apart: log the command with C in it, or state a recording of the same "
+            "day without compensation"
         )
     return "\n".join(lines)
 

@@ -10,6 +10,7 @@ from ...base.sentences import unit_at_axis
 from ...diagnose.comparison import Comparison, residual_data
 from ...diagnose.recording import DiagnosedRecording
 from ..registry import shows
+from .carrier import CarryingVariable, carrier_of
 from .friction_curve import draw_friction_curve
 from .ladder import draw_ladder
 from .style import AFTER, BEFORE, MEASURED, house_style
@@ -42,7 +43,8 @@ def check_rows(data: Any) -> Any:
 
 def label_of(data: Any, name: str) -> str:
     """Name and unit of a variable of residual data, for an axis."""
-    return f"{name} ({unit_at_axis(data[name].attrs['units'])})"
+    shown = data[name].attrs
+    return f"{shown.get('label', name)} ({unit_at_axis(shown['units'])})"
 
 
 def draw_by_direction(ax: Axes, data: Any, over: str) -> None:
@@ -148,8 +150,11 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
         return _plot_joints(diagnosis)
     if diagnosis.kind:
         return _plot_friction_curve(diagnosis)
-    before = check_rows(residual_data(diagnosis.before.model, diagnosis.prepared))
-    after = check_rows(residual_data(diagnosis.model, diagnosis.prepared))
+    carrier = carrier_of(diagnosis, next(iter(diagnosis.model.bodies)))
+    before, after = (
+        _with_carrier(check_rows(residual_data(model, diagnosis.prepared)), carrier, diagnosis)
+        for model in (diagnosis.before.model, diagnosis.model)
+    )
     changed = len(diagnosis.rungs) > 1
     with plt.style.context(house_style()):
         figure, axes = plt.subplot_mosaic(
@@ -207,6 +212,15 @@ def _plot_friction_curve(diagnosis: Diagnosis) -> Figure:
         axes["v1"].set_ylim(axes["v0"].get_ylim())
         draw_ladder(axes["ladder"], diagnosis, of="the measured force")
     return figure
+
+
+def _with_carrier(data: Any, carrier: CarryingVariable, diagnosis: Diagnosis) -> Any:
+    """The data with the variable "carrier", beside the velocity; the position carries as well."""
+    if carrier.name == "velocity":
+        carrier = CarryingVariable("position")
+    axis = next(iter(diagnosis.model.bodies.values())).axis
+    attributes = {"units": data[carrier.name].attrs["units"], "label": carrier.label(axis)}
+    return data.assign(carrier=("sample", carrier.values(data), attributes))
 
 
 def _plot_joints(diagnosis: Diagnosis) -> Figure:
@@ -271,7 +285,7 @@ def _first_record(data: Any) -> Any:
 
 
 def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None:
-    for over, first, second in (("velocity", "v0", "v1"), ("position", "x0", "x1")):
+    for over, first, second in (("velocity", "v0", "v1"), ("carrier", "x0", "x1")):
         draw_by_direction(axes[first], before, over)
         axes[first].set_ylabel(label_of(before, "residual").replace("residual", "residual before"))
         if changed:

@@ -1,4 +1,4 @@
-"""Two graphs of one body, before and after: the residual over velocity, and the force in time.
+"""Two graphs of one body, before and after: the residual over what carries it, force in time.
 
 An axis has the unit prefix that suits its values: 0.012 m as 12 mm.
 """
@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from ...base.finding import Array, Graph, Series
 from ...base.sentences import unit_on_page as unit_text
 from ...base.units import unit_of
+from ..figures.carrier import CarryingVariable
 
-#: most points of a profile over velocity in each direction, and fewest samples of a point
+#: most points of a profile in each direction, and fewest samples of a point
 PROFILE, FEWEST = 24, 3
 #: part of the samples outside a band on each side
 TAIL = 0.1
@@ -40,6 +41,7 @@ class BodySamples:
     stretch: NDArray[np.intp]
     position: Array
     velocity: Array
+    command: Array
     direction: NDArray[np.int8]
     measured: Array
     residual: tuple[Array, ...]
@@ -49,23 +51,27 @@ class BodySamples:
         return replace(self, residual=tuple(self.residual[i] for i in rungs))
 
 
-def plot_over_velocity(rows: BodySamples, axis: str, force: Scaled) -> Graph:
-    """Mean residual over velocity on the first and last rung, with a band of 80 % of samples."""
-    speed = choose_prefix(unit_of("velocity", axis), size_of(rows.velocity))
+def plot_over_carrier(
+    rows: BodySamples, axis: str, force: Scaled, carrier: CarryingVariable
+) -> Graph:
+    """Mean residual over the carrier on the first and last rung, and 80 % of the samples."""
+    quantity = "force" if carrier.name == "command" else carrier.name
+    places = carrier.values(vars(rows))
+    scale = choose_prefix(unit_of(quantity, axis), size_of(places))
     series = [
         Series(
             name=name,
-            x=speed.factor * np.array([p[0] for p in profile]),
+            x=scale.factor * np.array([p[0] for p in profile]),
             y=force.factor * np.array([p[1] for p in profile]),
             kind="model",
             low=force.factor * np.array([p[2] for p in profile]),
             high=force.factor * np.array([p[3] for p in profile]),
         )
         for name, r in _first_and_last(rows.residual)
-        if (profile := _profile(rows, r))
+        if (profile := _profile(rows, places, r))
     ]
     label = f"residual force ({force.unit})"
-    return Graph(f"velocity ({speed.unit})", label, tuple(series))
+    return Graph(f"{carrier.label(axis)} ({scale.unit})", label, tuple(series))
 
 
 def _first_and_last(residual: tuple[Array, ...]) -> list[tuple[str, Array]]:
@@ -74,18 +80,20 @@ def _first_and_last(residual: tuple[Array, ...]) -> list[tuple[str, Array]]:
     return [("before", residual[0]), ("after", residual[-1])]
 
 
-def _profile(rows: BodySamples, residual: Array) -> list[tuple[float, float, float, float]]:
-    """Mean velocity, mean, low and high residual of groups of equal size in each direction."""
+def _profile(
+    rows: BodySamples, places: Array, residual: Array
+) -> list[tuple[float, float, float, float]]:
+    """Mean place, mean, low and high residual of groups of equal size in each direction."""
     groups = []
     for way in (-1, 1):
         this_way = np.flatnonzero(rows.direction == way)
         if len(this_way) < 10 * FEWEST:
             continue
-        this_way = this_way[np.argsort(rows.velocity[this_way], kind="stable")]
+        this_way = this_way[np.argsort(places[this_way], kind="stable")]
         for group in np.array_split(this_way, min(PROFILE, len(this_way) // FEWEST)):
             low, high = np.quantile(residual[group], (TAIL, 1.0 - TAIL))
             mean = float(np.mean(residual[group]))
-            groups.append((float(np.mean(rows.velocity[group])), mean, float(low), float(high)))
+            groups.append((float(np.mean(places[group])), mean, float(low), float(high)))
         groups.append((float("nan"),) * 4)  # the line breaks where the motion turns
     return groups
 

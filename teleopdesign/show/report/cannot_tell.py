@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from ...base.finding import Finding
 from ...base.sentences import (
     join_names,
@@ -175,19 +173,7 @@ def _open_parameters(diagnosis: Diagnosis) -> list[Finding]:
 
 def _find_correlated(fit: Fit) -> list[Finding]:
     """Pairs of parameters with such a correlation that only a combination of them is known."""
-    size = np.linalg.norm(fit.jacobian, axis=0)
-    moving = [i for i in range(len(fit.free)) if size[i] > 0]
-    columns = fit.jacobian[:, moving] / size[moving]
-    covariance = np.linalg.pinv(columns.T @ columns, rcond=1e-12, hermitian=True)
-    spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
-    correlation = covariance / np.outer(spread, spread)
-    pairs = [
-        (float(correlation[i, j]), fit.free[moving[i]], fit.free[moving[j]])
-        for i in range(len(moving))
-        for j in range(i)
-        if abs(correlation[i, j]) > TOGETHER
-    ]
-    pairs.sort(key=lambda p: (-abs(p[0]), p[1:]))
+    pairs = [(r, *names) for names, r in fit.correlations.items() if abs(r) > TOGETHER]
     return [
         Finding(
             topic="parameters known only together",

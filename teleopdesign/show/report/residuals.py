@@ -18,17 +18,19 @@ from ...base.units import unit_of
 from ...diagnose import Diagnosis
 from ...diagnose.comparison import residual_data
 from ...diagnose.evidence import SAME
+from ..figures.carrier import carrier_of
 from .before_and_after import (
     BodySamples,
     Scaled,
     choose_prefix,
     excerpt,
-    plot_over_velocity,
+    plot_over_carrier,
     size_of,
 )
 
 #: cells of a map along the travel and along velocity, and fewest samples in a cell that is shown
 CELLS, FEWEST = (40, 25), 3
+_COLUMNS = ("time", "position", "velocity", "command", "measured")
 #: intervals of a trace over time, each with its lowest and highest residual
 BUCKETS = 220
 #: least end of the colour scale, in rms of sensor noise, so that noise alone stays pale
@@ -56,6 +58,7 @@ class BodyView:
     """The residual of one body on every rung that changed it, on one scale.
 
     position, velocity: edges of the cells;  limit: mean residual at the ends of the colour scale
+    carrier: the variable that carries the effect, in words, of `over_carrier`
     noise: rms residual from sensor noise alone, of all bodies together
     time: s along the records shown, without gaps;  joints: times at which a new stretch begins
     """
@@ -72,7 +75,8 @@ class BodyView:
     limit: float
     steps: tuple[RungResidual, ...]
     excerpt: Graph
-    over_velocity: Graph
+    over_carrier: Graph
+    carrier: str = "velocity"
 
 
 def body_views(diagnosis: Diagnosis, names: tuple[str, ...]) -> tuple[BodyView, ...]:
@@ -102,7 +106,7 @@ def _list_changed_rungs(residual: tuple[Array, ...]) -> list[int]:
 
 def _rows(data: list[Any], body: str) -> BodySamples:
     chosen = (data[0]["body"].values == body) & data[0]["counts"].values
-    one = {n: data[0][n].values[chosen] for n in ("time", "position", "velocity", "measured")}
+    one = {n: data[0][n].values[chosen] for n in _COLUMNS}
     stretch = np.unique(data[0]["segment"].values[chosen], return_inverse=True)[1]
     step = np.diff(one["time"], prepend=one["time"][:1])
     step[np.flatnonzero(np.diff(stretch, prepend=stretch[:1]))] = 0.0
@@ -112,6 +116,7 @@ def _rows(data: list[Any], body: str) -> BodySamples:
         stretch=stretch,
         position=one["position"],
         velocity=one["velocity"],
+        command=one["command"],
         direction=data[0]["direction"].values[chosen],
         measured=one["measured"],
         residual=tuple(d["residual"].values[chosen] for d in data),
@@ -130,6 +135,7 @@ def _view(
     limit = _round_up(max([*largest, OUTSIDE * noise]))
     buckets = np.array_split(np.arange(len(rows.time)), min(BUCKETS, len(rows.time)))
     force = choose_prefix(unit_of("force", axis), size_of(rows.residual[0]))
+    carrier = carrier_of(diagnosis, body)
     steps = tuple(
         RungResidual(
             name=name,
@@ -155,7 +161,8 @@ def _view(
         limit=limit,
         steps=steps,
         excerpt=excerpt(rows, axis, diagnosis.bandwidth),
-        over_velocity=plot_over_velocity(rows, axis, force),
+        over_carrier=plot_over_carrier(rows, axis, force, carrier),
+        carrier=carrier.words,
     )
 
 

@@ -53,7 +53,7 @@ class Figures:
     ladder: Markup
     scales: tuple[Markup, ...]
     steps: tuple[tuple[Markup, ...], ...]
-    over_velocity: tuple[Markup, ...]
+    over_carrier: tuple[Markup, ...]
     excerpts: tuple[Markup, ...]
     findings: dict[tuple[str, int], Markup]
     joints: tuple[Figures, ...]
@@ -123,10 +123,10 @@ def figures_of(page: Page) -> Figures:
         ladder=ladder_figure(page.ladder, page.floor),
         scales=tuple(colour_scale(v) for v in page.views),
         steps=tuple(tuple(step_figure(v, k) for k in range(len(v.steps))) for v in page.views),
-        over_velocity=tuple(
+        over_carrier=tuple(
             graph_figure(
-                v.over_velocity,
-                _describe_figure(v.body, "mean residual over velocity"),
+                v.over_carrier,
+                _describe_figure(v.body, f"mean residual over {v.carrier}"),
                 width=WIDE,
             )
             for v in page.views

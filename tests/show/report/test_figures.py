@@ -34,7 +34,7 @@ VIEW = BodyView(
     limit=0.4,
     steps=STEPS,
     excerpt=EMPTY,
-    over_velocity=EMPTY,
+    over_carrier=EMPTY,
 )
 LADDER = (
     LadderLine("your model, re-estimated", "your model", 0.05, 0.08, 8.0),
