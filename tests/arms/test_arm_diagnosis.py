@@ -100,20 +100,19 @@ def test_a_hidden_effect_is_named_at_its_joint_and_the_answer_recomputes(tmp_pat
 
 def test_what_helps_further_at_a_joint_stands_in_the_answer_and_is_not_searched_anew():
     def joint(verdict, groups, more):
-        return SimpleNamespace(verdict=verdict, groups=groups, more_is_missing=more)
+        return SimpleNamespace(verdict=verdict, groups=groups, more_is_missing=more, kind="")
 
     joints = {
         "joint1": joint("model_adequate", (), False),
         "joint2": joint("effects_missing", (), True),
         "joint3": joint("undecided", ("bias", "spring"), True),
     }
-    assert _suggest_commands(SimpleNamespace(joints=joints), "answer.json") == [
-        "",
+    assert _suggest_commands(SimpleNamespace(joints=joints, kind=""), "answer.json") == [
         "where the model fails: teleopdesign describe answer.json --body joint2",
         "what to measure to distinguish them: teleopdesign next answer.json --body joint3",
         "where the model fails: teleopdesign describe answer.json --body joint3",
     ]
-    adequate = SimpleNamespace(joints={"joint1": joints["joint1"]})
+    adequate = SimpleNamespace(joints={"joint1": joints["joint1"]}, kind="")
     assert _suggest_commands(adequate, "answer.json") == []
 
 

@@ -110,6 +110,7 @@ def test_a_record_that_never_moved_has_a_page_without_a_next_experiment(short_ro
     ]
     undecided = SimpleNamespace(
         verdict="undecided",
+        kind="",
         joints={},
         groups=(),
         prepared=replace(prepared, stretches=tuple(still)),

@@ -64,6 +64,7 @@ def concluded(monkeypatch):
             "find_undetermined": lambda *_: (),
             "_beliefs": lambda *_: {},
             "check_error_on_all": lambda *_: None,
+            "free_form": lambda *_: None,
             "error_near_reversals": lambda model, _: model,  # to show of which model it is
         }
         for name, value in stubs.items():
@@ -71,8 +72,9 @@ def concluded(monkeypatch):
         monkeypatch.setattr(module, "why_silent", lambda *_: "")
         monkeypatch.setattr(module, "_evaluate_on_all", lambda fit, whole: on_whole(fit))
         search, windows = table.search(), object()
-        search.prepared = windows if on_whole else None
-        search.whole, search.experiment, search.seed = None, None, 0
+        search.whole = SimpleNamespace(is_curve=False)
+        search.prepared = windows if on_whole else search.whole
+        search.experiment, search.seed = None, 0
         search.progress = lambda line: None
         search.generator = lambda: None
         search.plan.omissions = lambda: ()

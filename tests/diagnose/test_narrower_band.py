@@ -96,6 +96,7 @@ class Ended:
     more_is_missing: bool
     left_out: tuple = ("pairs",)
     joints: tuple = ()
+    kind: str = ""
 
 
 def test_the_narrower_band_is_kept_where_its_final_model_leaves_far_less():

@@ -100,7 +100,7 @@ def test_a_rest_at_one_place_is_no_return_to_it():
 def test_an_effect_depends_on_the_position_if_its_law_is_another_one_elsewhere(name):
     of_place = {
         "spring", "hardening_spring", "cogging", "torque_ripple", "position_dependent_friction",
-        "gravity", "cogging_harmonic", "position_dependent_gain", "stops",
+        "gravity", "cogging_harmonic", "position_dependent_gain", "stops", "free_force",
     }  # fmt: skip
     assert depends_on_position(EFFECTS[name]) == (name in of_place)
 

@@ -334,19 +334,6 @@ def test_sixty_four_rows_of_a_second_are_a_record():
         read(np.arange(64) / 65.0)
 
 
-@pytest.mark.parametrize(("off", "is_even"), [(0.19, True), (0.21, False)])
-def test_steps_a_fifth_of_a_row_longer_are_those_of_an_even_clock(off, is_even):
-    from teleopdesign.measurement.record_clock import clock_of
-
-    t = np.arange(200) / 100.0
-    t[100] += off / 2 / 100.0
-    t[101:] += off / 100.0
-    t[101] += -off / 2 / 100.0 + off / 200.0
-    t[100] += off / 200.0
-    clock = clock_of(t, (slice(0, 200),), np.zeros(200, dtype=bool), "log.csv")
-    assert clock.exact == is_even
-
-
 @pytest.mark.parametrize(("lost", "stretches"), [(5, 1), (6, 2)])
 def test_five_lost_rows_are_filled_and_six_are_a_pause(lost, stretches):
     t = np.delete(np.arange(300) / 100.0, np.arange(100, 100 + lost))

@@ -126,6 +126,7 @@ def test_a_plan_hides_every_effect_of_the_catalogue_on_both_kinds_of_machine():
     others |= {"cogging_harmonic", "position_dependent_gain"}
     # tests/diagnose/test_ends_and_dead_zones.py
     others |= {"smoothed_coulomb", "stops", "actuator_dead_zone"}
+    others |= {n for n, e in EFFECTS.items() if e.free}  # no candidates
     for kind, wanted in (("device", set(EFFECTS) - contact), ("teleoperator", set(EFFECTS))):
         hidden = {c.effect for c in cases if c.kind == kind and c.level == "clear"}
         assert hidden >= wanted - others
