@@ -175,12 +175,10 @@ class ControlData:
     def _best(self, starts: Sequence[tuple[Placed, ...]]) -> ControlFit:
         """The best fit from the best start at each shift."""
         sums = [self.squares(one) for one in starts]
-        best = {s: min(range(len(starts)), key=lambda i: sums[i][s]) for s in self.shifts}
-        shift = _least({s: sums[i][s] for s, i in best.items()})
-        fits = {shift: self._refine(starts[best[shift]], shift)}
-        # a delay and a shift trade whole rows: the shift is right where no other leaves less
-        while (shift := _least(self.squares(fits[shift].placed))) not in fits:
-            fits[shift] = self._refine(starts[best[shift]], shift)
+        fits = {}
+        for shift in self.shifts:  # a delay fitted at a wrong shift is least there: fit at each
+            best = min(range(len(starts)), key=lambda i: sums[i][shift])
+            fits[shift] = self._refine(starts[best], shift)
         return fits[_least({shift: fit.squares for shift, fit in fits.items()})]
 
     def _refine(self, placed: Sequence[Placed], shift: int) -> ControlFit:
