@@ -26,7 +26,7 @@ ALGEBRAIC = [
     if EFFECTS[n].role in ("force", "friction_level")
     and not EFFECTS[n].states
     and not EFFECTS[n].channels()
-    and not EFFECTS[n].free  # splines: held to scipy's in tests/diagnose/test_free_forms.py
+    and not EFFECTS[n].free  # held to scipy in tests/effects/test_equations.py
     and SIGNALS["interaction_force"] not in EFFECTS[n].expression().free_symbols
 ]
 #: of the force's own terms: double precision through powers, exponentials and a difference
