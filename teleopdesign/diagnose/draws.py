@@ -45,7 +45,7 @@ def search_among_draws(
             return attempt
         new = base.coarse.model.with_effect(candidate.effect, at=candidate.at)
         starts = best_draws(new, prepared.coarse, base.coarse)
-        best = estimate_best_start(starts, prepared)
+        best = estimate_best_start(starts, [candidate.key], prepared)
         return candidate, min((fit, best), key=order)
 
     least = min((fit_squares(fit) for _, fit in attempts), default=0.0)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 from ..effects import Effect
 from ..measurement.prepare import Prepared
@@ -111,11 +112,17 @@ def estimate_from_starts(
     return estimate(best.model, prepared, effort=EFFORTS.fine if base is None else EFFORTS.near)
 
 
-def estimate_best_start(models: Sequence[Model], prepared: Prepared) -> Fit:
-    """A rough fit from the best of these starts, which are followed on few samples."""
+def estimate_best_start(
+    models: Sequence[Model], new: Sequence[tuple[str, str]], prepared: Prepared
+) -> Fit:
+    """A rough fit from the best of these starts, which are followed on few samples.
+
+    new: (effect, place) whose sum of squares has many local minima: better values are searched
+        nearby
+    """
     coarse = prepared.coarse
     best = min((follow_start(m, coarse, EFFORTS.rough) for m in models), key=squares_of)
-    return estimate(best.model, prepared, effort=EFFORTS.near)
+    return estimate(_jolt(best, new, coarse).model, prepared, effort=EFFORTS.near)
 
 
 def is_rugged(effect: Effect) -> bool:
@@ -281,3 +288,23 @@ def _best_stepped(
     solutions.sort(key=lambda f: f[:2])
     best = solutions[:kept] + [f for f in solutions[kept:] if promised and f[1] == 0]
     return [there for _, _, there in best]
+
+
+def _jolt(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) -> Solution:
+    """The best solution nearby, where the sum of squares has many shallow minima.
+
+    new: (effect, place) whose parameters are changed by factors, one at a time
+    """
+    free = free_parameters(best.model)
+    names = [n for effect, at in new for n in free if n.startswith(f"{at}.{effect}.")]
+    model, least = best.model, squares_of(best)
+    for _ in range(PLAN.sweeps):
+        before = least
+        for name, factor in product(names, PLAN.jolts):
+            jolted = model.with_values({name: model.parameters[name].value * factor})
+            solution = follow_start(jolted, prepared, EFFORTS.first_steps)
+            if squares_of(solution) < least:
+                least, model = squares_of(solution), solution.model
+        if least > (1.0 - PLAN.onward) * before:
+            break
+    return best if model is best.model else follow_start(model, prepared, EFFORTS.rough)

@@ -53,6 +53,13 @@ class SearchPlan:
     #: parts of the time by which a log may be late at which the user's model begins, too: 12 and
     #: 35 ms of 50. From none alone, a log late by 8 rows of 2 ms ended at one row
     late_starts: tuple[float, ...] = (0.25, 0.7)
+    #: factors on each parameter of an effect with rugged squares, from which a better place is
+    #: sought
+    jolts: tuple[float, ...] = (0.85, 1.18)
+    #: most sweeps of such jolts over the parameters
+    sweeps: int = 2
+    #: part of the squares that a sweep must take away for another to follow
+    onward: float = 0.1
     #: part of the squares before that the best candidate leaves at least where a gap is also sought
     #: among draws: there nothing explains the records. A lower limit searches more records twice
     unexplained: float = 0.1

@@ -133,7 +133,8 @@ def _fit_both(
         model = model.with_effect(one.effect, at=one.at)
     starts = [m for fit in fitted for m in _starts_from_kin(model, transmission, fit, search)]
     starts = starts or best_draws(model, search.prepared.coarse, coarse)
-    return estimate_best_start(starts, search.prepared)
+    new = (transmission.key, friction.key)
+    return estimate_best_start(starts, new, search.prepared)
 
 
 def _starts_from_kin(
