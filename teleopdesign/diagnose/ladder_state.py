@@ -68,6 +68,7 @@ class LadderSearch:
             self.prepared,
             among=among,
             body=body,
+            stated=self.stated,
             worth=worth,
             widely=widely,
             progress=lambda line: self.progress(line.within(f"step {step}")),

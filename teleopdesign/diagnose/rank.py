@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from ..base.errors import ModelError
 from ..measurement.prepare import Prepared
+from ..model import Model
 from .candidate_fits import ProgressLine, fit_each
 from .candidates import Candidate, bodies_with_measured_force, candidates
 from .cores import map_on_cores, one_thread_of_algebra
@@ -101,6 +102,7 @@ def rank_candidates(
     *,
     among: Collection[Candidate] | None = None,
     body: str | None = None,
+    stated: Model | None = None,
     worth: float | None = None,
     widely: bool = False,
     progress: Callable[[ProgressLine], None] | None = None,
@@ -110,6 +112,7 @@ def rank_candidates(
     base: the fitted model that may lack an effect
     among: the candidates to rank; None: all that the model could take
     body: the body whose candidates are ranked; None: all bodies
+    stated: the model as its user gave it; its values are used as starts too
     worth: part of the base's squares on the fit records below which a gain is not pursued; None:
         that of the criteria
     widely: where no candidate explains the records, draw further starts of gaps
@@ -125,7 +128,7 @@ def rank_candidates(
     wanted = {c.key for c in (possible if among is None else among)}
     here = {body} if body is not None else set(base.model.bodies)
     possible = tuple(c for c in possible if c.key in wanted and base.model.holder(c.at) in here)
-    start = base_of(base, prepared)
+    start = base_of(base, prepared, stated)
     fits = fit_each(possible, start, prepared, worth=worth, progress=progress)
     if widely:
         fits = search_among_draws(fits, start, prepared)

@@ -53,6 +53,9 @@ class SearchPlan:
     #: parts of the time by which a log may be late at which the user's model begins, too: 12 and
     #: 35 ms of 50. From none alone, a log late by 8 rows of 2 ms ended at one row
     late_starts: tuple[float, ...] = (0.25, 0.7)
+    #: part by which a user's value may be wrong: what moved further may have been led astray, and
+    #: starts from the user's value too
+    moved: float = 0.25
     #: factors on each parameter of an effect with rugged squares, from which a better place is
     #: sought
     jolts: tuple[float, ...] = (0.85, 1.18)

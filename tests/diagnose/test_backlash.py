@@ -94,7 +94,7 @@ def test_a_search_finds_a_heavy_and_a_light_tip(number, tmp_path):
     )
     base = estimate(stated, prepared)
     new = base.model.with_effect(BACKLASH, at=hidden["at"])
-    rough = estimate_from_starts(new, prepared, base)
+    rough = estimate_from_starts(new, prepared, base_of(base, prepared, stated))
     assert rough.fit_error < 1.3 * force_error(true, prepared.of("fit"))
 
 

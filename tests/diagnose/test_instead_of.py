@@ -198,6 +198,7 @@ def chains():
     return [
         (new, old, other.name)
         for new, effect in EFFECTS.items()
+        if not effect.free  # no step of a search adds it
         for old in effect.counts_as
         for other in EFFECTS.values()
         if old in other.needs and old not in other.parameters_of_others()
