@@ -18,6 +18,7 @@ from .candidates import make_starts
 from .criteria import CRITERIA
 from .effort import EFFORTS, Effort
 from .fit import Fit, estimate, fit_of, fit_squares, free_parameters
+from .further_starts import starts_at_values_of_user, with_what_they_need
 from .least_squares import sum_of_squares
 from .linear_start import linear_starts
 from .promise import Promises
@@ -96,7 +97,7 @@ def estimate_from_starts(
         curved = strength_of_new(model) is None
         kept = kept if curved else 1
         if curved:
-            models += _at_stated_values(models, base)
+            models += starts_at_values_of_user(models, base.coarse, base.stated)
         most = PLAN.wide if wide else PLAN.curved_predicted
         others = with_what_they_need(model, models, prepared) if curved else []
         models = _select_promising(model, models, coarse, base, most=most, worth=worth)
@@ -115,22 +116,6 @@ def estimate_from_starts(
     if base is not None and coarse is prepared:
         return fit_of(best, prepared)
     return estimate(best.model, prepared, effort=EFFORTS.fine if base is None else EFFORTS.near)
-
-
-def _at_stated_values(models: Sequence[Model], base: Base) -> list[Model]:
-    """The starts at the user's values; none where the base lies within users' usual errors.
-
-    While an effect is missing, other parameters move to values from which no search returns: a
-    heavy tip behind a gap ends at 38 % of the force, from the user's values at 6 %.
-    """
-    if base.stated is None:
-        return []
-    here, there = base.coarse.model.parameters, base.stated.parameters
-    pairs = [(here[n].value, there[n].value) for n in base.coarse.free if n in there]
-    if all(abs(value - before) <= PLAN.moved * abs(before) for value, before in pairs):
-        return []
-    values = {n: v.value for n, v in there.items() if n in models[0].parameters}
-    return [m.with_values(values) for m in models]
 
 
 def estimate_best_start(
@@ -166,28 +151,6 @@ def _sort_elements(best: Solution, prepared: Prepared) -> Solution:
 def with_parameters_of(model: Model, other: Model) -> Model:
     """The model with the parameters and record shifts of a model that has some of its effects."""
     return model.with_values(dict(other.parameters)).with_record_shift(other.record_shift)
-
-
-def with_what_they_need(model: Model, models: Sequence[Model], prepared: Prepared) -> list[Model]:
-    """The same starts with strengths of the size of the force, where the new effects need others.
-
-    Without the new effect, a fit may have taken the effect that it needs away: rigid friction does
-    not describe a bristle in which most of the motion takes place, and its level falls to zero.
-    """
-    values: dict[str, float] = {}
-    for name, at in model.absent:
-        body = model.body(at)
-        for needed in body.effect(name).needs:
-            strength = body.effect(needed).strength if body.has(needed) else None
-            full = f"{at}.{needed}.{strength}"
-            # another effect of its role may stand in for it; a contact's needs no start
-            value = model.parameters.get(full)
-            if value is None or value.fixed:
-                continue
-            size = prepared.scales[model.declared(full).quantity]
-            if value.value < PLAN.taken_away * size:
-                values[full] = size
-    return [m.with_values(values) for m in models] if values else []
 
 
 def from_smaller_strengths(

@@ -13,7 +13,8 @@ from diagnose.test_slip_elements import slip
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.blocks import Value
 from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.search import base_of, estimate_from_starts, with_what_they_need
+from teleopdesign.diagnose.further_starts import with_what_they_need
+from teleopdesign.diagnose.search import base_of, estimate_from_starts
 from teleopdesign.measurement.prepare import prepare
 
 pytestmark = pytest.mark.slow  # fits from many starts
