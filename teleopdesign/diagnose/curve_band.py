@@ -7,24 +7,17 @@ import numpy as np
 from ..measurement.filtering import Array
 from ..measurement.friction_curve import points_as_motion
 from ..realise.along_motion import residual_along
-from .fit import Fit
+from .fit import Fit, covariance_of
 
 
 def friction_at(fit: Fit, velocity: Array) -> tuple[Array, Array]:
     """Force (n,) that holds a body at these speeds (n,), and its standard error.
 
     fit: of a friction curve
-    The errors of the points count as independent, and as unequal in size (sandwich estimate).
     """
     (place,) = fit.model.bodies
     names = [fit.model.locate(name)[1] for name in fit.free]
     motion = points_as_motion(place, "", velocity, np.zeros(len(velocity)))
     left = residual_along(fit.model.bodies[place], motion, names).residual
-    jacobian, residual = fit.jacobian, fit.fit_residual
-    bread = np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-12, hermitian=True)
-    scores = jacobian * residual[:, None]
-    rows, p = jacobian.shape
-    covariance = bread @ (scores.T @ scores) @ bread * rows / max(rows - p, 1)
-    slopes = left.tangent * fit.scale[:, None]
-    variance = np.einsum("pn,pq,qn->n", slopes, covariance, slopes)
+    variance = np.einsum("pn,pq,qn->n", left.tangent, covariance_of(fit), left.tangent)
     return -left.value, np.sqrt(np.maximum(variance, 0.0))

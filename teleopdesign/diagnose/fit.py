@@ -81,10 +81,8 @@ class Fit(ByValue):
     @property
     def correlations(self) -> dict[tuple[str, str], float]:
         """Correlation of each pair of estimates that the records move, the largest first."""
-        size = np.linalg.norm(self.jacobian, axis=0)
-        moving = [i for i in range(len(self.free)) if size[i] > 0]
-        columns = self.jacobian[:, moving] / size[moving]
-        covariance = np.linalg.pinv(columns.T @ columns, rcond=1e-12, hermitian=True)
+        covariance, _, sensitive = _covariance(self.jacobian, self.fit_residual, self.fit_blocks)
+        moving = np.flatnonzero(sensitive)
         spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
         correlation = covariance / np.outer(spread, spread)
         pairs = {
@@ -269,20 +267,40 @@ def standard_errors(jacobian: Array, residual: Array, blocks: NDArray[np.intp]) 
     returns: (p,) standard errors; NaN where the residual does not depend on the parameter, and for
         all parameters where a search diverged until numbers overflow
     """
+    covariance, norm, sensitive = _covariance(jacobian, residual, blocks)
+    errors = np.full(jacobian.shape[1], np.nan)
+    errors[sensitive] = np.sqrt(np.maximum(np.diag(covariance), 0.0)) / norm
+    return errors
+
+
+def covariance_of(fit: Fit) -> Array:
+    """Covariance (p, p) of the estimates of a fit, as their standard errors have it, SI.
+
+    A parameter on which the residual does not depend counts as known.
+    """
+    scaled, norm, sensitive = _covariance(fit.jacobian, fit.fit_residual, fit.fit_blocks)
+    unit = fit.scale[sensitive] / norm
+    covariance = np.zeros((len(fit.free), len(fit.free)))
+    covariance[np.ix_(sensitive, sensitive)] = scaled * np.outer(unit, unit)
+    return covariance
+
+
+def _covariance(
+    jacobian: Array, residual: Array, blocks: NDArray[np.intp]
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """The sandwich estimate for columns of size one, these sizes, and which of the p have any.
+
+    Where a search diverged until numbers overflow, none has.
+    """
     p = jacobian.shape[1]
-    if p == 0:
-        return np.zeros(0)
-    norm = column_sizes(jacobian)
-    if not (np.isfinite(norm).all() and np.isfinite(residual).all()):
-        return np.full(p, np.nan)
+    norm = column_sizes(jacobian) if p else np.zeros(0)
     sensitive = norm > 0
+    if not p or not (np.isfinite(norm).all() and np.isfinite(residual).all()):
+        return np.zeros((0, 0)), np.zeros(0), np.zeros(p, dtype=bool)
     scaled = jacobian[:, sensitive] / norm[sensitive]
     bread = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12, hermitian=True)
     scores = np.zeros((int(blocks.max()) + 1, int(sensitive.sum())))
     np.add.at(scores, blocks, scaled * residual[:, None])
     count = len(scores)
     meat = scores.T @ scores * count / max(count - p, 1)
-    variance = np.diag(bread @ meat @ bread)
-    errors = np.full(p, np.nan)
-    errors[sensitive] = np.sqrt(np.maximum(variance, 0.0)) / norm[sensitive]
-    return errors
+    return bread @ meat @ bread, norm[sensitive], sensitive
