@@ -61,7 +61,8 @@ def _text_of(curve: CurveColumns, name: str) -> str:
     lines = [f"{name}: a friction curve; {curve.axis} axis"]
     for channel, column in curve.columns.items():
         lines.append(f'  {channel:<18} "{column}" in {curve.units[channel]}')
-    lines.append("guessed:")
+    if curve.guesses:
+        lines.append("guessed:")
     lines += [f"  {key}: {why}" for key, why in curve.guesses.items()]
     lines.append("    otherwise: --sample-rate HZ, --velocity COLUMN, --force COLUMN, --unit")
     return "\n".join(lines)

@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..base.errors import ExperimentError, quote, unknown
-from ..base.files import write_beside, write_text
+from ..base.files import write_text
 from ..base.toml import comment_text, inline_text, string_text
-from ..base.units import AXES, measures
+from ..base.units import AXES, measures, unit_of
 from .column_names import as_unit, likeness, unit_in_name
 from .doors._log import Log
 from .friction_curve import CURVE
+from .new_folder import copy_logs
 
 #: what a column may be: channel -> quantity of its name
 QUANTITIES = {"velocity": "velocity", "actuator_force": "actuator_force"}
@@ -103,10 +104,9 @@ def curve_columns(
     if torque_constant is not None:  # the column is a current
         written["actuator_force"] = None
     axis = axis or _axis_of(columns, written, file)
-    usual = {"prismatic": ("m/s", "N"), "revolute": ("rad/s", "N*m")}[axis]
-    for channel, unit in zip(columns, usual, strict=True):
+    for channel in columns:
         if written[channel] is None:
-            written[channel] = unit
+            written[channel] = unit_of(_KINDS[channel], axis)
             guesses[f"channels.{channel}.unit"] = "no unit is stated: SI"
     if torque_constant is not None:
         column = columns["actuator_force"]
@@ -149,14 +149,7 @@ def make_curve_folder(
 
     raises ExperimentError: the folder cannot be written
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for log in logs:
-            if log.resolve() != (folder / log.name).resolve():
-                with write_beside(folder / log.name) as part:
-                    part.write_bytes(log.read_bytes())
-    except OSError as problem:
-        raise ExperimentError(f"{folder.name}: cannot be written: {problem.strerror}") from None
+    copy_logs(logs, folder)
     lines = [f"kind = {string_text(CURVE)}", f"title = {string_text(title)}", ""]
     lines += ["[model.device]", f"axis = {string_text(curve.axis)}", "[model.device.effects]"]
     lines += [f"{name} = {{}}" for name in effects]

@@ -61,19 +61,7 @@ def make_folder(
         check_spans(spans, survey.duration, names)
     if not overwrite:
         require_new(folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for log in logs:
-            target = folder / log.name
-            if log.resolve() == target.resolve():
-                continue
-            if log.is_dir():
-                shutil.copytree(log, target)
-                continue
-            with write_beside(target) as part:
-                shutil.copyfile(log, part)
-    except OSError as problem:
-        raise ExperimentError(f"{folder.name}: cannot be written: {problem.strerror}") from None
+    copy_logs(logs, folder)
     records = _records(survey, names, spans)
     first = _first_values(survey, folder, records) if inertia is None else None
     if first is not None and not first.inertia > 0:
@@ -87,6 +75,23 @@ def make_folder(
     )
     write_text(folder / _FILE, text)
     return folder
+
+
+def copy_logs(logs: Sequence[Path], folder: Path) -> None:
+    """Copy logs into a folder, which is made; raises ExperimentError: it cannot be written."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for log in logs:
+            target = folder / log.name
+            if log.resolve() == target.resolve():
+                continue
+            if log.is_dir():
+                shutil.copytree(log, target)
+                continue
+            with write_beside(target) as part:
+                shutil.copyfile(log, part)
+    except OSError as problem:
+        raise ExperimentError(f"{folder.name}: cannot be written: {problem.strerror}") from None
 
 
 def require_new(folder: Path) -> None:
