@@ -25,12 +25,10 @@ from ..diagnose.fit import block_numbers, standard_errors
 from ..diagrams import Control
 from ..effects import Parameter
 from ..measurement.filtering import Array
-from .second_recording import DELAY, FILTER, GAIN, Key, SecondRecording, force_like
+from .second_recording import DELAY, FILTER, GAIN, SHAPE, Key, SecondRecording, force_like
 
 #: most numbers that are named: more than three at once were never told apart
 _MOST = 3
-#: quantities of parameters that give a law its shape; all others are strengths
-_SHAPE = ("angle", "position", "velocity", "time")
 ZERO = "zero"
 #: part of a command by which another is the same: what a reader sees as the same figure
 _SAME = 0.02
@@ -249,7 +247,7 @@ def _of_computer(on: SecondRecording) -> tuple[_Number, ...]:
                 name, value = f"{stage.name}.{n}", known[f"{stage.name}.{n}"]
                 lengths += [value] if p.quantity == "position" and n != ZERO and value else []
                 scaled += force_like(p) and value != 0
-                if p.quantity not in _SHAPE and value:
+                if p.quantity not in SHAPE and value:
                     numbers.append(_strength((block.name, name), value, p, on))
         zeros = [n for n in known if n.rpartition(".")[2] == ZERO]
         numbers += [_zero((block.name, n), known[n], min(lengths), on) for n in zeros]
@@ -268,7 +266,7 @@ def _of_device(on: SecondRecording) -> tuple[_Number, ...]:
     numbers = []
     for name, known in on.body.parameters.items():
         declared = on.body.parameter(name)
-        if declared.quantity not in _SHAPE and known.value:
+        if declared.quantity not in SHAPE and known.value:
             stderr = known.stderr if np.isfinite(known.stderr) else 0.0
             key = (on.mover.name, name)
             numbers.append(_strength(key, known.value, declared, on, stderr=stderr))

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from ..base.errors import ModelError
 from ..base.frozen import ByValue
-from ..blocks import Body
+from ..blocks import NINETY_FIVE, Body
 from ..diagrams import Diagram
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import prepare
@@ -86,7 +86,7 @@ def error_interval(
     known = spread[np.isfinite(spread)]
     if not known.size:
         return math.nan, math.nan
-    middle, half = float(np.mean(known)), 1.96 * float(np.std(known))
+    middle, half = float(np.mean(known)), NINETY_FIVE * float(np.std(known))
     return max(middle - half, 0.0), middle + half
 
 

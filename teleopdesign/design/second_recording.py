@@ -33,9 +33,13 @@ DELAY, FILTER = (COMPUTER, "delay"), (COMPUTER, "velocity_bandwidth")
 GAIN = "gain"
 
 
+#: quantities of parameters that give a law its shape; all others are strengths
+SHAPE = ("angle", "position", "velocity", "time")
+
+
 def force_like(parameter: Parameter) -> bool:
     """Whether the output of a law grows with the parameter as with its force."""
-    return parameter.quantity not in ("angle", "position", "velocity", "time", "dimensionless")
+    return parameter.quantity not in (*SHAPE, "dimensionless")
 
 
 @dataclass(frozen=True)

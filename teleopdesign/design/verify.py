@@ -22,7 +22,7 @@ from ..base.errors import ExperimentError, ModelError, did_you_mean
 from ..base.files import write_text
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
-from ..blocks import Body
+from ..blocks import NINETY_FIVE, Body
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.noise_floor import noise_floor
 from ..diagrams import Diagram, four_cases, read_diagram
@@ -172,7 +172,7 @@ def verify(
     floor = _floor(on, plan.place)
     left = math.hypot(floor, plan.unexplained)
     sizes = [float(np.std(one)) for one in drawn]
-    middle, half = float(np.mean(sizes)), 1.96 * float(np.std(sizes)) + left
+    middle, half = float(np.mean(sizes)), NINETY_FIVE * float(np.std(sizes)) + left
     off = without and SecondRecording.of(on.diagram, plan.sampling, without, plan.place)
     return Verification(
         case,
