@@ -132,8 +132,6 @@ def run(options: argparse.Namespace) -> int:
         write_page(diagnosis, options.report)
     say_written(options.report, options.json, options.predictions, options.figure)
     source = shell_word(options.json or folder)
-    if not options.verbose and options.report is None:
-        print("how the log was read, reasons and the whole model: --verbose, or --report F.html")
     for line in _suggest_commands(diagnosis, source):
         print(line)
     return 0

@@ -1,7 +1,8 @@
 """The first screen of a diagnosis: the verdict, the errors behind it, and what was set aside.
 
-Twelve lines with the next command; values of the effects give way where the ladder is long. The
-whole ladder with its reasons is the registry's "text".
+Some twelve lines with the next commands: where the ladder is long, the values of its effects give
+way, then the rows between the first and the last. The whole ladder with its reasons is the
+registry's "text".
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ WIDTH = 100
 NAME = 42
 #: lines of a screen that has room for the values of the effects
 LINES = 9
+#: rows of a ladder that are shown; of a longer one the first and the last
+ROWS = 3
 
 
 def brief_text(diagnosis: Diagnosis) -> str:
@@ -40,17 +43,19 @@ def brief_text(diagnosis: Diagnosis) -> str:
         lines += [textwrap.shorten(f"left out: {diagnosis.left_out[-1]}", WIDTH)]
     elif diagnosis.left_out:
         lines += textwrap.wrap(f"left out: {'; '.join(diagnosis.left_out)}", WIDTH)
-    if more := _more(diagnosis):
-        lines.append(f"not shown: {more}")
-    return "\n".join(lines)
+    more = _more(diagnosis) or "how the log was read, and the whole model"
+    return "\n".join([*lines, f"not shown: {more} (--verbose, or --report F.html)"])
 
 
 def _body(diagnosis: Diagnosis, *, with_values: bool) -> Iterator[str]:
     """Lines of one body, or of two: verdict, ladder, floor."""
     yield from textwrap.wrap(sentence(diagnosis), WIDTH)
     yield f"{'':<{NAME}}{'fit error':>10}{name_of_error(diagnosis):>15}"
-    for row in diagnosis.rungs:
+    rungs, between = diagnosis.rungs, len(diagnosis.rungs) - ROWS
+    for row in rungs if with_values or between <= 0 else (rungs[0], rungs[-1]):
         name = "your model, re-estimated" if row.added is None else f"+ {row.title}"
+        if row.added is not None and not with_values and between > 0:
+            name = f"with all {len(rungs) - 1} effects of the ladder"
         yield f"{name:<{NAME}}{100 * row.fit_error:>9.2f}%{100 * row.check_error:>14.2f}%"
         if row.added is not None and with_values:
             begin = f"{row.added.at}.{row.added.effect.name}."
@@ -81,7 +86,7 @@ def _arm(diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def _more(diagnosis: Diagnosis) -> str:
-    """What the long text says in addition, counted; "": no more than the model."""
+    """What the long text says in addition, counted; "": no more than it always does."""
     parts = list(diagnosis.joints.values()) or [diagnosis]
     counts = {
         "effects not accepted": sum(len(one.not_accepted) for one in parts),
