@@ -66,3 +66,25 @@ def test_a_design_starts_from_the_identified_delay_and_hand(diagnosis):
     assert stated.delay == 0.01
     made = td.design(diagnosis)
     assert made.place == "Z_M" and made.assumptions.load == pytest.approx(hand)
+
+
+@pytest.mark.slow
+def test_every_cut_has_a_ranking_and_every_body_a_description(folder):
+    experiment = td.load_experiment(folder)
+    ranked = td.rank(experiment)
+    assert set(ranked) == {"Z_M", "Z_H", "R_A"}
+    assert ranked["R_A"].accepted.added.key == ("delay", "computer")
+    assert set(td.describe(experiment)) == {"Z_M", "Z_H"}
+
+
+@pytest.mark.slow
+def test_the_commands_describe_and_design_take_a_saved_answer(diagnosis, folder, tmp_path, capsys):
+    path = tmp_path / "saved.json"
+    write_answer(diagnosis, path)
+    described = tmp_path / "left.json"
+    assert main(["describe", str(path), "--json", str(described)]) == 0
+    text = capsys.readouterr().out
+    assert "\nZ_M\n" in text and "\nZ_H\n" in text and described.is_file()
+    assert main(["design", str(path), "--output", str(tmp_path / "made")]) == 0
+    assert "expected force error" in capsys.readouterr().out
+    assert (tmp_path / "made").is_dir() and any((tmp_path / "made").iterdir())
