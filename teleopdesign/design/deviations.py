@@ -192,10 +192,10 @@ def deviations_of(
         commands = [s.motion.command for s in on.stretches] if on.has_command else None
         if commands is None:
             late, commands = values.get(_force_delay(on), 0.0), on.commands(values)
-        parts = on.left(commands, body, late=late)
+        parts = on.left_by(commands, body, late=late)
         if without is not None:
             off = [s.motion.command for s in without.stretches]
-            parts += without.left(off, body, late=on.sampling.delay)
+            parts += without.left_by(off, body, late=on.sampling.delay)
         return np.concatenate(parts)
 
     if without is not None:
@@ -222,7 +222,7 @@ def _lateness_of_log(on: SecondRecording, blocks: NDArray[np.intp]) -> float:
     recorded = [on.low(i, s.motion.command) for i, s in enumerate(on.stretches)]
     written = [s.motion.command for s in on.stretches]
     delay = on.sampling.delay
-    now, later = (np.concatenate(on.left(written, late=late)) for late in (0.0, delay))
+    now, later = (np.concatenate(on.left_by(written, late=late)) for late in (0.0, delay))
     if (
         abs(gain_score(now, later, blocks) - gain_score(later, now, blocks))
         >= CRITERIA.significance

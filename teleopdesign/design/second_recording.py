@@ -125,7 +125,7 @@ class SecondRecording:
         stretch = self.stretches[number]
         return stretch.motion.lowpassed(samples)[stretch.keep]
 
-    def left(
+    def left_by(
         self, commands: list[Array], body: Body | None = None, *, late: float = 0.0
     ) -> list[Array]:
         """Force that body and command leave unexplained, low-passed, on the samples that count.

@@ -165,7 +165,7 @@ def verify(
     hand, commands = np.concatenate(on.hand()), on.commands()
 
     def predicted(body: Body, commands: list[Array]) -> Array:
-        return hand - np.concatenate(on.left(commands, body))
+        return hand - np.concatenate(on.left_by(commands, body))
 
     drawn = [predicted(body, commands) for body in _drawn_bodies(on)]
     alone = predicted(on.body, [np.zeros(len(u)) for u in commands])

@@ -21,11 +21,11 @@ def each_ranking_once():
     """What a ranking depends on is in its arguments: moves that ask for the same one share it."""
     rank, kept = ladder_state.rank_candidates, {}
 
-    def remember(base, prepared, *, among, progress, **rest):
-        whose = (base, prepared)
+    def remember(base, prepared, *, among, stated, progress, **rest):
+        whose = (base, prepared, stated)
         key = (*map(id, whose), among and frozenset(among), *sorted(rest.items()))
         if key not in kept:  # beside what it was made of, so that no new object has the same id
-            of = {"among": among, "progress": progress}
+            of = {"among": among, "stated": stated, "progress": progress}
             kept[key] = whose, rank(base, prepared, **of, **rest)
         return kept[key][1]
 

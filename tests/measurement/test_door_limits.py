@@ -14,7 +14,7 @@ from scipy.io import savemat
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.column_names import bare_name, unit_in_name
-from teleopdesign.measurement.doors import text
+from teleopdesign.measurement.doors import _stray_lines, text
 from teleopdesign.measurement.doors._cells import is_number, stamps_in_texts, stamps_of
 from teleopdesign.measurement.doors._log import LONGEST_NAME, join_names, part, parts_of
 from teleopdesign.measurement.doors.text import open_text
@@ -161,6 +161,7 @@ def test_cells_one_by_one_take_no_ten_times_the_memory_of_their_numbers(tmp_path
     rows, width = 20_000, 3
     path.write_text("t,u,x\n1,,2\n" + "".join(f"{k}.125,{k}.25,{k}.5\n" for k in range(rows)))
     monkeypatch.setattr(text, "_ROWS", 500)
+    monkeypatch.setattr(_stray_lines, "_BLOCK", 500)
     tracemalloc.start()
     try:
         columns_of(path)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..diagnose.text import name_of_error
 from .style import AFTER, BEFORE
 
 if TYPE_CHECKING:
@@ -43,4 +44,4 @@ def draw_ladder(ax: Axes, diagnosis: Diagnosis, *, of: str) -> None:
     ax.set_yticks(rows, names)
     ax.invert_yaxis()
     ax.set_xlim(0, 1.15 * max(*errors, floor))
-    ax.set_xlabel(f"check error (% of {of})")
+    ax.set_xlabel(f"{name_of_error(diagnosis)} (% of {of})")
