@@ -14,6 +14,15 @@ from numpy.typing import NDArray
 from ..base.machine import compile_and_keep
 from .filtering import CONTINUED, Array
 
+#: decay of the influence of a row on the filter's output that counts as complete: below rounding
+NOTHING = 1e-18
+#: share of the largest influence of a row on the output; rows with less influence count as apart,
+#: which changes a gain by some thousandths
+APART = 1e-3
+#: if windows cover more than this share of a record, the whole record is filtered: each window
+#: costs a call
+MOST_SHARE = 0.7
+
 
 @lru_cache(maxsize=64)
 def sections(cutoff: float, sample_time: float) -> tuple[Array, Array]:
@@ -129,3 +138,71 @@ def zero_phase(
     filter_both_ways(side_by_side, extended, *sections(cutoff, sample_time))
     filtered = extended[m : m + n] if at is None else extended[m + at]
     return np.ascontiguousarray(filtered[:, : len(rows)].T).reshape(*y.shape[:-1], -1)
+
+
+@lru_cache(maxsize=16)
+def reach(cutoff: float, sample_time: float) -> int:
+    """Rows after which the influence of one row on the filter's output is below rounding."""
+    sos, _ = sections(cutoff, sample_time)
+    slowest = max(float(np.abs(np.roots(section[3:])).max()) for section in sos)
+    return int(np.ceil(np.log(NOTHING) / np.log(slowest)))
+
+
+@lru_cache(maxsize=16)
+def response(cutoff: float, sample_time: float) -> Array:
+    """Magnitude of a row's influence on the output 0, 1, 2 ... rows away, as far as `APART`."""
+    far = reach(cutoff, sample_time)
+    impulse = np.zeros(2 * far + 1)
+    impulse[far] = 1.0
+    influence = np.abs(zero_phase(impulse, cutoff, sample_time)[far:])
+    return influence[: 1 + int(np.flatnonzero(influence > APART * influence[0])[-1])]
+
+
+@compile_and_keep
+def gains(rows: NDArray[np.intp], n: int, response: Array) -> Array:
+    """Bound of the filter's gain for changes at these rows alone, one for each row.
+
+    rows: in order, of n samples;  response: see `response`
+    Rows that are apart from others form groups; a group has the gain of its row with the largest
+    sum of influences (Gershgorin), at most 1. Rows near an end of the record have gain 1.
+    """
+    count, far = len(rows), len(response)
+    bounds = np.ones(count)
+    begin = 0
+    while begin < count:
+        end = begin + 1
+        while end < count and rows[end] - rows[end - 1] < far:
+            end += 1
+        largest = 1.0 if rows[begin] < far or rows[end - 1] >= n - far else 0.0
+        first = begin
+        for i in range(begin, end):
+            if largest >= 1.0:
+                break
+            while rows[i] - rows[first] >= far:
+                first += 1
+            total, j = 0.0, first
+            while j < end and rows[j] - rows[i] < far:
+                total += response[abs(rows[j] - rows[i])]
+                j += 1
+            largest = max(largest, total)
+        bounds[begin:end] = min(largest, 1.0)
+        begin = end
+    return bounds
+
+
+def windows(rows: NDArray[np.intp], n: int, m: int, reach: int) -> list[tuple[int, int]]:
+    """Windows (from, to) of n samples outside of which these rows have no influence on each other.
+
+    rows: in order;  m: samples by which the record is continued at each end;  reach: see `reach`
+    One window covers all samples if little would be left out.
+    """
+    apart = np.flatnonzero(np.diff(rows) > 2 * reach)
+    begins = np.maximum(rows[np.append(0, apart + 1)] - reach, 0)
+    ends = np.minimum(rows[np.append(apart, -1)] + reach + 1, n)
+    if begins[0] == 0:  # the continuation there mirrors the first m rows
+        ends[0] = max(ends[0], min(m + 1, n))
+    if ends[-1] == n:  # and here the last m rows
+        begins[-1] = min(begins[-1], max(n - 1 - m, 0))
+    if np.any(begins[1:] < ends[:-1]) or (ends - begins).sum() > MOST_SHARE * n:
+        return [(0, n)]
+    return list(zip(begins.tolist(), ends.tolist(), strict=True))

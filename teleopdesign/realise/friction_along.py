@@ -24,15 +24,14 @@ from ..blocks import Body
 from ..effects import SIGNALS, sort_by_action
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
-from ..measurement.zero_phase import filter_both_ways, lanes, margin, sections
-from ..measurement.zero_phase_spans import (
-    connect_spans,
-    crossings,
-    filter_spans,
+from ..measurement.zero_phase import (
+    filter_both_ways,
     gains,
+    lanes,
+    margin,
     reach,
     response,
-    spans_of,
+    sections,
     windows,
 )
 from .scan import driven_scan
@@ -163,33 +162,29 @@ def _balance(
     left: Array,
     open_rows: tuple[NDArray[np.intp], Array],
     there: Array,
-    spans: NDArray[np.intp],
     m: int,
-    filters: tuple[Array, Array, Array, Array],
+    filters: tuple[Array, Array],
 ) -> Array:
     """Friction at the rows where its bounds differ; columns: the value, then its tangents.
 
     left: needed less friction at all samples, changed in place
     open_rows: indices of these rows, and the length of the steps there over the low-passed residual
     there: (3, rows, columns), needed force at these rows, least and largest friction
-    spans: of `spans_of` these rows;  m: samples by which records are continued
-    filters: as `filter_spans` takes them
+    m: samples by which records are continued;  filters: of `sections`
     """
     n, r = left.shape
     whole = r - r % 4
-    (rows, lengths), (sos, steady, _, _) = open_rows, filters
+    (rows, lengths), (sos, steady) = open_rows, filters
     needed = there[0]
     extended = np.zeros((n + 2 * m, r))
     friction: Array = np.zeros_like(needed)
     smooth, ahead = np.zeros_like(needed), needed.copy()
     momentum, carried = 1.0, 0.0
     for turn in range(STEPS + 1):
-        if turn == 1:
-            filter_both_ways(left, extended, sos, steady)
-            left[:] = 0.0  # from now on: only the change from one step to the next
-        elif turn > 1:
-            filter_spans(left, extended, spans, filters)
         if turn > 0:
+            filter_both_ways(left, extended, sos, steady)
+            if turn == 1:
+                left[:] = 0.0  # from now on: only the change from one step to the next
             later = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
             carried = (momentum - 1.0) / later
             momentum = later
@@ -262,15 +257,14 @@ class _Window:
 
     rows: indices of its open rows within it;  lengths: of their steps
     m: samples by which it is continued
-    spans: of `spans_of` these rows;  filters: as `filter_spans` takes them
+    filters: of `sections`
     """
 
     here: slice
     rows: NDArray[np.intp]
     lengths: Array
     m: int
-    spans: NDArray[np.intp]
-    filters: tuple[Array, Array, Array, Array]
+    filters: tuple[Array, Array]
 
 
 # most models of a search have their open rows where the readings show no motion: the same ones
@@ -285,10 +279,8 @@ def _list_windows(is_open: bytes, bandwidth: float, sample_time: float) -> tuple
         mine = rows[(rows >= first) & (rows < last)] - first
         # a window between others has no effect of its ends at the open rows
         ends = min(m if first == 0 or last == n else 1, last - first - 1)
-        spans = spans_of(mine, last - first, ends, bandwidth * sample_time)
-        filters = (*sections(*of_filter), *connect_spans(spans, *crossings(*of_filter)))
         lengths = 1.0 / gains(mine, last - first, response(*of_filter))
-        listed.append(_Window(slice(first, last), mine, lengths, ends, spans, filters))
+        listed.append(_Window(slice(first, last), mine, lengths, ends, sections(*of_filter)))
     return tuple(listed)
 
 
@@ -299,5 +291,5 @@ def _friction_at_open_rows(needed: Traced, low: Traced, high: Traced, window: _W
     there = np.zeros((3, len(rows), lanes(count)))
     for columns, signal in zip(there, (needed, low, high), strict=True):
         _fill_columns(columns, signal, rows)
-    friction = _balance(left, (rows, window.lengths), there, window.spans, window.m, window.filters)
+    friction = _balance(left, (rows, window.lengths), there, window.m, window.filters)
     return friction[:, :count].T

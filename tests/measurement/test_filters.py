@@ -5,8 +5,7 @@ import pytest
 from scipy.signal import butter, sosfiltfilt
 
 from teleopdesign.measurement.filtering import spectrum
-from teleopdesign.measurement.zero_phase import margin, zero_phase
-from teleopdesign.measurement.zero_phase_spans import windows
+from teleopdesign.measurement.zero_phase import margin, windows, zero_phase
 
 
 @pytest.mark.parametrize("signals", [1, 3])

@@ -4,19 +4,10 @@ import itertools
 
 import numpy as np
 import pytest
-from scipy.signal import butter, sosfilt, sosfiltfilt
+from scipy.signal import butter, sosfiltfilt
 
-from teleopdesign.measurement import zero_phase, zero_phase_spans
-from teleopdesign.measurement.zero_phase import lanes, margin, sections
-from teleopdesign.measurement.zero_phase_spans import (
-    LEAST_CUTOFF,
-    NEAR,
-    crossings,
-    reach,
-    response,
-    spans_of,
-    windows,
-)
+from teleopdesign.measurement import zero_phase
+from teleopdesign.measurement.zero_phase import lanes, margin, reach, response, sections, windows
 
 H = 1e-3
 
@@ -24,10 +15,9 @@ H = 1e-3
 @pytest.fixture
 def plain(monkeypatch):
     """No compiled function: each one in Python."""
-    for module in (zero_phase, zero_phase_spans):
-        for name, value in list(vars(module).items()):
-            if hasattr(value, "py_func"):
-                monkeypatch.setattr(module, name, value.py_func)
+    for name, value in list(vars(zero_phase).items()):
+        if hasattr(value, "py_func"):
+            monkeypatch.setattr(zero_phase, name, value.py_func)
 
 
 def by_scipy(y, cutoff, m):
@@ -41,84 +31,6 @@ def test_forward_and_backward_is_the_filter_of_scipy(plain, n, m, signals):
     whole = np.full((n + 2 * m, signals), np.nan)
     zero_phase.filter_both_ways(y, whole, *sections(40.0, H))
     assert whole[m : m + n] == pytest.approx(by_scipy(y, 40.0, m), rel=1e-9, abs=1e-12)
-
-
-@pytest.mark.parametrize(
-    "rows",
-    [[0], [69], [34], [0, 1, 2, 69], [3, 40], [21, 48], [18, 19, 51, 66], [25, 45, 47], [68, 69]],
-)
-def test_spans_of_a_record_are_filtered_as_scipy_filters_all_of_it(plain, rows):
-    n, m, cutoff = 70, 20, 60.0
-    y = np.zeros((n, 2))
-    y[rows] = np.random.default_rng(4).normal(size=(len(rows), 2))
-    known = sections(cutoff, H)
-    spans = spans_of(np.array(rows), n, m, cutoff * H)
-    filters = (*known, *zero_phase_spans.connect_spans(spans, *crossings(cutoff, H)))
-    spanned = np.full((n + 2 * m, 2), np.nan)
-    zero_phase_spans.filter_spans(y, spanned, spans, filters)
-    expected = by_scipy(y, cutoff, m)[rows]
-    assert spanned[m + np.array(rows)] == pytest.approx(expected, rel=1e-9, abs=1e-12)
-
-
-def test_powers_cross_as_many_rows_as_they_say(plain):
-    """Free states after 1, 2, 4, 8 rows without input, and what their output adds on its way."""
-    crossings.cache_clear()
-    free, back = crossings(50.0, H)
-    crossings.cache_clear()
-    sos = sections(50.0, H)[0]
-    for k in range(4):
-        for i, unit in enumerate(np.eye(4)):
-            output, states = sosfilt(sos, np.zeros(2**k), zi=unit.reshape(2, 2))
-            assert free[k][:, i] == pytest.approx(states.reshape(-1), rel=1e-9, abs=1e-14)
-            _, added = sosfilt(sos, output[::-1], zi=np.zeros((2, 2)))
-            assert back[k][:, i] == pytest.approx(added.reshape(-1), rel=1e-9, abs=1e-14)
-    assert len(free) == len(back) == 40 and not free[-1].any()
-
-
-@pytest.mark.parametrize("rows", [0, 1, 2, 3, 6, 13])
-def test_any_number_of_rows_is_crossed_by_powers_of_two(plain, rows):
-    free, back = crossings(50.0, H)
-    step, swing = np.zeros((4, 4)), np.zeros((4, 4))
-    zero_phase_spans._cross(rows, step, swing, free, back)
-    assert step == pytest.approx(np.linalg.matrix_power(free[0], rows), rel=1e-9, abs=1e-14)
-    expected = sum(
-        (
-            np.linalg.matrix_power(free[0], k) @ back[0] @ np.linalg.matrix_power(free[0], k)
-            for k in range(rows)
-        ),
-        np.zeros((4, 4)),
-    )
-    assert swing == pytest.approx(expected, rel=1e-9, abs=1e-14)
-
-
-N, M = 90, 12
-
-
-@pytest.mark.parametrize(
-    "rows",
-    [
-        *([k] for k in (0, 1, 11, 12, 13, 76, 77, 78, 88, 89)),
-        [0, 89], [12, 77], [20, 37], [20, 38], [20, 21, 22, 60], [1, 88],
-    ],
-)  # fmt: skip
-def test_spans_hold_exactly_what_the_continued_record_has_of_these_rows(rows):
-    """The continuation of numpy for each row alone; first and last sample always belong to it."""
-    changed = np.zeros(N + 2 * M, dtype=bool)
-    changed[[0, -1]] = True
-    for row in rows:
-        unit = np.zeros(N)
-        unit[row] = 1.0
-        changed |= np.pad(unit, M, mode="reflect", reflect_type="odd") != 0
-    places = np.flatnonzero(changed).tolist()
-    expected = [[places[0], places[0] + 1]]
-    for place in places[1:]:
-        if place - expected[-1][1] <= NEAR:
-            expected[-1][1] = place + 1
-        else:
-            expected.append([place, place + 1])
-    assert spans_of(np.array(rows), N, M, 0.1).tolist() == expected
-    assert spans_of(np.array(rows), N, M, LEAST_CUTOFF).tolist() == expected
-    assert spans_of(np.array(rows), N, M, 0.99 * LEAST_CUTOFF).tolist() == [[0, N + 2 * M]]
 
 
 @pytest.mark.parametrize("cutoff", [20.0, 150.0])
@@ -167,9 +79,9 @@ def gains_by_matrix(rows, n, response):
 )  # fmt: skip
 def test_gains_of_rows_are_bounded_group_by_group(plain, rows):
     answer = [0.3, 0.15, 0.1]
-    bounds = zero_phase_spans.gains(np.array(rows), 40, np.array(answer))
+    bounds = zero_phase.gains(np.array(rows), 40, np.array(answer))
     assert bounds == pytest.approx(gains_by_matrix(rows, 40, answer))
-    large = zero_phase_spans.gains(np.array(rows), 40, np.array([0.9, 0.4, 0.2]))
+    large = zero_phase.gains(np.array(rows), 40, np.array([0.9, 0.4, 0.2]))
     assert large == pytest.approx(gains_by_matrix(rows, 40, [0.9, 0.4, 0.2]))
 
 

@@ -5,8 +5,7 @@ import pytest
 from scipy.optimize import lsq_linear
 from scipy.signal import sosfilt
 
-from teleopdesign.measurement.zero_phase import sections, zero_phase
-from teleopdesign.measurement.zero_phase_spans import gains, response
+from teleopdesign.measurement.zero_phase import gains, response, sections, zero_phase
 from teleopdesign.realise.friction_along import STEPS, balance_within_bounds
 from teleopdesign.realise.traced import Traced, constant
 
