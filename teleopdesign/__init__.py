@@ -148,8 +148,8 @@ if TYPE_CHECKING:
     from .frequency import measured_impedance as measured_impedance
     from .measurement import Experiment as Experiment
     from .measurement import Record as Record
-    from .measurement.curve_from_arrays import friction_curve as friction_curve
     from .measurement.from_arrays import experiment as experiment
+    from .measurement.new_curve import friction_curve as friction_curve
     from .measurement.recordings import fetch as fetch
     from .model import Model as Model
     from .next_experiment import propose as propose_experiment

@@ -16,8 +16,7 @@ from ..measurement.channel import Channel, LogLayout, channel_from, frequency_fr
 from ..measurement.experiment import Experiment, folder_of_experiment
 from ..measurement.experiment import load_experiment as load_body_experiment
 from ..measurement.from_arrays import log_of
-from ..measurement.record import cut_to
-from ..measurement.record_entries import record_entries
+from ..measurement.record import cut_to, record_entries
 from ..measurement.tables import columns_of, read_columns
 from .diagram_experiment import DiagramExperiment, RecordedLog, StatedComputer, body_of_axis
 

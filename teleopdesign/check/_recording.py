@@ -16,8 +16,7 @@ from ..base.units import unit_of
 from ..measurement.channel import BODY_QUANTITIES, Channel
 from ..measurement.description import ONE_BODY
 from ..measurement.encoder import reading_step
-from ..measurement.excerpt import excerpt
-from ..measurement.experiment import Experiment
+from ..measurement.experiment import Experiment, excerpt
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, prepare
 from ..measurement.record import Record

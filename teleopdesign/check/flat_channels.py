@@ -11,15 +11,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..base.finding import Finding
-from ..measurement.encoder import reading_noise
+from ..measurement.encoder import STEPS, reading_noise
 from ..measurement.filtering import Array
-from ..measurement.repeated_rows import STEPS, runs_of, stuck_stretches
+from ..measurement.repeated_rows import runs_of, stuck_stretches
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
-#: a value counts as a limit if the signal arrives there so often while it moves
+#: a value counts as a limit if the signal arrives there so often while it moves, and stays there
+#: for so many samples
 VISITS = 3
-#: fewest samples that the signal stays at the limit
-LASTS = 3
 #: deceleration before the arrival, relative to the speed, above which the body stopped by itself
 SLOWING = 0.5
 
@@ -107,7 +106,7 @@ def visits(x: Array, limit: float, step: float, *, noisy: bool) -> int:
     noisy: readings scatter, so that equal successive readings are unlikely: every stay counts
     """
     first, past = runs_of(x == limit)
-    lasting = first[(past - first >= LASTS) & (first >= 4)]
+    lasting = first[(past - first >= VISITS) & (first >= 4)]
     if noisy:
         return len(lasting)
     count = 0

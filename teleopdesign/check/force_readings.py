@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..base.finding import Finding
-from ..measurement.encoder import is_on_grid
+from ..measurement.encoder import is_most, is_on_grid
 from ..measurement.hum import STRONG, hum_of
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
@@ -58,7 +58,7 @@ def check_lost_force(signal: Signal) -> Iterator[Finding]:
     acts = signal.values != 0.0
     times = int(np.count_nonzero(np.diff(acts.astype(int)) == 1))
     part, rows = float(np.mean(acts)), float(np.count_nonzero(acts)) / max(times, 1)
-    if part > 0.5 or times < OFTEN or rows > SHORT:
+    if is_most(acts) or times < OFTEN or rows > SHORT:
         return
     words = (
         f" is exactly 0 in {100 * (1 - part):.0f} % of the rows, and differs from 0 for "

@@ -8,13 +8,11 @@ import numpy as np
 
 from ..base.finding import Finding
 from ..measurement.experiment import Experiment
+from ..measurement.hum import STRONG
 from ..measurement.motion import SHORTEST
 from ..measurement.record import Record
 from ._recording import CheckedRecording, RecordingCheck
 
-#: a warning is given if the reading of a log may add more than this part of the force to the force
-#: error: a tenth of the error of a plain friction model on the recordings of `fetch`
-CARE = 0.02
 #: part of a record that may be left out, in short segments, without a warning
 FEW = 0.1
 
@@ -33,7 +31,7 @@ def find_corrections(recording: CheckedRecording) -> Iterator[Finding]:
             effect = "" if step.effect == "none" else f" ({step.effect})"
             yield Finding(
                 step.topic,
-                "warning" if step.size > CARE else "note",
+                "warning" if step.size > STRONG else "note",
                 f"{step.observed}: {step.rule}{effect}.",
                 dict(step.numbers),
                 record.file,

@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 
 from ..base.finding import Finding
 from ..measurement.filtering import Array
+from ..measurement.repeated_rows import BY_CHANCE
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
-#: probability of a false warning about one channel of one record
-FALSE_ALARM = 1e-3
 #: an outlier explains its neighbours if their remaining deviation is within EXPLAINED local
 #: standard deviations (five errors of this deviation), or within RELATIVE of the outlier
 EXPLAINED, RELATIVE = 3.0, 0.2
@@ -149,7 +148,7 @@ def _match_events(
 
     reach, scale = max(left), _local_scale(off, floor)
     # the largest of so many normal values by chance, in standard deviations
-    largest = float(-ndtri(0.5 * FALSE_ALARM / max(len(off), 1)))
+    largest = float(-ndtri(0.5 * BY_CHANCE / max(len(off), 1)))
     at = np.flatnonzero(np.abs(off) > largest * scale)
     at = at[(at >= 2 * reach) & (at < len(off) - 2 * reach)]
     size = off[at]

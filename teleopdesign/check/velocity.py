@@ -14,7 +14,7 @@ import numpy as np
 
 from ..base.finding import Finding
 from ..measurement.filtering import Array, spectrum
-from ._recording import CheckedRecording, RecordingCheck, Signal
+from ._recording import ENOUGH, CheckedRecording, RecordingCheck, Signal
 
 #: iterations of the shift; each leaves an error of about the square of the one before, in periods
 STEPS = 4
@@ -26,8 +26,6 @@ OTHER = 0.5
 FACTOR = 1.05
 #: relative difference of a factor from that of a slip of units within which it is this slip
 NEAR = 0.03
-#: samples of one stretch that are looked at
-ENOUGH = 200_000
 #: axis (None: each), factor over the derivative of the position, and what is in which unit then
 SLIPS = (
     (None, 1e3, "time", "ms"),

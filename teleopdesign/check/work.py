@@ -19,13 +19,12 @@ from ..base.finding import Finding
 from ..measurement.filtering import Array
 from ..measurement.logger_clock import CLOCK
 from ..measurement.record import Record
+from ..measurement.reversals import BACK
 from ._recording import CheckedRecording, RecordingCheck
 
 #: what a spring inside of the device may hold, over largest force times travel: the area below the
 #: line of a spring that bends over the whole travel
 STORED = 0.5
-#: part of the travel that the motion must return from to make a turn: not the noise of a reading
-TURN = 0.05
 #: first turns from which the longest way back to the same position is searched
 TURNS = 20
 #: shifts of the force at which the work is computed: over their range, the work of a sine that
@@ -82,7 +81,7 @@ def _longest_loop(position: Array) -> tuple[int, int] | None:
 
 def _turns(position: Array) -> Iterator[int]:
     """Rows at which the motion turns round, by more than the noise of its readings."""
-    least = TURN * float(np.ptp(position))
+    least = BACK * float(np.ptp(position))
     ahead, side = 0, 0
     for row, value in enumerate(position.tolist()):
         step = value - position[ahead]

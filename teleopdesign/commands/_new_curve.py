@@ -10,8 +10,7 @@ from ._paths import shell_word
 
 if TYPE_CHECKING:
     from ..measurement.doors._log import Log
-    from ..measurement.new_curve import CurveColumns
-    from ..measurement.survey import Choices
+    from ..measurement.survey import Choices, Survey
 
 
 def is_curve(options: argparse.Namespace, log: Log) -> bool:
@@ -57,10 +56,10 @@ def make_curve(
     return 0
 
 
-def _text_of(curve: CurveColumns, name: str) -> str:
+def _text_of(curve: Survey, name: str) -> str:
     lines = [f"{name}: a friction curve; {curve.axis} axis"]
-    for channel, column in curve.columns.items():
-        lines.append(f'  {channel:<18} "{column}" in {curve.units[channel]}')
+    for channel, entry in curve.channels.items():
+        lines.append(f'  {channel:<18} "{entry["column"]}" in {entry["unit"]}')
     if curve.guesses:
         lines.append("guessed:")
     lines += [f"  {key}: {why}" for key, why in curve.guesses.items()]

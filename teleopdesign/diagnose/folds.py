@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..measurement.prepare import FOLDS, Stretch, measured_force
+from ..measurement.friction_curve import FOLDS
+from ..measurement.prepare import Stretch, measured_force
 from ..measurement.shared_links import share_again
 
 

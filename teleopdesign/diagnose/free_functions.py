@@ -19,7 +19,8 @@ import numpy as np
 
 from ..base.frozen import ByValue
 from ..measurement.filtering import Array
-from ..measurement.prepare import FOLDS, Prepared, Stretch
+from ..measurement.friction_curve import FOLDS
+from ..measurement.prepare import Prepared, Stretch
 from .fit import Fit
 from .free_forces import MotionRanges, families
 from .residual import relative_residuals

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from ..measurement.excerpt import excerpt
+from ..measurement.experiment import excerpt
 from ..measurement.prepare import Prepared, prepare
 
 

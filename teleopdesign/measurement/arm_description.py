@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -181,7 +182,7 @@ def numbers_from(table: Table, key: str, count: int, default: tuple[float, ...])
     good = isinstance(entry, list) and len(entry) == count
     numbers = entry if good else []
     if not good or not all(
-        isinstance(x, int | float) and not isinstance(x, bool) and abs(x) < 1e12 for x in numbers
+        isinstance(x, int | float) and not isinstance(x, bool) and math.isfinite(x) for x in numbers
     ):
         raise ExperimentError(
             f"{table.where(key)}: found {describe_toml_value(entry)}, "

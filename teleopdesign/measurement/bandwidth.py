@@ -12,13 +12,15 @@ from .experiment import Experiment
 from .filtering import Array
 from .motion import motions
 from .record import Record
-from .slower_signals import SENSED
+from .repeated_rows import SENSED, SLOWER
 
 #: a bandwidth hides the motion if the share of rows in motion, over the share at a bandwidth two
 #: octaves lower, is below this: then most rows that could be tested are lost
 LEAST_SHARE = 0.5
 #: Hz: no lower bandwidth is chosen or proposed
 LOWEST = 1.0
+#: highest bandwidth at which a motion is compared, as a part of the sample rate
+HIGHEST = 0.4
 #: highest bandwidth that is chosen, and that is proposed, as parts of the sample rate
 CHOSEN, PROPOSED = 0.1, 0.3
 #: highest bandwidth of a comparison as a part of the rate of a sensor whose readings are
@@ -49,7 +51,7 @@ def slower_sensors(experiment: Experiment) -> list[tuple[str, float]]:
         (name, record.rate_of(name))
         for record in experiment.records
         for name in sensors
-        if record.rate_of(name) < 0.99 / record.sample_time
+        if record.rate_of(name) < SLOWER / record.sample_time
     ]
 
 
@@ -78,7 +80,7 @@ def share_in_motion(experiment: Experiment, body: str, bandwidth: float) -> floa
     directions = [
         motion.direction != 0
         for record in experiment.fit_records
-        if bandwidth <= 0.4 / record.sample_time
+        if bandwidth <= HIGHEST / record.sample_time
         for motion in motions(record, body, bandwidth=bandwidth, resolution=resolution)
     ]
     return float(np.mean(np.concatenate(directions))) if directions else 0.0
@@ -188,5 +190,5 @@ def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Arr
     density: Array = np.mean(np.abs(spectra) ** 2, 0).astype(np.float64)
     frequency: Array = np.fft.rfftfreq(n, record.sample_time).astype(np.float64)
     rate = record.rate_of(name)
-    noise = density[(frequency > 0.3 * rate) & (frequency <= 0.5 * rate)]
+    noise = density[(frequency > PROPOSED * rate) & (frequency <= 0.5 * rate)]
     return frequency, density, float(np.median(noise))

@@ -277,7 +277,7 @@ def likeness(name: str, quantity: str) -> float:
             exact = word == known or not known.isascii() and known in word
             # the last part of a compound names it: "Drehmoment", "Istwinkel"
             ends = may_end and len(known) > COMPOUND and word.endswith(known)
-            if exact or ends or len(known) > 3 and word.startswith(known):
+            if exact or ends or len(known) > _WHOLE_NAME and word.startswith(known):
                 best = max(best, (1.0 if exact else 0.9) - 0.02 * min(rank, LAST_RANK))
     return best
 

@@ -111,28 +111,20 @@ def conversion_of(
     constant = 1.0
     names: list[str] = []
     if "torque_constant" in table.content:
-        if kind != "force":
-            raise ExperimentError(
-                f"{table.where('torque_constant')}: found on {quote(quantity)}, expected on a force"
-            )
+        _require(table, "torque_constant", kind == "force", quantity, "a force")
         value, written = _constant(table, "torque_constant", f"{_force(axis)}/A")
         constant, names = constant * value, [*names, f"({written})"]
     if "lever_arm" in table.content:
         constant = constant * _lever_arm(table, kind=kind, axis=axis, quantity=quantity)
         names = [*names, "(m)"]
     if "gear_ratio" in table.content:
-        if kind not in ("force", "position", "velocity"):
-            raise ExperimentError(
-                f"{table.where('gear_ratio')}: found on {quote(quantity)}, expected on a "
-                f"position, "
-                "a velocity or a force"
-            )
+        geared = kind in ("force", "position", "velocity")
+        _require(table, "gear_ratio", geared, quantity, "a position, a velocity or a force")
         value, written = _constant(table, "gear_ratio", None)
         if value <= 0:
             raise ExperimentError(
                 f"{table.where('gear_ratio')}: found {value:g}, expected above 0; a motor that "
-                f"turns "
-                "the other way has sign = -1"
+                "turns the other way has sign = -1"
             )
         if kind == "force":
             constant, names = constant * value, [*names, f"({written})"] if written else names
@@ -152,6 +144,14 @@ def conversion_of(
     conversion = Conversion(columns, scales, offset, factor, period, _delay(table), code)
     counts = unit in COUNTS
     return conversion, abs(factor) * max(map(abs, scales)) if counts else None
+
+
+def _require(table: Table, key: str, fits: bool, quantity: str, expected: str) -> None:
+    """Refuse a key on a channel of a quantity that it does not fit."""
+    if not fits:
+        raise ExperimentError(
+            f"{table.where(key)}: found on {quote(quantity)}, expected on {expected}"
+        )
 
 
 def _force(axis: str) -> str:

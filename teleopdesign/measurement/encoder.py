@@ -9,9 +9,16 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: steps between two readings whose number is certain from the smallest gap alone: this gap may be 1
-#: % wrong if a log has few digits
-STEPS_APART = 20
+#: steps that a column must span to show a grid, a law or a unit; and steps between two readings
+#: whose number is certain from the smallest gap alone: it may be 1 % wrong if a log has few digits
+FEWEST_STEPS = 20
+#: part of the range of a column that sums of its numbers lose in floating point
+LOST = 1e-9
+#: smallest change from sample to sample that counts as motion, in steps between values
+STEPS = 3.0
+#: standard errors from which the sign of a value counts as known; three: wrong by chance once in
+#: 700
+SURELY = 3.0
 #: values lie on a grid if the size of the mean of exp(2 pi i x/step) exceeds this: 1 exactly on
 #: the grid, 0.04 for 600 random values
 ON_GRID = 0.9
@@ -34,6 +41,11 @@ PIECE, PIECES = 64, 8
 DIFFERENCE = 8
 #: steps within which the readings of a body at rest lie: between two values, it shows both
 AT_REST = 1.5
+
+
+def is_most(mask: NDArray[np.bool_]) -> bool:
+    """Whether more than half of some values are true."""
+    return bool(len(mask) and np.mean(mask) > 0.5)
 
 
 def rests(position: Array, step: float) -> bool:
@@ -60,12 +72,12 @@ def reading_step(position: Array) -> float:
     if len(values) < 2:
         return 0.0
     gaps = np.diff(values)
-    step = float(np.quantile(gaps[gaps > 1e-9 * np.ptp(values)], 0.002))
+    step = float(np.quantile(gaps[gaps > LOST * np.ptp(values)], 0.002))
     rounding = float(np.sqrt(12.0)) * reading_noise(position)
-    moving = float(np.mean(np.diff(position) != 0)) > 0.5
+    moving = is_most(np.diff(position) != 0)
     # a fourth difference of zero in most readings: no visible noise
-    is_noisy = rounding > 1e-9 * float(np.ptp(position))
-    if not (is_noisy and moving and step > 3.0 * rounding):
+    is_noisy = rounding > LOST * float(np.ptp(position))
+    if not (is_noisy and moving and step > STEPS * rounding):
         return step
     if len(values) < DIFFERENT * len(position) and grid_of(position[:ENOUGH], step):
         return step
@@ -80,7 +92,7 @@ def is_on_grid(x: Array, step: float) -> bool:
 
 def grid_of(position: Array, step: float) -> float:
     """Step of the grid on which the readings lie, near `step`; 0 where there is no such grid."""
-    if step <= 0.0 or np.ptp(position) <= 20.0 * step:
+    if step <= 0.0 or np.ptp(position) <= FEWEST_STEPS * step:
         return 0.0
     mean = _fitted_step(position, step)
     return mean if is_on_grid(position, mean) else 0.0
@@ -95,11 +107,11 @@ def _fitted_step(position: Array, step: float) -> float:
     values = np.unique(position)
     gaps = np.diff(values)
     counts = np.round(gaps / step)
-    near = (counts > 0) & (counts < STEPS_APART)
+    near = (counts > 0) & (counts < FEWEST_STEPS)
     if near.any():
         step = float(gaps[near].sum() / counts[near].sum())
     away = values - values[len(values) // 2]
-    reach, end = STEPS_APART * step, float(np.abs(away).max())
+    reach, end = FEWEST_STEPS * step, float(np.abs(away).max())
     while True:
         inside = away[np.abs(away) <= reach]
         places = np.round(inside / step)

@@ -2,9 +2,11 @@
 
 import shlex
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import final
+
+import numpy as np
 
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.files import follow_links
@@ -15,13 +17,17 @@ from ..base.units import unit_of
 from .arm_description import ArmDescription, arm_from
 from .channel import BODY_QUANTITIES, Channel, LogLayout, frequency_from, layout_from
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
+from .doors._log import join_names
 from .friction_curve import CURVE, bodies_and_channels, curve_record
 from .reading import ReadingStep, reading_table
-from .record import Record, read_record
-from .record_entries import choice_of, record_entries
+from .record import Record, choice_of, read_record, record_entries
 from .tables import is_log, read_columns
 
 _FILE = "experiment.toml"
+#: most samples of all records together; if there are more, only windows of the records are used
+MOST = 100_000
+#: s, length of a window: forty time constants of a 2 Hz low-pass
+WINDOW = 4.0
 
 
 @final
@@ -200,7 +206,7 @@ def folder_of_experiment(path: Path) -> Path:
         reason = getattr(problem, "strerror", None) or str(problem)
         raise ExperimentError(f"{path.name}: cannot be read: {reason}") from None
     if _FILE not in names:
-        listed = ", ".join(names[:10]) + (", ..." if len(names) > 10 else "")
+        listed = join_names(names)
         raise ExperimentError(
             f"{path.name}: no {_FILE}, "
             f"found {listed or 'an empty folder'}{did_you_mean(_FILE, names)}"
@@ -232,3 +238,41 @@ def _exactness(channel: Channel, unit: str) -> str:
     if channel.noise is not None:
         parts.append(f"noise {channel.noise:.3g} {unit}")
     return f" ({', '.join(parts)})" if parts else ""
+
+
+def excerpt(experiment: Experiment, *, most: int = MOST) -> Experiment:
+    """The experiment with about `most` samples; the experiment itself where it has no more.
+
+    Nothing is copied: the windows are segments of the records. Hidden states start anew in each
+        window.
+    """
+    total = sum(len(r.time) for r in experiment.records)
+    if total <= most:
+        return experiment
+    part = most / total
+    records = tuple(replace(r, segments=_windows(r, part)) for r in experiment.records)
+    return replace(experiment, records=records)
+
+
+def _windows(record: Record, part: float) -> tuple[slice, ...]:
+    """Windows that make up about `part` of a record, spread over its segments; at least one.
+
+    The number of windows follows the total length of the segments so far: of many short segments,
+    every n-th becomes a window.
+    """
+    size = max(64, round(WINDOW / record.sample_time))
+    windows, owed = [], 0.0
+    for segment in record.segments:
+        length = segment.stop - segment.start
+        owed += part * length / size
+        count = round(owed)
+        if count * size >= length:
+            windows.append(segment)
+            owed -= length / size
+        elif count:
+            places = np.linspace(0.0, 1.0, count) if count > 1 else np.array([0.5])
+            starts = [segment.start + int((length - size) * p) for p in places]
+            windows += [slice(a, a + size) for a in starts]
+            owed -= count
+    longest = max(record.segments, key=lambda s: s.stop - s.start)
+    return tuple(windows) or (slice(longest.start, min(longest.start + size, longest.stop)),)

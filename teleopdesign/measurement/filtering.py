@@ -7,6 +7,8 @@ delay. All functions apply to arrays of shape (..., n).
 
 from __future__ import annotations
 
+import weakref
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -110,3 +112,38 @@ def _hold(n: int, sample_time: float, parts: int, which: int) -> NDArray[np.comp
     held = np.sinc(x / np.pi) * np.exp(-1j * (1 + 2 * which) * x) / parts
     held.setflags(write=False)
     return np.asarray(held, dtype=np.complex128)
+
+
+@dataclass
+class HeldCommand:
+    """The transform of a held command on one grid, and the last smooth signal made of it.
+
+    last: delay (s) of the log, gain of the smoothing, and the signal with these
+    """
+
+    spectrum: Spectrum
+    transformed: NDArray[np.complex128]
+    last: tuple[float, Array, Array] | None = field(default=None)
+
+    def smooth(self, late: float, smoothing: Array) -> Array:
+        """The command at the rows (n,), advanced by the delay `late` (s) of its log."""
+        last = self.last
+        if last is None or last[0] != late or last[1] is not smoothing:
+            gain = smoothing * self.spectrum.ahead(late)
+            last = self.last = (late, smoothing, self.spectrum.back(self.transformed * gain))
+        return last[2]
+
+
+#: identity of a recorded command -> the command while it lives, and what was computed of it
+_known: dict[int, tuple[weakref.ref[Array], HeldCommand]] = {}
+
+
+def held_command(command: Array, spectrum: Spectrum) -> HeldCommand:
+    """The held command of a record (n,) on its grid; nothing writes into a record's array."""
+    place = id(command)
+    known = _known.get(place)
+    if known is not None and known[0]() is command and known[1].spectrum is spectrum:
+        return known[1]
+    held = HeldCommand(spectrum, spectrum.transform(command) * spectrum.hold())
+    _known[place] = (weakref.ref(command, lambda _: _known.pop(place, None)), held)
+    return held

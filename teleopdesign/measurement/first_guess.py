@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .encoder import SURELY
 from .filtering import spectrum
 from .record import Record
 
@@ -28,9 +29,6 @@ _SLOW = 0.02
 #: spreads such a force over neighbouring rows (one period at 20 Hz): these rows are left out. On a
 #: simulated joint with a Stribeck peak, this lowers the error of a balance from 13 % to 0.5 %
 _AT_REST, _REACH = 0.1, 0.05
-#: standard errors from which the sign of a part of the force counts as known; three: wrong by
-#: chance once in 700
-SURELY = 3.0
 #: a motion is in one direction if its direction or speed varies by less than this part of its rms:
 #: noise and the ends of the low-pass make about as much variation
 _ONE_WAY = 0.05
@@ -40,12 +38,13 @@ _ONE_WAY = 0.05
 VARIES = 0.01
 #: part of the motion that each direction must have where both are said to look alike
 _BOTH_WAYS = 0.1
-#: part of what the motion leaves of a force, below which the size of the motion surely explains
-#: more: 0.5 to 0.8 for sizes of simulated forces, 0.5 for the supply current of a servo; 0.99 of a
-#: constant force with noise. Sizes of dry friction alone are constant in motion, and reach 0.9
-_BY_SIZE = 0.8
+#: part of what one motion leaves of a force, below which another one, such as its size or the same
+#: with another sign, surely explains more: 0.5 to 0.8 for sizes of simulated forces, 0.5 for the
+#: supply current of a servo; 0.99 of a constant force with noise. Sizes of dry friction alone are
+#: constant in motion, and reach 0.9
+SURELY_LESS = 0.8
 #: a force that depends on position counts only if it leaves less than this part of the squares
-_MOSTLY = 0.5
+MOSTLY = 0.5
 
 
 @dataclass(frozen=True)
@@ -178,8 +177,16 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
 
 def goes_one_way(direction: Array) -> bool:
     """Whether a body rests or moves in one direction, to the part that a low-pass leaves."""
-    ways = [float(np.mean(way * direction > 0.5)) for way in (1.0, -1.0)]
+    ways = [float(np.mean(way)) for way in rows_each_way(direction)]
     return min(ways) < _ONE_WAY * max(ways)
+
+
+def rows_each_way(direction: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """The rows (n,) that surely move forward, and those that move backward.
+
+    direction: low-passed, so that it rings about zero where a body is at rest before it moves
+    """
+    return direction > 0.5, direction < -0.5
 
 
 def _may_be_spring(columns: Array, place: Array, force: Array, sample_time: float) -> bool:
@@ -200,7 +207,7 @@ def is_size(force: Array, position: Array, sample_time: float) -> bool:
         return False
     motion, (target, place) = stretch
     place = (place - place.mean()) / max(float(np.ptp(place)), np.finfo(float).tiny)
-    each = [float(np.mean(s * motion[1] > 0.5)) for s in (1.0, -1.0)]
+    each = [float(np.mean(way)) for way in rows_each_way(motion[1])]
     if min(each) < _BOTH_WAYS * sum(each):
         return False
     left = []
@@ -209,7 +216,7 @@ def is_size(force: Array, position: Array, sample_time: float) -> bool:
         if fit is None:
             return False
         left.append(fit[2])
-    return left[1] < _BY_SIZE * left[0]
+    return left[1] < SURELY_LESS * left[0]
 
 
 def balance_factor(
@@ -230,7 +237,7 @@ def balance_factor(
     speed = np.abs(columns[2])
     window = max(1, round(_REACH / sample_time))
     slow = np.convolve(speed <= _AT_REST * speed.max(), np.ones(window), "same")
-    rows = slow < 0.5
+    rows = slow == 0.0
     if np.count_nonzero(rows) * sample_time < 1.0:
         return 0.0, np.inf
     columns = np.vstack([columns, -beside])[:, rows]
@@ -270,7 +277,7 @@ def _fit_with_place(
     """`_least_squares`, with a force proportional to position if this removes most of the rest."""
     fit = _least_squares(columns, target, sample_time)
     held = _least_squares(np.vstack([columns, place]), target, sample_time)
-    if fit is None or held is None or not held[2] ** 2 < _MOSTLY * fit[2] ** 2:
+    if fit is None or held is None or not held[2] ** 2 < MOSTLY * fit[2] ** 2:
         return fit
     return held
 

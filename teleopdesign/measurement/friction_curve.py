@@ -30,8 +30,9 @@ from .tables import LogColumns
 CURVE = "friction curve"
 #: channels of a friction curve
 CHANNELS = ("velocity", "actuator_force")
-#: blocks of rows, each with every so many-th speed
-GROUPS = 4
+#: blocks of rows that are held out in turn where there is no check record; of a friction curve,
+#: each has every so many-th speed
+FOLDS = 4
 #: part by which speeds may differ and count as one: runs are held no better
 SAME_SPEED = 0.01
 
@@ -117,7 +118,7 @@ def speed_numbers(velocity: Array) -> NDArray[np.intp]:
 def in_groups(velocity: Array) -> NDArray[np.intp]:
     """The rows in an order in which the points of every fourth speed follow one another."""
     numbers = speed_numbers(velocity)
-    return np.lexsort((numbers, numbers % GROUPS))
+    return np.lexsort((numbers, numbers % FOLDS))
 
 
 def curve_motion(record: Record, body: str) -> Motion:
@@ -157,7 +158,7 @@ def noise_of_points(velocity: Array, force: Array) -> tuple[float, str]:
     numbers = speed_numbers(velocity)
     counts = np.bincount(numbers)
     freedom = int(np.sum(counts - 1))
-    if freedom >= GROUPS:
+    if freedom >= FOLDS:
         means = np.bincount(numbers, force) / counts
         squares = float(np.sum((force - means[numbers]) ** 2))
         return float(np.sqrt(squares / freedom)), "scatter of readings at one speed"

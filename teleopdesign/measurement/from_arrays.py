@@ -19,7 +19,7 @@ from .doors._log import Log
 from .experiment import Experiment
 from .first_guess import guess_from
 from .numbers_in_cells import holds_dates
-from .record import Record, RecordEntry, cut_to, record_of
+from .record import Record, RecordEntry, cut_to, overlap, record_of
 from .tables import columns_of
 
 #: a channel in a call: the name of a column, or a table as in [channels]
@@ -117,7 +117,7 @@ def _refuse_overlap(spans: Sequence[tuple[str, Sequence[float] | None]]) -> None
     known = [(use, span) for use, span in spans if span is not None]
     for k, (use, span) in enumerate(known):
         for other_use, other in known[:k]:
-            if max(span[0], other[0]) < min(span[1], other[1]) and use != other_use:
+            if use != other_use and overlap(span, other):
                 raise ExperimentError(
                     f"{_WHERE}: {use}: found {tuple(span)}, which overlaps {other_use} "
                     f"{tuple(other)}, expected spans that do not"

@@ -27,7 +27,8 @@ MOVES = 30.0
 #: power has a third of its rms in 6000 rows, whatever its share: of 0.01, taken for no hum, eleven
 #: of 50 answers were undecided. A force without noise may have weaker tones of that power by itself
 SHARE = 0.002
-#: the same share from which its report is a warning
+#: part of a force from which its hum, or what the reading of its log may add to the force error, is
+#: a warning: a tenth of the error of a plain friction model on the recordings of `fetch`
 STRONG = 0.02
 #: s: shorter records do not separate the tone from neighbouring frequencies
 SHORTEST = 2.0

@@ -18,17 +18,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .encoder import grid_of, reading_step
+from .encoder import ENOUGH, FEWEST_STEPS, LOST, grid_of, reading_step
 from .filtering import Array
 from .repeated_rows import runs_of
 
 #: (readings of the position, past commands) of the laws, the simpler one first: spring, damper of
 #: one difference, of several, with a filter of first and of second order
 ORDERS = ((1, 0), (2, 0), (4, 0), (4, 1), (4, 2))
-#: steps that a command must span: of a command with few levels, any line is within a step
-FEWEST_STEPS = 20.0
-#: part of the range of a column that sums of its numbers lose in floating point
-LOST = 1e-9
 #: part of the range of a command by which its numbers are wrong in a log of six digits
 DIGITS = 5e-6
 #: errors of the law in the command's change by one step of a reading. Where the command does not
@@ -45,8 +41,6 @@ FOR_EACH = 20
 #: rows of a run without a clipped command, and memories of the filter after which a run counts: a
 #: set point that varies would be a filter whose memory does not fade
 SHORTEST_RUN, MEMORIES = 16, 3.0
-#: most rows that are used: of a law that holds to the last digit more rows tell no more
-MOST = 20_000
 #: steps of Gauss and Newton: rounding of past commands makes the first estimate a little wrong
 ITERATIONS = 4
 
@@ -81,7 +75,7 @@ class _Rows:
         for segment in self.segments:
             for begin, end in zip(*runs_of(self.free[segment]), strict=True):
                 first = segment.start + max(begin + past, taps - 1)
-                last = min(segment.start + end, first + MOST - count)
+                last = min(segment.start + end, first + ENOUGH - count)
                 if last - first >= shortest:
                     count += last - first
                     yield slice(first, last)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +12,10 @@ from ..base.errors import ExperimentError, quote
 from .channel import Channel, LogLayout
 from .reading import ReadingStep, count_of
 from .record_clock import DATE, RecordClock, clock_of, counted_clock, segments_of
-from .repeated_rows import repeated_rows, rows_between_readings
+from .repeated_rows import repeated_rows, rows_between_readings, with_slower_signals
 from .row_places import Array
-from .slower_signals import with_slower_signals
+from .stamps import read_at_stamps
 from .tables import LogColumns
-from .true_stamps import read_at_stamps
 
 #: a log is refused if more than this part of the rows lack a number in some cell: such a column is
 #: another column, or belongs to a slower clock
@@ -27,20 +26,9 @@ OF_ANOTHER_CLOCK = "a signal of a slower clock goes with its times into a table 
 APART = ("time", "segment")
 
 
-@dataclass(frozen=True)
-class LogClock:
-    """The clock of a log.
-
-    stamped: True: each row was taken at its stamp; False: the rows lie on the even clock
-    """
-
-    clock: RecordClock
-    stamped: bool
-
-
 def clock_of_log(
     columns: LogColumns, layout: LogLayout, name: str, *, file: str
-) -> tuple[LogClock, LogColumns, list[ReadingStep]]:
+) -> tuple[RecordClock, LogColumns, list[ReadingStep]]:
     """The clock of a log, its columns, and the steps that led to it.
 
     name: of the log in messages;  file: of the record
@@ -77,7 +65,8 @@ def clock_of_log(
     ]
     stamped, more = read_at_stamps(clock, positions, file)
     steps += _left_out(file, ~filled, again, between, clock.sample_time)
-    return LogClock(clock, stamped), columns, steps + _order(clock, file) + more
+    steps += [ReadingStep(file, *words) for words in clock.remarks]
+    return replace(clock, stamped=stamped), columns, steps + more
 
 
 def _on_this_clock(
@@ -179,31 +168,3 @@ def _labels(columns: LogColumns, channels: Mapping[str, Channel], name: str) -> 
             "expected a whole number"
         )
     return labels
-
-
-def _order(clock: RecordClock, file: str) -> list[ReadingStep]:
-    """Reading steps for repeated stamps, rows out of order, clocks set back and pauses."""
-    steps = []
-    if clock.dropped:
-        text = f"{count_of(clock.dropped, 'row')} with the stamp of another"
-        steps.append(ReadingStep(file, text, "the first of each is used", "none"))
-    if clock.sorted:
-        text = f"{count_of(clock.sorted, 'row')} out of order"
-        steps.append(ReadingStep(file, text, "sorted by their stamps", "none"))
-    if clock.counted:
-        text = "stamps that many rows share"
-        rule = "rows are counted at the mean rate"
-        effect = "lost rows cannot be seen in such stamps"
-        steps.append(ReadingStep(file, text, rule, effect))
-    if clock.restarts:
-        text = f"time set back {count_of(clock.restarts, 'time')}"
-        rule = "a new segment each time"
-        steps.append(ReadingStep(file, text, rule, "hidden states start anew at each"))
-    if clock.alone:
-        text = f"{count_of(clock.alone, 'row')} with a pause or an end on both sides"
-        steps.append(ReadingStep(file, text, "left out: one row tells no motion", "none"))
-    if clock.gaps:
-        text = f"{count_of(clock.gaps, 'pause')}, the longest {clock.longest_gap:.3g} s"
-        rule = "a new segment after each"
-        steps.append(ReadingStep(file, text, rule, "hidden states start anew at each"))
-    return steps

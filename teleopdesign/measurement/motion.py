@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from ..base.frozen import ByValue
 from .encoder import reading_noise, reading_step
-from .filtering import Array, Spectrum, spectrum
-from .held_command import held_command
+from .filtering import Array, Spectrum, held_command, spectrum
 from .hum import hum_of, without_hum
 from .record import Record
 

@@ -1,4 +1,4 @@
-"""A friction curve from a table of speeds and forces: its columns, and the folder.
+"""A friction curve from a table of speeds and forces, or from arrays in memory.
 
 A table without a time and a position is one if one column is a speed and one a force, by their
 names or units.
@@ -7,37 +7,27 @@ names or units.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+
+from ..base.arguments import check_types
 from ..base.errors import ExperimentError, quote, unknown
 from ..base.files import write_text
-from ..base.toml import comment_text, inline_text, string_text
+from ..base.toml import Table
 from ..base.units import AXES, measures, unit_of
 from .column_names import as_unit, likeness, unit_in_name
 from .doors._log import Log
-from .friction_curve import CURVE
-from .new_folder import copy_logs
+from .experiment import Experiment
+from .friction_curve import CURVE, bodies_and_channels, curve_record
+from .new_folder import copy_logs, experiment_text, records_of
+from .survey.content import Survey
+from .tables import LogColumns
 
 #: what a column may be: channel -> quantity of its name
 QUANTITIES = {"velocity": "velocity", "actuator_force": "actuator_force"}
 _KINDS = {"velocity": "velocity", "actuator_force": "force"}
-
-
-@dataclass(frozen=True)
-class CurveColumns:
-    """The columns of a friction curve.
-
-    columns, units: by channel, "velocity" and "actuator_force"
-    axis: "prismatic" or "revolute";  guesses: key of the file -> reason
-    torque_constant: value and unit, where the force is a current; None: it is a force
-    """
-
-    columns: Mapping[str, str]
-    units: Mapping[str, str]
-    axis: str
-    guesses: Mapping[str, str]
-    torque_constant: tuple[float, str] | None = None
 
 
 def looks_like_a_curve(log: Log) -> bool:
@@ -69,8 +59,8 @@ def curve_columns(
     force: str | None = None,
     units: Mapping[str, str] | None = None,
     torque_constant: tuple[float, str] | None = None,
-) -> CurveColumns:
-    """The columns, units and axis of a friction curve, with reasons for what was guessed.
+) -> Survey:
+    """The channels and the axis of a friction curve, with reasons for what was guessed.
 
     file: name in messages;  velocity, force, units: as the user states them; None: guessed
     raises ExperimentError: no such column, no speed or force, units that leave the axis open
@@ -111,8 +101,13 @@ def curve_columns(
     if torque_constant is not None:
         column = columns["actuator_force"]
         written["actuator_force"] = known.get(column) or unit_in_name(column) or "A"
-    stated_units = {c: str(u) for c, u in written.items()}
-    return CurveColumns(columns, stated_units, axis, guesses, torque_constant)
+    channels: dict[str, dict[str, Any]] = {
+        channel: {"column": column, "unit": written[channel]} for channel, column in columns.items()
+    }
+    if torque_constant is not None:
+        value, unit = torque_constant
+        channels["actuator_force"]["torque_constant"] = {"value": value, "unit": unit}
+    return Survey(axis, channels, 0.0, guesses)
 
 
 def _unit_of_name(column: str, channel: str, axis: str | None) -> str | None:
@@ -138,7 +133,7 @@ def _axis_of(columns: Mapping[str, str], units: Mapping[str, str | None], file: 
 
 
 def make_curve_folder(
-    curve: CurveColumns,
+    curve: Survey,
     logs: Sequence[Path],
     folder: Path,
     *,
@@ -150,23 +145,60 @@ def make_curve_folder(
     raises ExperimentError: the folder cannot be written
     """
     copy_logs(logs, folder)
-    lines = [f"kind = {string_text(CURVE)}", f"title = {string_text(title)}", ""]
-    lines += ["[model.device]", f"axis = {string_text(curve.axis)}", "[model.device.effects]"]
-    lines += [f"{name} = {{}}" for name in effects]
-    lines += ["", "[channels]"]
-    lines += [comment_text(f"guessed: {key}: {why}") for key, why in curve.guesses.items()]
-    for channel, column in curve.columns.items():
-        entry = {"column": string_text(column), "unit": string_text(curve.units[channel])}
-        if channel == "actuator_force" and curve.torque_constant is not None:
-            value, unit = curve.torque_constant
-            constant = {"value": repr(value), "unit": string_text(unit)}
-            entry["torque_constant"] = inline_text(constant)
-        lines.append(f"{channel} = {inline_text(entry)}")
-    for k, log in enumerate(logs):
-        use = "check" if k and k == len(logs) - 1 else "fit"
-        lines += ["", "[[records]]", f"file = {string_text(log.name)}", f"use = {string_text(use)}"]
-    if curve.guesses:
-        lines += ["", "[guessed]"]
-        lines += [f"{string_text(k)} = {string_text(why)}" for k, why in curve.guesses.items()]
-    write_text(folder / "experiment.toml", "\n".join(lines) + "\n")
+    records = records_of([log.name for log in logs])
+    text = experiment_text(curve, records, title=title, effects=effects, kind=CURVE)
+    write_text(folder / "experiment.toml", text)
     return folder
+
+
+@check_types
+def friction_curve(
+    velocity: Any,
+    force: Any,
+    *,
+    axis: str,
+    check: Sequence[Any] | None = None,
+    units: Mapping[str, str] | None = None,
+    noise: float | None = None,
+    effects: Sequence[str] = ("coulomb", "viscous"),
+    title: str = CURVE,
+) -> Experiment:
+    """A friction curve: points of constant speed and the force that holds it, without time.
+
+    velocity, force: (n,) each, with their signs; several points may have one speed
+    axis: "prismatic" (m/s, N) or "revolute" (rad/s, N*m)
+    check: (velocity, force) of points that are not fitted; None: every fourth speed is held out in
+        turn
+    units: {"velocity": "rpm", "force": "mN*m"}; default: SI
+    noise: rms of the force, in its unit; None: read from the points
+    effects: those of the model: friction of the speed, and "bias"
+    raises ExperimentError: arrays of different lengths, an unknown unit, too few points
+    """
+    where = "friction_curve"
+    stated = dict(units or {})
+    names = {"velocity": "velocity", "actuator_force": "force"}
+    if strangers := set(stated) - set(names.values()):
+        raise ExperimentError(f"{where}: units: found {min(strangers)!r}, expected velocity, force")
+    channels: dict[str, Any] = {
+        channel: {
+            "column": channel,
+            "unit": stated.get(name, unit_of(name, axis if axis == "revolute" else "prismatic")),
+        }
+        for channel, name in names.items()
+    }
+    if noise is not None:
+        channels["actuator_force"]["noise"] = noise
+    body = {"axis": axis, "effects": {name: {} for name in effects}}
+    content = Table({"channels": channels, "model": {"device": body}}, where)
+    bodies, read = bodies_and_channels(content)
+    records = []
+    for use, points in (("fit", (velocity, force)), *([("check", check)] if check else [])):
+        values = [np.asarray(x, dtype=float).ravel() for x in points]
+        if len(values) != 2 or len(values[0]) != len(values[1]):
+            raise ExperimentError(
+                f"{where}: {use}: found {' and '.join(str(len(v)) for v in values)} values, "
+                "expected as many speeds as forces"
+            )
+        columns = LogColumns(dict(zip(names, values, strict=True)))
+        records.append(curve_record(columns, use, use, read, bodies))
+    return Experiment(Path(title), title, bodies, None, read, None, tuple(records), kind=CURVE)

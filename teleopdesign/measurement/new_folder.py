@@ -17,7 +17,7 @@ from .description import bodies_from
 from .encoder import reading_step, rests
 from .first_guess import FirstGuess, guess_from
 from .motion import SHORTEST as SEGMENT
-from .record import RecordEntry, read_record
+from .record import RecordEntry, overlap, read_record
 from .record_clock import FEWEST, SHORTEST
 from .reversals import runs_one_way
 from .survey import Survey, spans_of
@@ -27,12 +27,8 @@ from .survey.derivative import unwrap_column, wrap_of
 #: (begin, end) of the fit record and of the check record, s from the first row of a log
 FitAndCheck = tuple[tuple[float, float], tuple[float, float]]
 
-#: steps of the survey's grid between two rows, from which a pause lies there: the grid is even
-PAUSE = 1.5
 #: durations of a log within which a stated span may end: its rounded end is meant
 BEYOND = 1.1
-#: digits of first values: they are starts, not results
-_DIGITS = 3
 _FILE = "experiment.toml"
 
 
@@ -117,7 +113,7 @@ def check_spans(spans: FitAndCheck, duration: float, names: Sequence[str]) -> No
                 f"order within the log's {duration:.4g} s"
             )
     (fit_begin, fit_end), (check_begin, check_end) = spans
-    if max(fit_begin, check_begin) < min(fit_end, check_end):
+    if overlap(*spans):
         raise ExperimentError(
             f"{names[0]}: spans: found fit {fit_begin:g} to {fit_end:g} s and check "
             f"{check_begin:g} to {check_end:g} s, expected spans that do not overlap"
@@ -128,18 +124,24 @@ def _records(
     survey: Survey, names: Sequence[str], spans: FitAndCheck | None
 ) -> list[dict[str, Any]]:
     if len(names) > 1:
-        return [{"file": n, "use": "check" if n == names[-1] else "fit"} for n in names]
+        return records_of(names)
     fit, check = _usual_spans(survey) if spans is None else spans
     if spans is None and (why := _why_whole(survey, (fit, check))):
         survey.notes.append(
             f"{why} a fit and a check record: errors are computed on blocks that are left out of "
             "the fit in turn"
         )
-        return [{"file": names[0], "use": "fit"}]
+        return records_of(names)
     return [
         {"file": names[0], "use": "fit", "span": fit},
         {"file": names[0], "use": "check", "span": check},
     ]
+
+
+def records_of(names: Sequence[str]) -> list[dict[str, Any]]:
+    """Whole files as records: of several, the last is the check record."""
+    uses = ["fit"] * max(len(names) - 1, 1) + ["check"]
+    return [{"file": name, "use": use} for name, use in zip(names, uses, strict=False)]
 
 
 def _why_whole(survey: Survey, parts: FitAndCheck) -> str:
@@ -181,7 +183,7 @@ def _lasting(survey: Survey, begin: float, end: float) -> float:
     h, last = sample_time_of(survey), float(survey.time[-1])
     inside = survey.time[(survey.time >= begin) & (survey.time < end)]
     starts = np.searchsorted(inside, survey.trials)
-    pauses = np.flatnonzero(np.diff(inside) > PAUSE * h) + 1
+    pauses = np.flatnonzero(np.round(np.diff(inside) / h) > 1) + 1
     ends = np.unique([0, *starts, *pauses, len(inside)])
     segments = h * np.diff(ends)
     behind = max(min(end, survey.duration) - max(begin, last), 0.0)
@@ -211,16 +213,21 @@ def experiment_text(
     records: Sequence[Mapping[str, Any]],
     *,
     title: str,
-    inertia: float | None,
-    first: FirstGuess | None,
     effects: Sequence[str],
+    inertia: float | None = None,
+    first: FirstGuess | None = None,
+    kind: str = "",
 ) -> str:
-    """The text of experiment.toml, with a comment on each guessed channel."""
+    """The text of experiment.toml, with a comment on each guessed channel.
+
+    kind: "friction curve"; "" for records over time
+    """
     axis = survey.axis
     force, length = ("N", "m") if axis == "prismatic" else ("N*m", "rad")
     mass = "kg" if axis == "prismatic" else "kg*m^2"
     lines = ["# Written by `teleopdesign new`. What it guessed stands under [guessed] at the end:"]
     lines += ["# correct it there where it is used, and take its line out.", ""]
+    lines += [f"kind = {string_text(kind)}"] if kind else []
     lines += [f"title = {string_text(title)}", "", "[model.device]"]
     lines += [
         f"axis = {string_text(axis)}".ljust(60) + f"# forces in {force}, positions in {length}"
@@ -269,7 +276,7 @@ def _first_of(name: str, first: FirstGuess | None, force: str, length: str) -> s
 
 
 def _round(value: float) -> float:
-    return float(f"{value:.{_DIGITS}g}")
+    return float(f"{value:.3g}")
 
 
 def _table(entries: Mapping[str, Any]) -> str:

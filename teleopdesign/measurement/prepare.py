@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
-from .bandwidth import bandwidth_of
+from .bandwidth import HIGHEST, bandwidth_of
 from .experiment import Experiment
 from .filtering import Array, spectrum
-from .friction_curve import curve_motion
+from .friction_curve import FOLDS, curve_motion
 from .motion import SHORTEST, SMOOTHING, Motion, motions
 from .record import Record
 from .scales import LARGEST, scales
@@ -34,8 +34,6 @@ SOUGHT = 6.0
 PASSED = 2.0
 #: fewest remaining samples of a stretch that is thinned out
 FEWEST = 16
-#: blocks of the fit records that are held out in turn where there is no check record
-FOLDS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,11 +146,11 @@ def prepare(experiment: Experiment, *, bandwidth: float | None = None) -> Prepar
     stretches = []
     for record in experiment.records:
         _refuse_huge(experiment, record)
-        if chosen > 0.4 / record.sample_time:
+        if chosen > (highest := HIGHEST / record.sample_time):
             raise ExperimentError(
                 f"{experiment.folder.name}/experiment.toml: comparison.bandwidth: {chosen:g} Hz is "
                 f"too high for {record.file} at {1 / record.sample_time:g} Hz, expected below "
-                f"{0.4 / record.sample_time:g} Hz"
+                f"{highest:g} Hz"
             )
         for body in experiment.bodies:
             channel = experiment.channels[f"{body}.position"]

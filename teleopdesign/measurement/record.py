@@ -1,5 +1,6 @@
 """One recording: signals in SI units on a uniform time, and the corrections of its log."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,15 +9,19 @@ from typing import NamedTuple, final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.errors import ExperimentError
+from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.files import follow_links
 from ..base.frozen import ByValue
 from ..base.shown import html_table
+from ..base.toml import Table, describe_toml_value
 from .channel import LogLayout, conversion_to_si
+from .doors._log import join_names
+from .doors.bag import is_bag
 from .log_clock import clock_of_log
 from .reading import ReadingStep
 from .signals_of_log import signals_of_log
 from .stamps import seconds_since_first
-from .tables import LogColumns, read_columns
+from .tables import EXPERIMENT, LogColumns, read_columns, tables_in
 
 #: keys of [[records]] at which "own" gives the record a separate value
 SEPARATE = ("position_zero", "bias", "friction_level")
@@ -153,14 +158,93 @@ def record_of(columns: LogColumns, name: str, entry: RecordEntry, layout: LogLay
         entry.file,
         entry.use,
         entry.offset_names,
-        clock.clock.time,
-        clock.clock.sample_time,
-        clock.clock.segments,
+        clock.time,
+        clock.sample_time,
+        clock.segments,
         signals,
         (*columns.steps(entry.file), *steps, *more),
     )
 
 
-def short_name(key: str) -> str:
-    """The name of a channel without "device.", as in an experiment with one body."""
-    return key.removeprefix("device.")
+def record_entries(experiment: Table, folder: Path) -> list[RecordEntry]:
+    """(file, use, separate offsets, span) of each [[records]], checked before any file is read."""
+    entries: list[RecordEntry] = []
+    for table in experiment.tables("records"):
+        table.allow(("file", "use", "span", *SEPARATE))
+        file, span = table.text("file"), _span(table)
+        _check_path(table, folder, file)
+        for other, _, _, other_span in entries:
+            if file == other and (span is None or other_span is None or overlap(span, other_span)):
+                what = (
+                    "is listed twice" if span == other_span else "is listed with spans that overlap"
+                )
+                raise ExperimentError(f"{table.where('file')}: {quote(file)} {what}")
+        use = choice_of(table, "use", ("fit", "check"))
+        separate = {
+            name
+            for name in SEPARATE
+            if choice_of(table, name, ("common", "own"), "common") == "own"
+        }
+        entries.append(RecordEntry(file, use, frozenset(separate), span))
+    if not any(use == "fit" for _, use, _, _ in entries):
+        raise ExperimentError(
+            f'{experiment.where("records")}: found {len(entries)} records, none with use = "fit", '
+            "expected at least one"
+        )
+    return entries
+
+
+def _span(table: Table) -> tuple[float, ...] | None:
+    """Read [begin, end] in s from the first row of the log; None: the whole file."""
+    if "span" not in table.content:
+        return None
+    span = table.content["span"]
+    numbers = isinstance(span, list) and all(
+        isinstance(v, int | float) and not isinstance(v, bool) for v in span
+    )
+    if not numbers or len(span) != 2 or not 0 <= span[0] < span[1] < math.inf:
+        raise ExperimentError(
+            f"{table.where('span')}: found {describe_toml_value(span)}, "
+            "expected [begin, end] in s, from the "
+            "log's first row"
+        )
+    return (float(span[0]), float(span[1]))
+
+
+def overlap(one: Sequence[float], other: Sequence[float]) -> bool:
+    """Whether two spans (begin, end) have a moment in common."""
+    return max(one[0], other[0]) < min(one[1], other[1])
+
+
+def choice_of(table: Table, key: str, choices: tuple[str, ...], default: str | None = None) -> str:
+    """The text under a key, one of these; raises ExperimentError: it is none."""
+    value = table.text(key, default)
+    if value not in choices:
+        listed = " or ".join(quote(choice) for choice in choices)
+        raise ExperimentError(
+            f"{table.where(key)}: found {quote(value)}, "
+            f"expected {listed}{did_you_mean(value, choices)}"
+        )
+    return value
+
+
+def _check_path(table: Table, folder: Path, file: str) -> None:
+    where = table.where("file")
+    try:
+        path = follow_links(folder / file)
+        inside = path.is_relative_to(folder)
+        exists = path.is_file() or is_bag(path) or path.is_dir() and bool(tables_in(path))
+    except (OSError, ValueError) as problem:
+        reason = getattr(problem, "strerror", None) or str(problem)
+        raise ExperimentError(f"{where}: {quote(file)} cannot be read: {reason}") from None
+    if not inside:
+        raise ExperimentError(
+            f"{where}: found {quote(file)}, expected a file inside {folder.name}/"
+        )
+    if not exists:
+        names = sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
+        others = [name for name in names if name != EXPERIMENT]
+        listed = join_names(others) or "none"
+        raise ExperimentError(
+            f"{where}: no file {quote(file)}, found {listed}{did_you_mean(file, others)}"
+        )

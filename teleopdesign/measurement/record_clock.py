@@ -11,13 +11,15 @@ line are uneven, and those that many rows share only tell the mean rate of the r
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
+from .encoder import is_most
+from .reading import count_of
 from .row_places import (
     GOES_ON,
     UNEVEN,
@@ -50,12 +52,10 @@ class RecordClock:
     time: (n,) s, even within each segment with step `sample_time`;  segments: of the n samples
     of_rows: the same stretches among the m rows
     jitter: rms of the stamps about the even clock, s; infinite where they follow none
-    dropped, sorted: rows with a repeated stamp, rows out of order
-    restarts: times that the clock was set back
-    lost: samples without a row, which are filled
-    gaps: segments that begin after a pause;  longest_gap: s
-    alone: rows with a pause, an end or a clock set back on both sides: they become no sample
+    set_back: whether the clock was set back
     counted: many rows share a stamp, so that rows are counted at the mean rate
+    remarks: what was odd, how it was read, and its effect on the answer
+    stamped: whether each row was taken at its stamp; else the rows lie on the even clock
     """
 
     rows: RowNumbers
@@ -65,20 +65,21 @@ class RecordClock:
     sample_time: float
     segments: tuple[slice, ...]
     of_rows: tuple[slice, ...]
-    jitter: float = 0.0
-    dropped: int = 0
-    sorted: int = 0
-    restarts: int = 0
-    lost: int = 0
-    alone: int = 0
-    gaps: int = 0
-    longest_gap: float = 0.0
+    jitter: float
+    set_back: bool = False
     counted: bool = False
+    remarks: tuple[tuple[str, str, str], ...] = ()
+    stamped: bool = False
 
     @property
     def exact(self) -> bool:
         """Whether each sample is a row."""
         return np.array_equal(self.places, np.arange(len(self.time)))
+
+    @property
+    def lost(self) -> int:
+        """Samples of an even clock without a row, which are filled."""
+        return 0 if math.isinf(self.jitter) else len(self.time) - len(np.unique(self.places))
 
 
 def segments_of(labels: Array | None, count: int) -> tuple[slice, ...]:
@@ -99,7 +100,7 @@ def counted_clock(count: int, rate: float, segments: tuple[slice, ...], where: s
     """
     _require_enough(count, 1 / rate, where)
     rows, time = np.arange(count), np.arange(count) / rate
-    return RecordClock(rows, time, rows, time, 1 / rate, segments, segments)
+    return RecordClock(rows, time, rows, time, 1 / rate, segments, segments, 0.0)
 
 
 def clock_of(
@@ -113,7 +114,7 @@ def clock_of(
     """
     _require_enough(len(stamps), math.inf, where)
     steps = np.diff(stamps)
-    if not np.any(steps > 0) or stamps[-1] < stamps[0] and float(np.mean(steps < 0)) > 0.5:
+    if not np.any(steps > 0) or stamps[-1] < stamps[0] and is_most(steps < 0):
         raise ExperimentError(
             f"{where}: found time that does not increase, expected increasing time"
         )
@@ -138,15 +139,35 @@ def clock_of(
     clock = _on_grid(
         stamps, pieces, places, period, where, is_even=placed is not None, goes_on=restarts > 0
     )
-    return replace(
-        clock,
+    remarks = _remarks_on_order(
         dropped=dropped,
-        sorted=moved,
+        moved=moved,
         restarts=restarts,
         alone=len(stamps) - dropped - len(clock.rows),
-        gaps=max(0, len(pieces) - stretches),
+        gaps=len(pieces) - stretches,
         longest_gap=longest,
     )
+    return replace(clock, set_back=restarts > 0, remarks=tuple(remarks))
+
+
+def _remarks_on_order(
+    *, dropped: int, moved: int, restarts: int, alone: int, gaps: int, longest_gap: float
+) -> Iterator[tuple[str, str, str]]:
+    """Remarks on repeated stamps, rows out of order, clocks set back, lone rows and pauses (s)."""
+    anew = "hidden states start anew at each"
+    if dropped:
+        text = f"{count_of(dropped, 'row')} with the stamp of another"
+        yield text, "the first of each is used", "none"
+    if moved:
+        yield f"{count_of(moved, 'row')} out of order", "sorted by their stamps", "none"
+    if restarts:
+        yield f"time set back {count_of(restarts, 'time')}", "a new segment each time", anew
+    if alone:
+        text = f"{count_of(alone, 'row')} with a pause or an end on both sides"
+        yield text, "left out: one row tells no motion", "none"
+    if gaps > 0:
+        text = f"{count_of(gaps, 'pause')}, the longest {longest_gap:.3g} s"
+        yield text, "a new segment after each", anew
 
 
 def _require_enough(count: int, period: float, where: str) -> None:
@@ -238,7 +259,6 @@ def _on_grid(
         tuple(segments),
         tuple(of_rows),
         jitter=float(np.sqrt(np.mean(off**2))) if is_even else math.inf,
-        lost=len(whole) - len(np.unique(at)) if is_even else 0,
     )
 
 
@@ -254,4 +274,9 @@ def _clock_of_shared_stamps(stamps: Array, where: str) -> RecordClock:
     period = float(f"{(stamps[last] - stamps[first]) / (last - first):.12g}")
     clock = counted_clock(count, 1 / period, (slice(0, count),), where)
     time = stamps[first] + period * (clock.rows - first)
-    return replace(clock, stamps=time, time=time, sample_time=period, counted=True)
+    why = (
+        "stamps that many rows share",
+        "rows are counted at the mean rate",
+        "lost rows cannot be seen in such stamps",
+    )
+    return replace(clock, stamps=time, time=time, sample_time=period, counted=True, remarks=(why,))

@@ -8,17 +8,20 @@ may be a rest: these are lost rows only if a reading jumps afterwards by the mot
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .encoder import reading_step
+from .channel import Channel
+from .encoder import CHANGES, STEPS, reading_step
 from .row_places import Array
+from .tables import LogColumns
 
-#: a row in which all readings repeat may be lost if the probability of this by chance is at most
-#: this. Rows count as lost only if they are more than this share of all rows
-ALONE = 0.001
+#: probability by chance up to which all readings of a row repeat because it is lost, a channel is
+#: stuck, or a sample is an outlier. Rows count as lost only if they are more than this share of all
+BY_CHANCE = 1e-3
 #: rows to either side that show how often each channel repeats alone
 BESIDE = 25
 #: if more than this share of the rows repeat, the log has a slower source, which is another case
@@ -26,10 +29,6 @@ MOST = 0.2
 #: part of the changes that must be in step with the slower source, and their largest distance from
 #: the step, in its periods: of rows that repeat at random, 0.6 lie as near
 IN_STEP, OFF_STEP = 0.95, 0.3
-#: fewest changes that show the period of a source
-READINGS = 50
-#: smallest change from sample to sample that counts as motion, in steps between values
-STEPS = 3.0
 #: samples to either side for the usual size of a change
 NEAR = 10
 #: change at the end of a constant stretch, in usual changes before it, that shows a stuck reading
@@ -39,8 +38,10 @@ LASTING = 10
 
 #: probability of a zero among normal changes, times median change over step: density at zero
 _ZERO = 0.3989 * 0.6745
-#: probability that a sound channel is called stuck
-STUCK_BY_CHANCE = 1e-3
+#: quantities that a sensor reads, also where it is slower than the controller
+SENSED = ("position", "interaction_force")
+#: part of the rate of the rows below which a sensor counts as slower: its readings are interpolated
+SLOWER = 0.99
 
 
 def runs_of(mask: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -70,9 +71,9 @@ def repeated_rows(
     for x, step in zip(positions, steps, strict=True):
         stopped[repeats(x, step)] = True
     short = (past - first < LASTING) & (first > 0) & (past < len(same))
-    noisy = [f for f in forces if np.mean(np.diff(f)[~same] == 0) <= ALONE]
-    unlikely = _chance_of_repeats([*positions, *forces], same, first, past) <= ALONE
-    unlikely &= np.count_nonzero(unlikely & short) > ALONE * len(same)
+    noisy = [f for f in forces if np.mean(np.diff(f)[~same] == 0) <= BY_CHANCE]
+    unlikely = _chance_of_repeats([*positions, *forces], same, first, past) <= BY_CHANCE
+    unlikely &= np.count_nonzero(unlikely & short) > BY_CHANCE * len(same)
     inside = short & (unlikely | bool(noisy) | stopped[past])
     lasting = np.flatnonzero(past - first >= LASTING)
     stuck = np.zeros(count, dtype=bool)
@@ -105,14 +106,14 @@ def rows_between_readings(
     if not channels or len(stamps) < 2:
         return none
     changed = np.flatnonzero(~np.logical_and.reduce([np.diff(y) == 0 for y in channels])) + 1
-    if len(changed) < READINGS or len(changed) > (1.0 - MOST) * len(stamps):
+    if len(changed) < CHANGES or len(changed) > (1.0 - MOST) * len(stamps):
         return none
     at = stamps[changed]
     between = np.diff(at)
     if not (between > 0).all():
         return none
     period = float(np.median(between))
-    if period < 1.5 * float(np.median(np.diff(stamps))):  # a reading for each row, with rests
+    if round(period / float(np.median(np.diff(stamps)))) < 2:  # a reading for each row, with rests
         return none
     count = np.concatenate([[0.0], np.cumsum(np.round(between / period))])
     slope, start = np.polyfit(count, at, 1)
@@ -127,7 +128,7 @@ def rows_between_readings(
         return none
     kept = none.copy()
     kept[changed] = True
-    for k in np.flatnonzero(between > 1.6 * period):  # a rest, or lost rows
+    for k in np.flatnonzero(np.round(between / period) > 1):  # a rest, or lost rows
         first, past = changed[k], changed[k + 1]
         nth = np.floor((stamps[first:past] - stamps[first]) / period + 0.1)
         kept[first:past] |= np.diff(nth, prepend=0.0) > 0
@@ -148,7 +149,7 @@ def repeats(x: Array, step: float) -> NDArray[np.intp]:
     usual = (x[high] - x[low]) / (high - low)
     way, size = np.sign(usual), np.abs(usual)
     into, out = way * change[first - 1], way * change[past]
-    is_held = (size >= STEPS * step) & (into >= 0.5 * size) & (out >= 0.5 * size)
+    is_held = (size >= STEPS * step) & (np.minimum(into, out) >= 0.5 * size)
     pairs = zip(first[is_held].tolist(), past[is_held].tolist(), strict=True)
     rows = [np.arange(a, b) + 1 for a, b in pairs]
     return np.concatenate(rows) if rows else np.zeros(0, dtype=np.intp)
@@ -181,7 +182,7 @@ def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int
             is_stuck = dead and (leaps or ends)
         else:
             chance = (b - a) * np.log(_ZERO * step / usual)
-            is_stuck = bool(chance < np.log(STUCK_BY_CHANCE / len(x)))
+            is_stuck = bool(chance < np.log(BY_CHANCE / len(x)))
         if is_stuck:
             stretches.append((a, b + 1))
     return stretches
@@ -214,3 +215,54 @@ def _leaps(x: Array, first: int, past: int, step: float) -> bool:
     change = np.abs(np.diff(x[first - near : past + 2 + near]))
     before, leap, after = change[:near], change[-near - 1], change[-near:]
     return bool(leap > LEAP * max(np.median(before), np.median(after), step))
+
+
+def with_slower_signals(
+    columns: LogColumns, channels: Sequence[Channel], stamps: Array
+) -> LogColumns:
+    """The columns; those of slower bodies and sensors have one value and stamp for each reading.
+
+    stamps: (n,) s, of the rows
+    Where all channels change together, the whole log has a slower source, and its rows are left out
+    instead (`clock_of_log`). A command that alone changes seldom is held by its controller, and
+    stays as it is.
+    """
+    usable = len(stamps) and np.isfinite(stamps).all()
+    if not usable or _reads_slowly(columns, channels, stamps).any():
+        return columns
+    values, slow_stamps = dict(columns.values), dict(columns.stamps)
+    for signals in _sources(columns, channels, stamps):
+        between = _reads_slowly(columns, signals, stamps)
+        if between.any():
+            for column in _columns(columns, signals):
+                values[column] = columns.values[column][~between]
+                slow_stamps[column] = stamps[~between]
+    return replace(columns, values=values, stamps=slow_stamps)
+
+
+def _sources(
+    columns: LogColumns, channels: Sequence[Channel], stamps: Array
+) -> Iterator[list[Channel]]:
+    """Channels that may have a clock of their own: of a slower body all, else each sensor."""
+    bodies = dict.fromkeys(ch.body for ch in channels if ch.body is not None)
+    for body in bodies:
+        signals = [ch for ch in channels if ch.body == body]
+        if len(bodies) > 1 and _reads_slowly(columns, signals, stamps).any():
+            yield signals
+        else:
+            yield from ([s] for s in signals if s.quantity in SENSED)
+
+
+def _columns(columns: LogColumns, signals: Sequence[Channel]) -> list[str]:
+    """Columns of signals on the clock of the log."""
+    every = {c for s in signals if s.body is not None for c in s.columns}
+    return sorted(c for c in every if c not in columns.stamps)
+
+
+def _reads_slowly(columns: LogColumns, signals: Sequence[Channel], stamps: Array) -> np.ndarray:
+    """Mask (n,) of the rows between two readings of these signals; none where a cell is empty."""
+    sensed = _columns(columns, [s for s in signals if s.quantity == "position"] or signals)
+    every = [columns.values[c] for c in _columns(columns, signals)]
+    if not all(len(x) == len(stamps) and np.isfinite(x).all() for x in every):
+        return np.zeros(len(stamps), dtype=bool)
+    return rows_between_readings(every, [columns.values[c] for c in sensed], stamps)

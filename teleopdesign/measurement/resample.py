@@ -25,23 +25,22 @@ TRIALS = 2000
 
 
 def resample_on_grid(
-    values: Array, clock: RecordClock, rule: Rule, *, stamped: bool, step: float, delay: float = 0.0
+    values: Array, clock: RecordClock, rule: Rule, *, step: float, delay: float
 ) -> Array:
     """A signal (m,), one value per used row, on the record's grid (n,).
 
-    stamped: each row was taken at its stamp; otherwise it lies at its place on the grid
     step: of the encoder, 0 for none;  delay: s by which the log has the signal late
     """
-    if clock.exact and not stamped and delay == 0.0:
+    if clock.exact and not clock.stamped and delay == 0.0:
         return values
     out = np.empty(len(clock.time))
     for rows, samples in zip(clock.of_rows, clock.segments, strict=True):
         place = clock.places[rows] - samples.start
         grid = np.arange(samples.stop - samples.start, dtype=np.float64)
         at = place.astype(np.float64)
-        if stamped:
+        if clock.stamped:
             at = (clock.stamps[rows] - clock.time[samples.start]) / clock.sample_time
-            if clock.restarts:
+            if clock.set_back:
                 at += place[0] - at[0]
         out[samples] = interpolate_by_rule(
             values[rows], at - delay / clock.sample_time, grid, rule, step=step
@@ -109,12 +108,11 @@ def _position(
     right = np.clip(np.searchsorted(at, grid), 1, len(at) - 1)
     left = right - 1
     part = np.clip((grid - at[left]) / (at[right] - at[left]), 0.0, 1.0)
-    nearer = np.where(part <= 0.5, values[left], values[right])
     smooth = (
         cubic_through_four(values, at, grid, left) if len(at) > 3 else np.interp(grid, at, values)
     )
     # beyond the ends the last reading is kept
-    smooth = np.where((grid < at[0]) | (grid > at[-1]), nearer, smooth)
+    smooth = np.where(grid < at[0], values[0], np.where(grid > at[-1], values[-1], smooth))
     slow = np.abs(values[right] - values[left]) <= STEPS * step * (at[right] - at[left])
     in_steps = _interpolate_in_steps(values[left], values[right], part, step)
     if slower_clock and step > 0.0:
@@ -125,10 +123,10 @@ def _position(
 def _interpolate_in_steps(left: Array, right: Array, part: Array | float, step: float) -> Array:
     """Readings of an encoder at times between two readings, for a straight motion between them.
 
-    part: of the way between them, 0 to 1;  step: of the encoder; 0: the nearer reading is taken
+    part: of the way between them, 0 to 1;  step: of the encoder; 0: the readings are equal
     """
     if step == 0.0:
-        return np.where(np.asarray(part) <= 0.5, left, right)
+        return left
     return left + step * np.rint(part * (right - left) / step)
 
 

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .encoder import reading_noise
+from .encoder import STEPS, reading_noise
 from .filtering import Array
 from .motion import play
 
 #: part of its travel by which a body comes back at most where it runs one way: noise of readings
 #: and overshoot at an end. More: a record with one short return counts as one way
 BACK = 0.05
-#: half of the way, in steps and in the noise of the readings, within which nothing surely moves
-PLAY = 3.0
 
 
 def runs_one_way(position: Array, step: float) -> bool:
@@ -24,7 +22,7 @@ def runs_one_way(position: Array, step: float) -> bool:
     position: (n,), without leaps of whole turns;  step: of its readings
     """
     noise = reading_noise(position) if len(position) > 4 else 0.0
-    followed = play(position, 2.0 * PLAY * max(step, noise))  # what moves within it moves nothing
+    followed = play(position, 2.0 * STEPS * max(step, noise))  # what moves within it moves nothing
     moves = np.diff(followed)
     forth, back = float(moves[moves > 0].sum()), float(-moves[moves < 0].sum())
     return min(forth, back) <= BACK * float(np.ptp(position))

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from .channel import Channel
 from .conversion import Conversion
 from .encoder import is_on_grid, reading_step
-from .log_clock import LogClock
 from .reading import ReadingStep, count_of
+from .record_clock import RecordClock
+from .repeated_rows import SLOWER
 from .resample import (
     Rule,
     filling_error,
@@ -34,7 +35,7 @@ def signals_of_log(
     columns: LogColumns,
     channels: Mapping[str, Channel],
     conversions: Mapping[str, Conversion],
-    clock: LogClock,
+    clock: RecordClock,
     file: str,
 ) -> tuple[dict[str, Array], list[ReadingStep]]:
     """The signals (n,) by channel, and the reading steps that made them."""
@@ -46,8 +47,11 @@ def signals_of_log(
             signals[key], more = _resample_by_stamps(columns, key, channel, conversion, clock, file)
             steps += more
             continue
-        signals[key] = _resample_channel(readings[key], channel, conversion, clock)
-    if clock.clock.lost:
+        values = readings[key]
+        rule, step = rule_of(channel, values), encoder_step(channel, values)
+        out = resample_on_grid(values, clock, rule, step=step, delay=conversion.delay)
+        signals[key] = _restore_steps(out, values, channel, step)
+    if clock.lost:
         steps.append(_describe_lost_rows(readings, channels, clock, file))
     return signals, steps
 
@@ -56,7 +60,7 @@ def _readings_of_log(
     columns: LogColumns,
     channels: Mapping[str, Channel],
     conversions: Mapping[str, Conversion],
-    clock: LogClock,
+    clock: RecordClock,
     file: str,
 ) -> tuple[dict[str, Array], list[ReadingStep]]:
     """Readings in SI at the clock's rows, of the channels on this clock, with spikes filled."""
@@ -72,13 +76,13 @@ def _readings_of_log(
             text = f"{name} logged {1e3 * conversion.delay:.3g} ms late, as stated"
             steps.append(ReadingStep(file, text, "moved back", "none"))
         if conversion.columns[0] not in columns.stamps:
-            rows = clock.clock.rows
+            rows = clock.rows
             values = {c: columns.values[c][rows] for c in conversion.columns}
             readings[key] = conversion.signal(values)
     for key in sorted(readings, key=lambda k: channels[k].quantity != "position"):
         position = readings.get(f"{channels[key].body}.position")
         readings[key], more = _fill_spikes(
-            readings[key], key, channels[key], clock.clock.of_rows, position, file
+            readings[key], key, channels[key], clock.of_rows, position, file
         )
         steps += more
     return readings, steps
@@ -146,16 +150,6 @@ def encoder_step(channel: Channel, values: Array) -> float:
     return channel.resolution or reading_step(values)
 
 
-def _resample_channel(
-    values: Array, channel: Channel, conversion: Conversion, clock: LogClock
-) -> Array:
-    rule, step = rule_of(channel, values), encoder_step(channel, values)
-    out = resample_on_grid(
-        values, clock.clock, rule, stamped=clock.stamped, step=step, delay=conversion.delay
-    )
-    return _restore_steps(out, values, channel, step)
-
-
 def _restore_steps(out: Array, values: Array, channel: Channel, step: float) -> Array:
     """Round a position to the steps of its readings, if no resolution is stated.
 
@@ -174,7 +168,7 @@ def _resample_by_stamps(
     key: str,
     channel: Channel,
     conversion: Conversion,
-    clock: LogClock,
+    clock: RecordClock,
     file: str,
 ) -> tuple[Array, list[ReadingStep]]:
     """A channel with separate time stamps, as those of a bag's topic, and its reading steps."""
@@ -186,22 +180,22 @@ def _resample_by_stamps(
     once = np.r_[True, np.diff(at) > 0]
     at, values = at[once], values[once]
     values, spikes = _fill_spikes(values, key, channel, [slice(None)], None, file)
-    h = clock.clock.sample_time
+    h = clock.sample_time
     rule, step = rule_of(channel, values), encoder_step(channel, values)
     rate = _rate_without_pauses(at)
-    if channel.quantity == "interaction_force" and rate * h < 0.99:
+    if channel.quantity == "interaction_force" and rate * h < SLOWER:
         rule = "position"  # a line between slow readings would weaken what changes fast
     out = np.concatenate(
         [
             interpolate_by_rule(
                 values,
-                (at - clock.clock.time[s.start]) / h,
+                (at - clock.time[s.start]) / h,
                 np.arange(s.stop - s.start, dtype=np.float64),
                 rule,
                 step=step,
                 slower_clock=True,
             )
-            for s in clock.clock.segments
+            for s in clock.segments
         ]
     )
     words = {"held": "held until its next", "position": "interpolated", "line": "interpolated"}
@@ -230,15 +224,15 @@ def _rate_without_pauses(stamps: Array) -> float:
 def _describe_lost_rows(
     readings: Mapping[str, Array],
     channels: Mapping[str, Channel],
-    clock: LogClock,
+    clock: RecordClock,
     file: str,
 ) -> ReadingStep:
     """Reading step for lost rows: their number, the filling, its error where it can be tested.
 
     readings: of the channels on this clock, at its rows
     """
-    lost = clock.clock.lost
-    part = lost / len(clock.clock.time)
+    lost = clock.lost
+    part = lost / len(clock.time)
     error = force = 0.0
     positions = []
     for key, values in readings.items():
@@ -246,7 +240,7 @@ def _describe_lost_rows(
         if channel.quantity == "velocity":
             continue
         step = encoder_step(channel, values)
-        wrong = filling_error(values, clock.clock, rule_of(channel, values), step=step)
+        wrong = filling_error(values, clock, rule_of(channel, values), step=step)
         if channel.quantity == "position":
             unit = f"{float(f'{wrong / step:.2g}'):g} steps" if step > 0 else f"{wrong:.2g}"
             positions.append(unit)

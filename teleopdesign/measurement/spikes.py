@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from .record_clock import FEWEST
 from .repeated_rows import runs_of
 from .resample import cubic_through_four
 
@@ -28,8 +29,6 @@ MOST = 0.05
 #: three follow one another by chance; then so do as many as are expected in `BY_CHANCE` records;
 #: and the probability that spikes are taken for contacts by chance
 LONGEST, BY_CHANCE = 2, 0.01
-#: fewest readings that show what is usual
-FEWEST = 64
 #: part of its distance by which level and slope on both sides of a spike may differ at most: at
 #: the peak of a triangle the slopes differ by more than the peak is off
 BESIDE = 0.5
@@ -78,13 +77,12 @@ def are_contacts(spikes: Mask, position: Array) -> bool:
     """Whether the spikes of a force (n,) lie where the velocity of the body (n,) changes most."""
     from scipy.special import bdtrc
 
-    first, past = runs_of(spikes)
-    inner = (first >= 3) & (past <= len(position) - 3)
-    if not inner.any():
+    first, past = _inner_runs(spikes)
+    if not len(first):
         return False
-    rows = np.arange(3, len(position) - 3)
+    rows = np.arange(NEAR // 2, len(position) - NEAR // 2)
     usual = np.sort(_change_of_slope(position, rows, rows + 1))
-    changes = _change_of_slope(position, first[inner], past[inner])
+    changes = _change_of_slope(position, first, past)
     larger = np.sort(1.0 - np.searchsorted(usual, changes, side="left") / len(usual))
     half = (len(larger) + 1) // 2
     share = float(larger[half - 1])
@@ -119,14 +117,20 @@ def _are_lone(x: Array, spikes: Mask) -> bool:
         return False
     y = fill_spikes(x, spikes)
     # beside the ends of the record only the size counts: a first reading alone may be a step
-    inner = (first >= 3) & (past <= len(x) - 3)
-    first, past = first[inner], past[inner]
+    first, past = _inner_runs(spikes)
     if not len(first):
         return False
     size = np.minimum(np.abs(x - y)[first], np.abs(x - y)[past - 1])
     before, after = _slopes(y, first, past)
     level = y[past] - y[first - 1] - 0.5 * (past - first + 1) * (before + after)
     return bool((np.maximum(np.abs(level), np.abs(after - before)) <= BESIDE * size).all())
+
+
+def _inner_runs(spikes: Mask) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """First row of each run of spikes, and the row after it, of those with rows on both sides."""
+    first, past = runs_of(spikes)
+    inner = (first >= NEAR // 2) & (past <= len(spikes) - NEAR // 2)
+    return first[inner], past[inner]
 
 
 def _slopes(x: Array, first: NDArray[np.intp], past: NDArray[np.intp]) -> tuple[Array, Array]:

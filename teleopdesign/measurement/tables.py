@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError, did_you_mean, quote
+from .doors._dialect import LOOKED_AT
 from .doors._log import Log, bare_column, join_names, refuse_odd_names
 from .doors.arrays import open_arrays
 from .doors.bag import is_bag, open_bag
@@ -67,8 +68,6 @@ BEGINNINGS: Mapping[bytes, Callable[[Path, str], Log]] = {
     b"{": open_json,
     b"[": open_json,
 }
-#: bytes of a file that are inspected if its ending does not decide
-LOOKED_AT = 4096
 #: name of the file that makes a folder an experiment
 EXPERIMENT = "experiment.toml"
 

@@ -21,7 +21,7 @@ from ..diagnose.evidence import chance, gain_score
 from ..diagnose.fit import standard_errors
 from ..diagnose.least_squares import solve_normal
 from ..measurement.filtering import Array
-from ..measurement.prepare import FOLDS
+from ..measurement.friction_curve import FOLDS
 from .library import wave_number
 from .rows import RESTED, Rows
 from .shapes import SHAPES, Shape, columns_of, knots_of, roughness, shapes_of

@@ -19,7 +19,7 @@ from teleopdesign.diagnose.fit import estimate
 from teleopdesign.effects import catalogue
 from teleopdesign.fitted_checks import check_experiment
 from teleopdesign.fitted_checks.bandwidth import check_bandwidth
-from teleopdesign.measurement.excerpt import excerpt
+from teleopdesign.measurement.experiment import excerpt
 from teleopdesign.measurement.prepare import prepare
 
 #: effects that stand for each way of being seen; all of them take longer

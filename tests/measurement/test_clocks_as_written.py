@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.measurement.doors._cells import stamps_in_texts
-from teleopdesign.measurement.doors._dates import stamps_of
+from teleopdesign.measurement.doors._cells import stamps_in_texts, stamps_of
 from teleopdesign.measurement.from_arrays import log_of
 from teleopdesign.measurement.stamps import seconds_since_first, unit_of_steps, unwrap_stamps
 from teleopdesign.measurement.survey import Choices, spans_of, survey_log

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from measurement.columns_by_hand import Q, T, U, look
 
-from teleopdesign.measurement.survey.acting import (
+from teleopdesign.measurement.survey.balance import (
     current_that_acted,
 )
 from teleopdesign.measurement.survey.content import (

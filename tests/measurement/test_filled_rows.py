@@ -26,7 +26,7 @@ def clock_of(places, segments=None):
     n = int(places[-1]) + 1
     whole = segments or (slice(0, n),)
     rows = tuple(slice(*np.searchsorted(places, [s.start, s.stop]).tolist()) for s in whole)
-    return RecordClock(places, H * places, places, H * np.arange(n), H, whole, rows)
+    return RecordClock(places, H * places, places, H * np.arange(n), H, whole, rows, 0.0)
 
 
 @given(

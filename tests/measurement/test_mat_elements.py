@@ -5,7 +5,7 @@ import zlib
 
 import pytest
 
-from teleopdesign.measurement.doors._mat_elements import check_elements
+from teleopdesign.measurement.doors.matlab import check_elements
 
 #: types of the format, by its manual: integers of 8, 16, 32 bits, floats, 64 bits, characters
 NUMBERS = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 9: 8, 12: 8, 13: 8, 16: 1, 17: 2, 18: 4}

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.measurement.doors._mat_elements import _elements
+from teleopdesign.measurement.doors.matlab import _elements
 from teleopdesign.measurement.motion import TRAVEL, direction_of, mark_neighbours, motion_of, play
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from teleopdesign.measurement.doors._numbered import names_by_number
+from teleopdesign.measurement.doors._header import names_by_number
 from teleopdesign.measurement.doors.text import open_text
 
 LINES = (

@@ -7,8 +7,13 @@ from check.made_channels import interruptions
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors._log import Log
-from teleopdesign.measurement.survey import Choices, spans_of, survey_log
-from teleopdesign.measurement.survey.trials import longest_trial, trial_column
+from teleopdesign.measurement.survey import (
+    Choices,
+    longest_trial,
+    spans_of,
+    survey_log,
+    trial_column,
+)
 
 H, ROWS = 2e-3, 1500
 ONE = np.arange(ROWS)

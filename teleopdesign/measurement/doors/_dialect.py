@@ -13,6 +13,7 @@ from typing import IO, cast
 import numpy as np
 
 from ...base.errors import ExperimentError, quote
+from ..encoder import is_most
 from ._cells import is_number, seconds_of
 from ._encoding import encoding_of
 from ._header import (
@@ -22,11 +23,11 @@ from ._header import (
     is_row_of_units,
     is_unit_cell,
     names_and_units,
+    names_by_number,
     names_of_labelled_rows,
     numbers_channels,
 )
 from ._log import number_names
-from ._numbered import names_by_number
 
 COMMENTS = ("#", "%", "//")
 SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
@@ -207,7 +208,7 @@ def is_value(cell: str, comma: bool) -> bool:
 def _is_data(cells: Sequence[str], comma: bool) -> bool:
     """Whether half of a row's cells are numbers or dates: a signal may be named beside them."""
     filled = [c for c in cells if c]
-    return bool(filled) and sum(is_value(c, comma) for c in filled) >= 0.5 * len(filled)
+    return bool(filled) and not is_most(np.array([not is_value(c, comma) for c in filled]))
 
 
 def _header(

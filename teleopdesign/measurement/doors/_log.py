@@ -25,6 +25,12 @@ MOST_ROWS = 50_000_000
 MOST_BYTES = 4_000_000_000
 #: most numbers of one message or list that become columns: images and point clouds are no log
 MOST_FIELDS = 200
+#: most columns of a matrix, or signals that the rows of a table name: more are no signals
+MOST_SIGNALS = 1000
+#: most structs of one array, and most machines whose rows stand in one table
+MOST_PARTS = 64
+#: levels of records within records that are looked into
+DEPTH = 6
 #: most columns of a log, and most characters of a name: far above those of any logger. The time for
 #: a name may grow with the square of its length
 MOST_COLUMNS, LONGEST_NAME = 10_000, 1000
@@ -137,7 +143,7 @@ def parts_of(name: str, shape: Sequence[int]) -> dict[str, tuple[str, int | None
     lengths = [n for n in shape if n != 1]
     if len(shape) == 1 or len(shape) == 2 and len(lengths) == 1:
         return {name: (name, None)}
-    if len(shape) == 2 and 2 <= shape[1] <= 1000 and shape[0] > shape[1]:
+    if len(shape) == 2 and 2 <= shape[1] <= MOST_SIGNALS and shape[0] > shape[1]:
         return {f"{name}(:,{k + 1})": (name, k) for k in range(shape[1])}
     return {}
 

@@ -54,12 +54,13 @@ def open_bag(path: Path, file: str) -> Log:
         raise ExperimentError(
             f"{file}: found no topic with numbers, but {join_names(topics) or 'no messages'}"
         )
-    clocks = {name: f"{_topic(name, topics)}.{STAMP}" for name in columns}
+    clocks = {f"{t}.{name}": f"{t}.{STAMP}" for t, rows in topics.items() for name in rows}
+    clocks = {name: clock for name, clock in clocks.items() if name in columns}
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         return {name: columns[name] for name in wanted}
 
-    return Log(tuple(columns), read, _units(columns), (), clocks)
+    return Log(tuple(columns), read, dict.fromkeys(clocks.values(), "s"), (), clocks)
 
 
 def _check_definitions(source: Path, file: str) -> None:
@@ -175,7 +176,7 @@ def _columns(topics: Mapping[str, Mapping[str, list[float]]]) -> dict[str, Array
     columns = {}
     for topic, rows in topics.items():
         length = len(rows[STAMP])
-        if len(rows) < 3:
+        if len(rows) <= 2:  # nothing but both times
             continue
         columns[f"{topic}.{STAMP}"] = np.array(rows[clock])
         for name in rows:
@@ -184,11 +185,3 @@ def _columns(topics: Mapping[str, Mapping[str, list[float]]]) -> dict[str, Array
                 values[: len(rows[name])] = rows[name]
                 columns[f"{topic}.{name}"] = values
     return columns
-
-
-def _topic(column: str, topics: Mapping[str, Any]) -> str:
-    return max((t for t in topics if column.startswith(f"{t}.")), key=len)
-
-
-def _units(columns: Mapping[str, Array]) -> dict[str, str]:
-    return {name: "s" for name in columns if name.endswith(f".{STAMP}")}

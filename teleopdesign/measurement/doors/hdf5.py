@@ -12,15 +12,21 @@ from typing import Any
 
 from ...base.errors import ExperimentError, quote
 from ..column_names import unit_of_text
-from ._log import Log, how_to_save, optional, part, parts_of, refuse_damage, refuse_size
+from ._log import (
+    MOST_COLUMNS,
+    MOST_PARTS,
+    Log,
+    how_to_save,
+    optional,
+    part,
+    parts_of,
+    refuse_damage,
+    refuse_size,
+)
 
 _KIND = "HDF5 file"
 #: how MATLAB begins its files, in front of what HDF5 writes
 _MATLAB = b"MATLAB"
-#: datasets of one file that are listed
-_MOST = 10_000
-#: structs of one array that are looked into
-MOST_STRUCTS = 64
 #: names of the attribute that holds a unit, in lower case
 UNIT_KEYS = ("units", "unit")
 #: attribute by which MATLAB marks one of its objects; its numbers lie elsewhere in the file
@@ -39,7 +45,7 @@ def open_hdf5(path: Path, file: str) -> Log:
         names: list[str] = []
 
         def visit(name: str, item: Any) -> None:
-            if isinstance(item, h5py.Dataset) and len(names) < _MOST:
+            if isinstance(item, h5py.Dataset) and len(names) < MOST_COLUMNS:
                 names.append(name)
 
         content.visititems(visit)
@@ -104,7 +110,7 @@ def _fields_of_structs(
     """Columns of one field of an array of structs, "axis(2)/q"; their values lie elsewhere."""
     columns: dict[str, tuple[str, int | str | None]] = {}
     group, _, field = name.rpartition("/")
-    for k, reference in enumerate(item[()].reshape(-1)[:MOST_STRUCTS], start=1):
+    for k, reference in enumerate(item[()].reshape(-1)[:MOST_PARTS], start=1):
         target = content[reference] if reference else None
         if target is None or not hasattr(target, "shape") or target.dtype.kind not in "fiu":
             continue

@@ -17,12 +17,10 @@ import numpy as np
 
 from ...base.errors import ExperimentError, quote
 from ._dialect import open_bytes
-from ._log import MOST_BYTES, MOST_FIELDS, Log, refuse_size
+from ._log import DEPTH, MOST_BYTES, MOST_FIELDS, Log, refuse_size
 from ._stray_lines import FEW_STRAYS, MOST_STRAYS
 from .shapes._table import MOST_ROWS
 
-#: deepest nesting of records that is read
-DEPTH = 6
 #: column that numbers the lists of records with the same fields
 TRIAL = "trial"
 

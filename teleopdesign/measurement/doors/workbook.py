@@ -12,12 +12,10 @@ from typing import Any
 import numpy as np
 
 from ...base.errors import ExperimentError
+from ..encoder import is_most
 from ._header import names_and_units
 from ._log import MOST_BYTES, Log, join_names, number_names, optional, refuse_damage, refuse_size
 from .shapes._table import MOST_ROWS
-
-#: rows above the first row of numbers that may be titles, names and units
-_TOP = 50
 
 
 def open_workbook(path: Path, file: str) -> Log:
@@ -49,17 +47,17 @@ def open_workbook(path: Path, file: str) -> Log:
 
 def _first_row(rows: Sequence[Sequence[Any]]) -> int | None:
     """The first row of numbers of a sheet; None: it holds no table."""
-    return next((k for k, row in enumerate(rows[:_TOP]) if _is_data(row)), None)
+    return next((k for k, row in enumerate(rows[:MOST_ROWS]) if _is_data(row)), None)
 
 
 def _is_data(row: Sequence[Any]) -> bool:
     filled = [c for c in row if c is not None]
     kinds = int | float | datetime.datetime | datetime.time | datetime.timedelta
-    return len(filled) > 1 and sum(isinstance(c, kinds) for c in filled) > 0.5 * len(filled)
+    return len(filled) > 1 and is_most(np.array([isinstance(c, kinds) for c in filled]))
 
 
 def _log(rows: Sequence[Sequence[Any]], first: int, notes: tuple[str, ...]) -> Log:
-    width = max(len(row) for row in rows[first : first + _TOP])
+    width = max(len(row) for row in rows[first : first + MOST_ROWS])
     above = [
         [_text(c) for c in (*row, *[None] * (width - len(row)))]
         for row in rows[:first]

@@ -16,11 +16,11 @@ import numpy as np
 
 from ...base.errors import ExperimentError, did_you_mean
 from ...base.units import is_several_times, is_unit
-from ..column_names import as_unit
+from ..column_names import WORDS, as_unit, words_of
 from ..doors._log import Log, join_names
 from ..doors.folder import are_quantities
 from ..numbers_in_cells import numbers_of
-from ..record_clock import FEWEST
+from ..record_clock import FEWEST, segments_of
 from ..stamps import unwrap_stamps
 from .axis_kind import axis_of
 from .candidate_clocks import ASSUMED, counts_rows
@@ -30,7 +30,6 @@ from .derivative import wrap_of
 from .forces import describe_forces
 from .position import describe_position, find_position
 from .relations import unused_columns
-from .trials import longest_trial, name_trials
 
 __all__ = [
     "Choices",
@@ -51,6 +50,8 @@ UNITS = (
 FIT_PART = 0.6
 #: part of a log by which a cut moves to lie between two trials
 NEAR_CUT = 0.25
+#: rows of a trial, on average: what changes more often is a signal
+ROWS_OF_A_TRIAL = 50
 
 
 def survey_log(log: Log, file: str, choices: Choices) -> Survey:
@@ -174,16 +175,12 @@ def _units_in_use(survey: Survey, choices: Choices, file: str) -> None:
         column = entry.get("column")
         unit = choices.units.get(column) if isinstance(column, str) else None
         if unit is not None and unit != entry.get("unit"):
+            noun = "force" if key.endswith("force") else key
             on_axis = "" if key == "time" else f" on a {survey.axis} axis"
             raise ExperimentError(
-                f"{file}: unit of {column!r}: found {unit!r}, expected one of a {_noun(key)}"
+                f"{file}: unit of {column!r}: found {unit!r}, expected one of a {noun}"
                 f"{on_axis}, such as {entry.get('unit')!r}"
             )
-
-
-def _noun(key: str) -> str:
-    """The quantity of a channel as a word in a message."""
-    return "force" if key.endswith("force") else key
 
 
 def spans_of(
@@ -217,3 +214,45 @@ def require_same_columns(logs: Sequence[Log], files: Sequence[str]) -> None:
                 f"{file}: has no column {missing[0]!r}, which {files[0]} has; if both are parts of "
                 "one run, put them into a folder and give the folder"
             )
+
+
+def trial_column(raw: Mapping[str, Array]) -> str | None:
+    """The column that numbers trials, by its name and by whole numbers that seldom change."""
+    for name, values in raw.items():
+        if not set(WORDS["segment"]).intersection(words_of(name)):
+            continue
+        changes = int(np.count_nonzero(np.diff(values)))
+        if np.all(values == np.round(values)) and 0 < changes * ROWS_OF_A_TRIAL < len(values):
+            return name
+    return None
+
+
+def name_trials(survey: Survey, raw: Mapping[str, Array]) -> None:
+    """Take the column that numbers trials as that of segments, and say where trials begin."""
+    name = trial_column(raw)
+    if name is None:
+        return
+    survey.channels["segment"] = {"column": name}
+    changes = int(np.count_nonzero(np.diff(raw[name])))
+    survey.notes.append(f"{name!r} numbers {changes + 1} trials: each is a segment")
+    # the pause between two trials is interpolated, its label too: no two rows there are alike
+    starts = [rows.start for rows in _trials(survey) if rows.stop - rows.start > 1]
+    survey.trials = tuple(float(survey.time[k]) for k in starts[1:])
+
+
+def longest_trial(survey: Survey) -> dict[str, SurveyedColumn]:
+    """The columns in the longest trial; all rows, where it is short or the log has no trials.
+
+    Between two trials a position may leap: of such a leap no physics tells signs or units.
+    """
+    longest = max(_trials(survey), key=lambda rows: rows.stop - rows.start)
+    rows = longest.stop - longest.start
+    if rows < FEWEST:
+        return survey.columns
+    return {n: replace(c, values=c.values[longest]) for n, c in survey.columns.items()}
+
+
+def _trials(survey: Survey) -> tuple[slice, ...]:
+    name = survey.channels.get("segment", {}).get("column")
+    column = survey.columns.get(name) if name else None
+    return segments_of(None if column is None else column.values, len(survey.time))

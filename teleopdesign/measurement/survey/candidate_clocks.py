@@ -12,7 +12,7 @@ from ..column_names import is_wanted, likeness, words_of
 from ..doors._log import Log
 from ..doors.shapes._table import AS_EVEN_AS_A_CLOCK
 from .content import Array, Choices
-from .derivative import DERIVATIVE, derivative_factor, has_both_signs, unwrap_column, wrap_of
+from .derivative import DERIVATIVE, SAME, derivative_factor, has_both_signs, unwrap_column, wrap_of
 
 #: times as uneven as another column that a first column without a name may rise. Two: the stamps of
 #: a logger spread by a third of a step at most, the angle of a motor at ripple by its whole step
@@ -25,8 +25,6 @@ FEWEST_BESIDE_A_COUNT = 4
 ASSUMED = 1000.0
 #: fewest rows and most columns that are looked at
 FEWEST, MOST = 60, 12
-#: part by which the rate that a velocity tells may differ from the assumed one
-SAME = 0.1
 #: part by which a rate with fewer digits may be off: a derivative along rows tells it no better
 ROUNDED = 0.005
 

@@ -18,6 +18,7 @@ from ..column_names import (
     words_of,
 )
 from ..doors._log import Log, bare_column, join_names
+from ..encoder import is_most
 from ..log_clock import OF_ANOTHER_CLOCK
 from ..numbers_in_cells import holds_dates, numbers_of
 from ..record_clock import clock_of
@@ -79,15 +80,15 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
         except ExperimentError as problem:
             unread[name] = _without_name(str(problem), name, file)
             continue
-        finite = float(np.isfinite(values).mean()) if len(values) > 1 else 0.0
-        if finite > 0.5:
+        filled = np.isfinite(values)
+        if len(values) > 1 and is_most(filled):
             raw[name] = values
             dated += [name] if holds_dates(cells) else []
         elif len(values) == 1:
             unread[name] = f"one value: {values[0]:g}"
             remarks.append(f"{bare_column(name)} = {values[0]:g}")
         else:
-            unread[name] = _explain_empty(finite)
+            unread[name] = _explain_empty(float(filled.mean()) if len(values) else 0.0)
     if not raw or log.clocks and not log.clocks.keys() & raw.keys():  # or clocks alone
         whys = set(unread.values())
         if len(whys) == 1 and "found" in (why := whys.pop()):  # the same row of all columns
@@ -135,7 +136,6 @@ def time_column(
         if not scores:
             guesses["sample_rate"] = (
                 f"no column rises as a time does: the sample rate is assumed to be {ASSUMED:g} Hz"
-                f"{_perhaps_coarse(raw, log, choices)}"
             )
             return None, "s"
         name = max(scores, key=lambda n: scores[n])
@@ -149,11 +149,9 @@ def time_column(
             guesses["channels.time.column"] = (
                 f"{name!r} is read as the time: of two clocks, {first!r} has no word of {beside!r}"
             )
-    unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name, "time")
+    unit = choices.units.get(name) or _unit_of_time(name, log)
     if name in choices.units and is_several_times(choices.units[name]):
         return name, choices.units[name]
-    if unit is None and _is_unit_of_time(name):
-        unit = unit_of_text(bare_name(name))
     if unit is None or not measures(unit, "time"):
         unit, why = unit_of_steps(raw[name])
         if why:
@@ -182,7 +180,7 @@ def rate_without_time(
         usual = float(np.median(steps))
         if not usual > 0 or float(np.median(np.abs(steps - usual))) > UNEVEN * usual:
             continue
-        unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name, "time")
+        unit = choices.units.get(name) or _unit_of_time(name, log)
         if unit is None or not measures(unit, "time"):
             unit, _ = unit_of_steps(np.cumsum(steps))
         rate = float(f"{1.0 / (usual * si_factor(unit, quantity='time')):.4g}")
@@ -193,9 +191,7 @@ def rate_without_time(
 
 def _rises_as_clock(name: str, values: Array, log: Log) -> bool:
     """Whether a time by its name or unit rises once its wraps and its order are mended."""
-    unit = log.units.get(name)
-    timed = unit is not None and unit != "counts" and measures(unit, "time")
-    if not timed and likeness(name, "time") == 0:
+    if not is_unit_of(log.units.get(name), "time") and likeness(name, "time") == 0:
         return False
     stamps = unwrap_stamps(values[np.isfinite(values)])[0]
     return rises(stamps) or are_out_of_order(stamps)
@@ -203,9 +199,8 @@ def _rises_as_clock(name: str, values: Array, log: Log) -> bool:
 
 def _is_coarse_time(name: str, values: Array, log: Log) -> bool:
     """Whether a column is a time by its name or unit, in which many rows share a stamp."""
-    unit = log.units.get(name) or unit_in_name(name, "time")
-    timed = unit is not None and measures(unit, "time") if unit != "counts" else False
-    if not (timed or likeness(name, "time") >= SURE_NAME or _is_unit_of_time(name)):
+    timed = is_unit_of(_unit_of_time(name, log), "time")
+    if not timed and likeness(name, "time") < SURE_NAME:
         return False
     steps = np.diff(values[np.isfinite(values)])
     return bool(np.all(steps >= 0)) and int(np.count_nonzero(steps)) >= FEWEST_CHANGES
@@ -224,26 +219,19 @@ def _names_signal(name: str, log: Log, choices: Choices) -> bool:
     return any(len(w) > 1 and likeness(w, k) >= SURE_NAME for w in words for k in kinds)
 
 
-def _perhaps_coarse(raw: Mapping[str, Array], log: Log, choices: Choices) -> str:
-    """Which column may be a time in which most rows share a stamp, as the end of a guess."""
-    for name, values in raw.items():
-        if _names_signal(name, log, choices):
-            continue
-        steps = np.diff(values[np.isfinite(values)])
-        if np.all(steps >= 0) and int(np.count_nonzero(steps)) >= FEWEST_CHANGES:
-            return f"; {name!r} never falls and may be a coarse time"
-    return ""
-
-
-def _is_unit_of_time(name: str) -> bool:
-    """Whether a name consists only of a unit of time: "ms", "Sekunden"."""
+def _unit_of_time(name: str, log: Log) -> str | None:
+    """The unit of a column if it is a time: of its file, in its name, or all of it: "Sekunden"."""
     unit = unit_of_text(bare_name(name))
-    return unit is not None and unit != "counts" and measures(unit, "time")
+    return (
+        log.units.get(name)
+        or unit_in_name(name, "time")
+        or (unit if is_unit_of(unit, "time") else None)
+    )
 
 
 def _is_called_clock(name: str) -> bool:
     """Whether a name consists only of a unit of time, or is that of a clock."""
-    return _is_unit_of_time(name) or says_only(name, "clock")
+    return is_unit_of(unit_of_text(bare_name(name)), "time") or says_only(name, "clock")
 
 
 def duration_of(

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from ...base.units import is_unit, measures
 from ..column_names import likeness, unit_in_name
-from ..doors._log import bare_column
+from ..doors._log import bare_column, join_names
+from ..encoder import is_most
 from ..first_guess import FirstGuess
 from ..signed_numbers import SignCode
 from .words import says
@@ -152,7 +153,7 @@ def kinds_of(column: SurveyedColumn) -> list[str]:
 def rises(x: Array) -> bool:
     """Whether numbers grow from row to row, like those of a clock."""
     steps = np.diff(x[np.isfinite(x)])
-    return len(steps) > 1 and float(np.mean(steps >= 0)) > 0.99 and float(np.mean(steps > 0)) > 0.5
+    return len(steps) > 1 and float(np.mean(steps >= 0)) > 0.99 and is_most(steps > 0)
 
 
 def sample_time_of(survey: Survey) -> float:
@@ -174,5 +175,5 @@ def reasons(unread: Mapping[str, str], most: int = 3) -> str:
 
 def explain_ambiguity(column: str, others: Sequence[str], what: str) -> str:
     """The reason why the choice of a column is a guess: other columns suit as well."""
-    named = ", ".join(map(repr, others[:3])) + (", ..." if len(others) > 3 else "")
+    named = join_names(map(repr, others), most=3)
     return f"{column!r} is read as {what}: {named} may be {what} as well"

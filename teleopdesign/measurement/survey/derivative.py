@@ -9,16 +9,17 @@ import numpy as np
 
 from ..column_names import is_another_quantity, likeness
 from ..filtering import spectrum
-from ..first_guess import motion_columns
+from ..first_guess import motion_columns, rows_each_way
 from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of, rises
 from .words import says
 
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
 #: part of its path that a motion one way goes forward, noise of the readings included; times its
-#: spread that the mean of a speed is, from which its noise says little; and part by which the mean
-#: of a speed may differ from the motion: filters and a start from rest
-ONE_WAY, STEADY, AT_MEAN = 0.9, 3.0, 0.1
+#: spread that the mean of a speed is, from which its noise says little
+ONE_WAY, STEADY = 0.9, 3.0
+#: part by which a factor between two columns may miss one: filters, rounding, a start from rest
+SAME = 0.1
 #: units of a speed over those of the derivative: the same, and revolutions a minute of turns, rad
 #: and deg
 RATES = (1.0, 1 / 60.0, 2 * math.pi / 60.0, 6.0)
@@ -120,7 +121,7 @@ def _is_rate(factor: float, agree: float) -> bool:
 
     What rises with a ramp agrees with the motion that the ramp causes, too.
     """
-    return agree > DERIVATIVE and any(abs(factor * u - 1.0) < AT_MEAN for u in RATES)
+    return agree > DERIVATIVE and any(abs(factor * u - 1.0) < SAME for u in RATES)
 
 
 def may_be_ramp(column: SurveyedColumn) -> bool:
@@ -171,8 +172,7 @@ def has_both_signs(x: Array, v: Array, sample_time: float) -> bool:
     """
     direction = motion_columns(x, sample_time)[2]
     inner = slice(len(x) // 50 + 1, -len(x) // 50 - 1)
-    # the direction is low-passed: it rings about zero where a body is at rest before it moves
-    forward, backward = (v[inner][way * direction[inner] > 0.5] for way in (1, -1))
+    forward, backward = (v[inner][way] for way in rows_each_way(direction[inner]))
     if min(len(forward), len(backward)) < (1.0 - ONE_WAY) * len(v):
         return True
     return float(forward.mean() * backward.mean()) <= 0.0
@@ -189,7 +189,7 @@ def is_mean_rate(x: Array, v: Array, sample_time: float) -> bool:
     if not abs(total) > ONE_WAY * path or not abs(mean) > STEADY * float(np.std(v)):
         return False
     factor = total / (sample_time * (len(x) - 1)) / mean
-    return any(abs(factor / usual - 1.0) < AT_MEAN for usual in RATES)
+    return any(abs(factor / usual - 1.0) < SAME for usual in RATES)
 
 
 def follows_direction(x: Array, v: Array, sample_time: float) -> bool:

@@ -11,8 +11,9 @@ import numpy as np
 from ...base.units import si_factor
 from ..column_names import is_wanted, likeness
 from ..doors._log import join_names
+from ..encoder import SURELY
 from ..first_guess import (
-    SURELY,
+    SURELY_LESS,
     FirstGuess,
     explain_force,
     goes_one_way,
@@ -21,9 +22,8 @@ from ..first_guess import (
     motion_columns,
 )
 from ..law_of_readings import law_of_readings, spring_of_copy
-from .acting import current_that_acted
 from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
-from .balance import hand_by_balance, scale_by_balance
+from .balance import current_that_acted, hand_by_balance, scale_by_balance
 from .content import (
     NONE,
     SURE_NAME,
@@ -37,7 +37,7 @@ from .content import (
     sample_time_of,
 )
 from .derivative import unwrap_column, wrap_of
-from .force_entry import describe_force, force_to_si
+from .force_entry import describe_force, force_to_si, state_scatter
 from .refusals import (
     error_of_chance,
     error_of_place,
@@ -46,7 +46,6 @@ from .refusals import (
     tells_forces,
 )
 from .relations import possible_forces, relations_of
-from .scatter import state_scatter
 from .words import says, says_only
 
 #: part of a column that the motion may explain by chance; a column with less counts as a force only
@@ -60,8 +59,6 @@ DRIVES = 0.3
 #: coefficients of a cubic: one position as a function of another bends at both ends at most; and
 #: the part of the squares of a position that it leaves
 POWERS, OF_A_POSITION = 4, 0.01
-#: part of what one sign of the measured force leaves, below which the other sign is surely right
-SURELY_LESS = 0.8
 
 
 def describe_forces(

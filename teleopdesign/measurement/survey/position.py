@@ -17,7 +17,7 @@ from ..column_names import (
 )
 from ..encoder import ENOUGH, grid_of, reading_step
 from .axes import axis_that_moves
-from .axis_kind import drives_in_turns
+from .axis_kind import drives_in_turns, guess_counts_per_turn, is_counter
 from .content import (
     OF_SENSORS,
     SURE_NAME,
@@ -35,6 +35,8 @@ from .content import (
 )
 from .derivative import (
     DERIVATIVE,
+    NEAR_USUAL,
+    SAME,
     derivative_factor,
     follows_direction,
     is_no_velocity,
@@ -45,7 +47,6 @@ from .derivative import (
     unwrap_column,
     wrap_of,
 )
-from .encoder_counts import guess_counts_per_turn, is_counter
 from .force_entry import describe_code
 from .refusals import error_without_position, has_only_speeds
 from .set_point import followed_columns, may_be_set_point, most_explained
@@ -53,9 +54,6 @@ from .words import says
 
 #: correlation that a matching name counts for: the error of a controller also follows the velocity
 BY_NAME = 0.1
-#: relative difference between a velocity and the derivative of its position that filters and
-#: rounding may cause
-SAME_TIME = 0.1
 #: part of a step by which readings at the end of a range may lie beside a grid of rounded steps
 OFF_GRID = 0.1
 
@@ -206,7 +204,7 @@ def describe_position(
             survey.notes.append(f"{position!r} moves in steps of {step:.4g} {unit}")
     if jump is not None:
         turn = 2 * math.pi / factor
-        whole = axis == "revolute" and unit != "counts" and abs(jump - turn) < 1e-3 * turn
+        whole = axis == "revolute" and unit != "counts" and abs(jump / turn - 1.0) < NEAR_USUAL
         entry["unwrap"] = True if whole else jump
         survey.notes.append(f"{position!r} wraps at {jump:g}")
     if choices.gear_ratio is not None:
@@ -220,29 +218,6 @@ def describe_position(
             )
             more |= describe_code(survey, velocity, "velocity")
             survey.channels["velocity"] = {"column": velocity, "unit": velocity_unit, **more}
-            _hold_time_against(survey, column, velocity)
-
-
-def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) -> None:
-    """Check a guessed unit of time: a position and its velocity show the true time step."""
-    why = survey.guesses.get("channels.time.unit")
-    unit, velocity_unit = (survey.channels[key]["unit"] for key in ("position", "velocity"))
-    if why is None or unit == "counts" or "channels.position.unit" in survey.guesses:
-        return
-    h = sample_time_of(survey)
-    whole = unwrap_column(column.values, wrap_of(column.values))
-    factor, agree = derivative_factor(whole, survey.columns[velocity].values, h)
-    slower = factor * si_factor(velocity_unit, quantity="velocity", axis=survey.axis)
-    slower /= si_factor(unit, quantity="position", axis=survey.axis)
-    if agree < DERIVATIVE or slower <= 0 or abs(slower - 1.0) < SAME_TIME:
-        return
-    clock = survey.channels["time"]
-    tick = 1e6 * si_factor(clock["unit"], quantity="time") / slower
-    stated = f"{clock['column']}={float(f'{tick:.3g}'):g} us"
-    survey.guesses["channels.time.unit"] = (
-        f"{why}; but {velocity!r} in {velocity_unit} requires steps of {h / slower:.3g} s: "
-        f"--unit {stated!r}"
-    )
 
 
 def _step_of_readings(values: Array) -> float:
@@ -274,7 +249,7 @@ def _position_unit(
             else 0.0
         )
         for unit in ("deg", "rad", "turns") if axis == "revolute" else ("mm", "m", "um"):
-            if abs(scale / si_factor(unit, quantity="position", axis=axis) - 1.0) < 0.05:
+            if abs(scale / si_factor(unit, quantity="position", axis=axis) - 1.0) < SAME:
                 why = f"with it, the derivative agrees with {velocity!r} in {velocity_unit}"
                 return unit, f"{unit}: {why}"
     if axis == "revolute" and (drives := drives_in_turns(column.name)):

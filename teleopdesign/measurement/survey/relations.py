@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping
 from ...base.units import is_unit
 from ..column_names import is_another_quantity, is_wanted, likeness, words_of
 from ..doors._log import Log
+from ..first_guess import MOSTLY
 from ..law_of_readings import is_copy
 from .axes import of_another_axis, same_but_axis
 from .content import (
@@ -44,10 +45,6 @@ from .words import says
 #: correlation from which one column is the derivative of another to its digits, as of a planned
 #: path: friction of 1 % of a force lowers it below
 EXACT = 0.9999
-#: part of what the position leaves of a velocity, below which another column is its position: two
-#: joints that move alike explain most of each other's velocities, and a spring's force is nearly a
-#: copy of its position
-CLEARLY_LESS = 0.5
 
 
 def relations_of(
@@ -136,7 +133,7 @@ def _motions_elsewhere(survey: Survey, x: Array, h: float) -> Iterator[tuple[str
         beside = abs(derivative_factor(x, values, h)[1])
         # the velocity of this body has a derivative, too: a force of inertia
         of_this_body = derivative_factor(x, other, h)[1] > DERIVATIVE
-        if of_this_body or 1.0 - agree > CLEARLY_LESS * (1.0 - beside):
+        if of_this_body or 1.0 - agree > MOSTLY * (1.0 - beside):
             continue
         if not follows_direction(other, values, h) and has_both_signs(other, values, h):
             places[place] = name

@@ -22,9 +22,8 @@ from ...record_clock import DATE, FEWEST
 from ...stamps import unit_of_steps, unwrap_stamps
 from .._cells import is_column_of_texts
 from .._log import Array, Log, join_names
-from ._table import SHARED, CellTable, LongSignal, LongTable, as_text
+from ._table import SHARED, CellTable, LongSignal, LongTable, as_text, rises, time_of
 from .clock_before_signals import clock_before_signals
-from .columns import columns
 from .machines import machines_by_time, machines_in_turn
 from .reading_in_each_row import reading_in_each_row
 from .separate_clocks import separate_clocks
@@ -33,6 +32,16 @@ from .two_part_time import two_part_time
 #: how regular rows without a clock are held to be: as regular as a clock with half of its steps
 WITHOUT_A_CLOCK = 0.5
 TableShape = Callable[[CellTable], LongTable | None]
+
+
+def columns(table: CellTable) -> LongTable | None:
+    """Each column is a signal; they share the time, if there is one."""
+    time = time_of(table) or next((n for n, x in table.numeric.items() if rises(x)), "")
+    times = table.numeric.get(time)
+    others = (n for n in table.names if n != time)
+    return LongTable(tuple(LongSignal(n, table.columns[n], time, times) for n in others))
+
+
 #: all shapes. Of equally good readings the last one counts: it says more of the table
 SHAPES: tuple[TableShape, ...] = (
     columns,

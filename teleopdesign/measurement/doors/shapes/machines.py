@@ -18,14 +18,14 @@ from numpy.typing import NDArray
 
 from ...column_names import words_of
 from ...row_places import GOES_ON, are_out_of_order
-from .._log import Array, join_names
+from .._log import MOST_PARTS, Array, join_names
 from ._table import FEWEST_ROWS, CellTable, LongSignal, LongTable, as_text, time_of
 
-#: words of the name of a column that names or numbers machines, and most machines of a table
+#: words of the name of a column that names or numbers machines
 NUMBERS_MACHINES = frozenset(
     "id ids no nr num number name motor joint servo axis actuator node device drive can leg".split()
 )
-MOST_MACHINES = 64
+
 #: part of its changes from row to row that a signal keeps within one machine, and part of the rows
 #: that belong to another machine than the row before: the direction of one machine lasts for rows
 SMOOTHER, EACH_ROW = 0.5, 0.7
@@ -62,7 +62,7 @@ def machines_by_time(table: CellTable) -> LongTable | None:
         return None
     parts, returns = parts_by_time(table.numeric[time])
     count = int(parts.max(initial=-1)) + 1
-    if returns < FEWEST_RETURNS or returns <= count or count > MOST_MACHINES:
+    if returns < FEWEST_RETURNS or returns <= count or count > MOST_PARTS:
         return None
     names = [f"part {k + 1}" for k in range(count)]
     how = f"told apart by their times: {join_names(names, most=4)}"
@@ -78,7 +78,7 @@ def _labels_of(name: str, column: NDArray[Any]) -> tuple[list[str], NDArray[np.i
     if numbered and not (np.all(column == np.round(column)) and np.all(column >= 0)):
         return None
     number = {cell: k for k, cell in enumerate(dict.fromkeys(column.tolist()))}
-    if not 2 <= len(number) <= MOST_MACHINES or not {"", None}.isdisjoint(number):
+    if not 2 <= len(number) <= MOST_PARTS or not {"", None}.isdisjoint(number):
         return None
     return [as_text(c) for c in number], np.array([number[c] for c in column], dtype=np.intp)
 
@@ -142,7 +142,7 @@ def parts_by_time(stamps: Array) -> tuple[NDArray[np.intp], int]:
         elif steps[row - 1] < 0:
             last.append(row)
             now = len(last) - 1
-            if now > MOST_MACHINES:
+            if now > MOST_PARTS:
                 break
         begins.append(row)
         parts.append(now)

@@ -12,14 +12,14 @@ from __future__ import annotations
 import numpy as np
 
 from ...column_names import words_of
+from ...encoder import is_most
 from .._header import UNIT_LABELS, bare_unit
+from .._log import MOST_SIGNALS
 from ._table import CellTable, LongSignal, LongTable, time_of
 
-#: last words of the names of the columns that name the signal of a row, and that hold its reading;
-#: most signals of such a table: more texts are messages
+#: last words of the names of the columns that name the signal of a row, and that hold its reading
 SIGNALS = frozenset("topic signal channel variable tag parameter series measurement".split())
 READINGS = frozenset("value values reading wert valeur valor".split())
-MOST_SIGNALS = 1000
 
 
 def reading_in_each_row(table: CellTable) -> LongTable | None:
@@ -38,7 +38,7 @@ def reading_in_each_row(table: CellTable) -> LongTable | None:
     names = list(dict.fromkeys(texts[fine].tolist()))
     number = {name: k for k, name in enumerate(names)}
     of_row = np.array([number.get(text, -1) for text in texts])
-    if numbered or not 0 < len(names) <= MOST_SIGNALS or fine.mean() <= 0.5:
+    if numbered or not 0 < len(names) <= MOST_SIGNALS or not is_most(fine):
         return None
     unit = next((n for n in table.names if n.casefold() in UNIT_LABELS), "")
     signals = []

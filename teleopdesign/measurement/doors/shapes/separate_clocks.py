@@ -15,11 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...column_names import likeness
+from ...encoder import is_most
 from ._table import CellTable, LongSignal, LongTable
-
-#: a column with numbers in less than this part of the rows has a clock of its own: a channel that
-#: loses more readings than it keeps could not be used either
-SELDOM = 0.5
 
 
 def separate_clocks(table: CellTable) -> LongTable | None:
@@ -30,7 +27,9 @@ def separate_clocks(table: CellTable) -> LongTable | None:
     if len(full) != 1 or likeness(full[0], "time") == 0.0 or full[0] not in table.numeric:
         return None  # beside a signal with numbers in all rows, another one has lost them
     partial = {n: mask for n, mask in filled.items() if 0.0 < share[n] < 1.0}
-    if not (any(share[n] < SELDOM for n in partial) or _never_share_a_row([*partial.values()])):
+    masks = [*partial.values()]
+    # a channel that loses more readings than it keeps could not be used on the clock of others
+    if not any(is_most(~mask) for mask in masks) and not _never_share_a_row(masks):
         return None
     time, groups = full[0], dict[bytes, str]()
     signals = []
