@@ -127,7 +127,7 @@ def test_a_plain_number_is_in_si_and_a_unit_is_converted(at, tmp_path):
         ("inertia = 0.15", 'inertia = { value = 1, unit = "N" }',
          'inertia.unit: found "N", expected a mass such as "kg" or "g"'),
         ("inertia = 0.15", "", ": no inertia given"),
-        ('"prismatic"', '"prismatc"', 'axis: found "prismatc", expected "prismatic" or "revolute"; '
+        ('"prismatic"', '"prismatc"', 'axis: found "prismatc", expected prismatic, revolute; '
          'did you mean "prismatic"?'),
         ("coulomb", "coulom", 'effects: no effect "coulom"; did you mean "coulomb"? (see '
          "`teleopdesign effects`)"),

@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING
 from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
-    from ._list import CHECKS as CHECKS
-    from ._list import findings_of as findings_of
-    from ._list import in_turn as in_turn
-    from ._list import stopping_findings as stopping_findings
-    from ._list import why_silent as why_silent
+    from ._recording import CHECKS as CHECKS
     from ._recording import CheckedRecording as CheckedRecording
     from ._recording import RecordingCheck as RecordingCheck
+    from ._recording import findings_of as findings_of
+    from ._recording import in_turn as in_turn
     from ._recording import look_at as look_at
     from ._recording import not_checked as not_checked
+    from ._recording import stopping_findings as stopping_findings
+    from ._recording import why_silent as why_silent
 
 __getattr__, __dir__, __all__ = lazy_face(__name__)

@@ -1,4 +1,4 @@
-"""What a check looks at: an experiment, its channels, and its motion where it can be compared."""
+"""What a check looks at, the one list of checks that need no fit, and who asks it."""
 
 from __future__ import annotations
 
@@ -24,8 +24,24 @@ from ..measurement.record import Record
 if TYPE_CHECKING:
     from ..model import Model
 
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..base.folders import Shelf
+
+if TYPE_CHECKING:
+    from ..model import Model
+
 #: most samples from which the smallest step of a channel is determined
 ENOUGH = 200_000
+CHECKS: Mapping[str, RecordingCheck] = Shelf(
+    __package__,
+    Path(__file__).parent,
+    lambda module: module.CHECK,
+    "check",
+    defined_in=__name__,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,3 +239,40 @@ class RecordingCheck:
     may_stop: bool = False
     kind: str = ""
     unless: Mapping[str, str] = field(default_factory=dict)
+
+
+def in_turn(checks: Mapping[str, RecordingCheck], kind: str = "") -> list[RecordingCheck]:
+    """Checks of this kind of experiment, in the order in which they are asked."""
+    return sorted((c for c in checks.values() if c.kind == kind), key=lambda check: check.order)
+
+
+def findings_of(recording: CheckedRecording) -> list[Finding]:
+    """What all checks of this folder find; also that the channels are in order, where they are."""
+    checks = in_turn(CHECKS, recording.experiment.kind)
+    by_check = [(check, list(check.find(recording))) for check in checks]
+    findings = [f for _, some in by_check for f in some]
+    of_channels = [(check, some) for check, some in by_check if check.in_order]
+    if of_channels and not any(f.concern == "warning" for _, some in of_channels for f in some):
+        names = ", ".join(dict.fromkeys(s.name for s in recording.signals))
+        *first, last = (check.in_order for check, _ in of_channels)
+        words = f"{', '.join(first)}; {last}"
+        samples = float(sum(len(s.values) for s in recording.signals))
+        findings.append(Finding("channels", "fine", f"{names}: {words}.", {"samples": samples}))
+    return findings
+
+
+def stopping_findings(recording: CheckedRecording) -> Iterator[Finding]:
+    """Findings that end a diagnosis: these records tell no effect, whatever is fitted."""
+    for check in in_turn(CHECKS, recording.experiment.kind):
+        if check.may_stop:
+            yield from (f for f in check.find(recording) if f.stops)
+
+
+def why_silent(prepared: Prepared, model: Model) -> str:
+    """Why these records tell no effect, as the end of a verdict; "" where they may tell one.
+
+    model: of the user, with the inertias that are known
+    """
+    findings = stopping_findings(CheckedRecording(prepared.experiment, model, prepared))
+    sentence = next((f.sentence for f in findings), "")
+    return f"{sentence[:1].upper()}{sentence[1:]}"

@@ -24,8 +24,9 @@ from threadpoolctl import threadpool_limits
 from ..base.codec import At, InUnit, Size
 from ..base.units import unit_of
 from ..measurement.filtering import Array
+from ..measurement.friction_curve import FOLDS
 from ..measurement.motion import Motion
-from ..measurement.prepare import FOLDS, Prepared, Stretch, measured_force
+from ..measurement.prepare import Prepared, Stretch, measured_force
 from ..measurement.reversals import mark_reversals
 from ..model import Model
 from .effort import EFFORTS

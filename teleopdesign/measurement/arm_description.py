@@ -62,13 +62,9 @@ def arm_from(model: Table, folder: Path) -> tuple[ArmDescription, dict[str, Body
     for name, joint in joints.items():
         joint.allow(_JOINT)
         _require_name(name, table.where("joints"))
-    arm = _kinematics(table, folder, joints).with_gravity(_gravity(table))
-    estimate = table.text("estimate", ESTIMATES[0])
-    if estimate not in ESTIMATES:
-        raise ExperimentError(
-            f"{table.where('estimate')}: found {quote(estimate)}, expected "
-            f"{' or '.join(map(quote, ESTIMATES))}{did_you_mean(estimate, ESTIMATES)}"
-        )
+    x, y, z = numbers_from(table, "gravity", 3, GRAVITY).tolist()
+    arm = _kinematics(table, folder, joints).with_gravity((x, y, z))
+    estimate = table.choice("estimate", ESTIMATES, ESTIMATES[0])
     bodies = {
         name: _joint(name, joint, link)
         for (name, joint), link in zip(joints.items(), arm.links, strict=True)
@@ -146,11 +142,7 @@ def _chain_of_links(table: Table, joints: tuple[str, ...]) -> Chain:
 def _link(table: Table) -> Link:
     table.allow(_LINK)
     joint = table.text("joint")
-    kind = table.text("kind", "revolute")
-    if kind not in ("revolute", "prismatic"):
-        raise ExperimentError(
-            f'{table.where("kind")}: found {quote(kind)}, expected "revolute" or "prismatic"'
-        )
+    kind = table.choice("kind", ("revolute", "prismatic"), "revolute")
     axis = numbers_from(table, "axis", 3, (0.0, 0.0, 1.0))
     if not (size := float(np.linalg.norm(axis))) > 0:
         raise ExperimentError(f"{table.where('axis')}: found 0, 0, 0, expected a direction")
@@ -167,11 +159,6 @@ def _link(table: Table) -> Link:
         origin=numbers_from(table, "xyz", 3, (0.0,) * 3),
         inertial=inertia_about(mass, numbers_from(table, "centre", 3, (0.0,) * 3), about),
     )
-
-
-def _gravity(table: Table) -> tuple[float, float, float]:
-    x, y, z = numbers_from(table, "gravity", 3, GRAVITY)
-    return float(x), float(y), float(z)
 
 
 def numbers_from(table: Table, key: str, count: int, default: tuple[float, ...]) -> Array:

@@ -8,7 +8,7 @@ unit in which they were written. Only the effect knows the physical quantity of 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.errors import ExperimentError
 from ..base.toml import Table
 from ..base.units import AXES, to_si
 
@@ -122,12 +122,7 @@ def body_from(name: str, table: Table) -> BodyDescription:
 
     raises ExperimentError: a wrong type, no axis, no number, the unit of another quantity
     """
-    axis = table.text("axis")
-    if axis not in AXES:
-        raise ExperimentError(
-            f"{table.where('axis')}: found {quote(axis)}, expected "
-            f"{' or '.join(quote(a) for a in AXES)}{did_you_mean(axis, AXES)}"
-        )
+    axis = table.choice("axis", AXES)
     inertia = None
     if "inertia" in table.content:
         inertia = value_from(table, "inertia")

@@ -20,7 +20,7 @@ from .description import BodyDescription, EnvironmentDescription, bodies_from, e
 from .doors._log import join_names
 from .friction_curve import CURVE, bodies_and_channels, curve_record
 from .reading import ReadingStep, reading_table
-from .record import Record, choice_of, read_record, record_entries
+from .record import Record, read_record, record_entries
 from .tables import is_log, read_columns
 
 _FILE = "experiment.toml"
@@ -162,7 +162,7 @@ def load_experiment(folder: str | Path) -> Experiment:
 
 def _load_curve(experiment: Table, folder: Path) -> Experiment:
     """A friction curve: an experiment whose records are points of speed and force."""
-    choice_of(experiment, "kind", (CURVE,))
+    experiment.choice("kind", (CURVE,))
     experiment.allow(("kind", "title", "model", "channels", "records", "guessed"))
     bodies, channels = bodies_and_channels(experiment)
     records = []

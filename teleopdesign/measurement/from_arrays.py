@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.errors import ExperimentError, unknown
 from ..base.toml import Table
 from ..base.units import AXES, unit_of
 from .channel import BODY_QUANTITIES, layout_from
@@ -68,7 +68,7 @@ def experiment(
         "interaction_force": interaction_force,
         "velocity": velocity,
     }
-    _require_axis(axis)
+    Table({"axis": axis}, _WHERE).choice("axis", AXES)
     entered = {key: entry for key, entry in entries.items() if entry is not None}
     channels = {key: channel_table(e, key, axis, log, units or {}) for key, e in entered.items()}
     content: dict[str, Any] = {"channels": channels}
@@ -88,14 +88,6 @@ def experiment(
         spans = [("fit", span) for span in _spans(fit, "fit")]
     spans += [("check", span) for span in _spans(check, "check")]
     return build_experiment(content, log, spans, title=title, bandwidth=bandwidth)
-
-
-def _require_axis(axis: str) -> None:
-    if axis not in AXES:
-        raise ExperimentError(
-            f"{_WHERE}: axis: found {quote(axis)}, expected {' or '.join(map(quote, AXES))}"
-            f"{did_you_mean(axis, AXES)}"
-        )
 
 
 def _spans(spans: Sequence[Sequence[float] | float], use: str) -> list[Sequence[float]]:
@@ -127,10 +119,7 @@ def _refuse_overlap(spans: Sequence[tuple[str, Sequence[float] | None]]) -> None
 def _refuse_unknown_units(units: Mapping[str, str], log: Log) -> None:
     for column in units:
         if column not in log.names:
-            raise ExperimentError(
-                f"{_WHERE}: units: no column {quote(column)}, found {', '.join(log.names)}"
-                f"{did_you_mean(column, log.names)}"
-            )
+            raise ExperimentError(f"{_WHERE}: units: {unknown('column', column, log.names)}")
 
 
 def build_experiment(
@@ -140,7 +129,6 @@ def build_experiment(
     *,
     title: str,
     bandwidth: float | None = None,
-    folder: Path | None = None,
 ) -> Experiment:
     """An experiment from the tables of a file and one open log.
 
@@ -163,8 +151,7 @@ def build_experiment(
         raise ExperimentError(f"{_WHERE}: fit: found no span, expected at least one (begin, end)")
     fitted = [r for r in records if r.use == "fit"]
     bodies = {name: with_first_values(body, fitted) for name, body in bodies.items()}
-    where = Path(title) if folder is None else folder
-    return Experiment(where, title, bodies, None, layout.channels, bandwidth, tuple(records))
+    return Experiment(Path(title), title, bodies, None, layout.channels, bandwidth, tuple(records))
 
 
 def with_first_values(body: BodyDescription, records: Sequence[Record]) -> BodyDescription:

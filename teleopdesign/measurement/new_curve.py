@@ -17,17 +17,14 @@ from ..base.errors import ExperimentError, quote, unknown
 from ..base.files import write_text
 from ..base.toml import Table
 from ..base.units import AXES, measures, unit_of
+from .channel import BODY_QUANTITIES
 from .column_names import as_unit, likeness, unit_in_name
 from .doors._log import Log
 from .experiment import Experiment
-from .friction_curve import CURVE, bodies_and_channels, curve_record
+from .friction_curve import CHANNELS, CURVE, bodies_and_channels, curve_record
 from .new_folder import copy_logs, experiment_text, records_of
 from .survey.content import Survey
 from .tables import LogColumns
-
-#: what a column may be: channel -> quantity of its name
-QUANTITIES = {"velocity": "velocity", "actuator_force": "actuator_force"}
-_KINDS = {"velocity": "velocity", "actuator_force": "force"}
 
 
 def looks_like_a_curve(log: Log) -> bool:
@@ -37,14 +34,14 @@ def looks_like_a_curve(log: Log) -> bool:
         return False
     if any(unit_in_name(name, q, a) for name in log.names for q in others for a in AXES):
         return False
-    return all(_candidates(log, channel) for channel in QUANTITIES)
+    return all(_candidates(log, channel) for channel in CHANNELS)
 
 
 def _candidates(log: Log, channel: str) -> list[str]:
     """Columns that may be this channel, the likeliest first."""
     score = {
-        name: likeness(name, QUANTITIES[channel])
-        + any(unit_in_name(name, _KINDS[channel], axis) is not None for axis in AXES)
+        name: likeness(name, channel)
+        + any(unit_in_name(name, BODY_QUANTITIES[channel], axis) is not None for axis in AXES)
         for name in log.names
     }
     return sorted((n for n in score if score[n] > 0.0), key=lambda n: -score[n])
@@ -96,7 +93,7 @@ def curve_columns(
     axis = axis or _axis_of(columns, written, file)
     for channel in columns:
         if written[channel] is None:
-            written[channel] = unit_of(_KINDS[channel], axis)
+            written[channel] = unit_of(BODY_QUANTITIES[channel], axis)
             guesses[f"channels.{channel}.unit"] = "no unit is stated: SI"
     if torque_constant is not None:
         column = columns["actuator_force"]
@@ -112,7 +109,7 @@ def curve_columns(
 
 def _unit_of_name(column: str, channel: str, axis: str | None) -> str | None:
     for one in (axis,) if axis else AXES:
-        if (unit := unit_in_name(column, _KINDS[channel], one)) is not None:
+        if (unit := unit_in_name(column, BODY_QUANTITIES[channel], one)) is not None:
             return unit
     return None
 
@@ -122,7 +119,7 @@ def _axis_of(columns: Mapping[str, str], units: Mapping[str, str | None], file: 
     fits = [
         axis
         for axis in AXES
-        if all(u is None or measures(u, _KINDS[c], axis) for c, u in units.items())
+        if all(u is None or measures(u, BODY_QUANTITIES[c], axis) for c, u in units.items())
     ]
     if len(fits) != 1 or not any(units.values()):
         raise ExperimentError(
@@ -138,7 +135,6 @@ def make_curve_folder(
     folder: Path,
     *,
     title: str,
-    effects: Sequence[str] = ("coulomb", "viscous"),
 ) -> Path:
     """Copy the tables into a folder and write experiment.toml; of several, the last is for checks.
 
@@ -146,7 +142,7 @@ def make_curve_folder(
     """
     copy_logs(logs, folder)
     records = records_of([log.name for log in logs])
-    text = experiment_text(curve, records, title=title, effects=effects, kind=CURVE)
+    text = experiment_text(curve, records, title=title, kind=CURVE)
     write_text(folder / "experiment.toml", text)
     return folder
 

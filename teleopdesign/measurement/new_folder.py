@@ -39,7 +39,6 @@ def make_folder(
     *,
     title: str,
     inertia: float | None = None,
-    effects: Sequence[str] = ("coulomb", "viscous"),
     spans: FitAndCheck | None = None,
     overwrite: bool = False,
 ) -> Path:
@@ -66,9 +65,7 @@ def make_folder(
             if first.start_of_inertia > 0
             else "the motion tells no inertia: look at signs and units of position and force"
         )
-    text = experiment_text(
-        survey, records, title=title, inertia=inertia, first=first, effects=effects
-    )
+    text = experiment_text(survey, records, title=title, inertia=inertia, first=first)
     write_text(folder / _FILE, text)
     return folder
 
@@ -213,7 +210,6 @@ def experiment_text(
     records: Sequence[Mapping[str, Any]],
     *,
     title: str,
-    effects: Sequence[str],
     inertia: float | None = None,
     first: FirstGuess | None = None,
     kind: str = "",
@@ -241,9 +237,9 @@ def experiment_text(
             + "# a start, from the log; fixed = true if you know it"
         )
     lines.append("[model.device.effects]")
-    for name in effects:
-        values = _first_of(name, first, force, length)
-        lines.append(f"{name} = {values}")
+    level, damping = (first.level, first.damping) if first else (0.0, 0.0)
+    lines.append(f"coulomb = {_first_of('level', level, force)}")
+    lines.append(f"viscous = {_first_of('damping', damping, f'{force}*s/{length}')}")
     lines += ["", "[channels]"]
     for key, entry in survey.channels.items():
         comments = [w for k, w in survey.guesses.items() if k.startswith(f"channels.{key}.")]
@@ -264,14 +260,9 @@ def experiment_text(
     return "\n".join(lines) + "\n"
 
 
-def _first_of(name: str, first: FirstGuess | None, force: str, length: str) -> str:
-    known = {
-        "coulomb": ("level", first.level if first else 0.0, force),
-        "viscous": ("damping", first.damping if first else 0.0, f"{force}*s/{length}"),
-    }
-    if name not in known or not known[name][1] > 0:
+def _first_of(parameter: str, value: float, unit: str) -> str:
+    if not value > 0:
         return "{}"
-    parameter, value, unit = known[name]
     return f'{{ {parameter} = {{ value = {_round(value)!r}, unit = "{unit}" }} }}'
 
 

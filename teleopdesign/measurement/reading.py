@@ -73,9 +73,9 @@ def reading_table(steps: Sequence[ReadingStep]) -> list[str]:
     return lines
 
 
-def count_of(number: int, one: str, many: str | None = None) -> str:
+def count_of(number: int, one: str) -> str:
     """A number with its noun: "1 row", "12 rows"."""
-    return f"{number} {one}" if number == 1 else f"{number} {many or one + 's'}"
+    return f"{number} {one}" if number == 1 else f"{number} {one}s"
 
 
 def reading_data(steps: Iterable[ReadingStep]) -> list[dict[str, Any]]:

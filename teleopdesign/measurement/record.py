@@ -179,11 +179,9 @@ def record_entries(experiment: Table, folder: Path) -> list[RecordEntry]:
                     "is listed twice" if span == other_span else "is listed with spans that overlap"
                 )
                 raise ExperimentError(f"{table.where('file')}: {quote(file)} {what}")
-        use = choice_of(table, "use", ("fit", "check"))
+        use = table.choice("use", ("fit", "check"))
         separate = {
-            name
-            for name in SEPARATE
-            if choice_of(table, name, ("common", "own"), "common") == "own"
+            name for name in SEPARATE if table.choice(name, ("common", "own"), "common") == "own"
         }
         entries.append(RecordEntry(file, use, frozenset(separate), span))
     if not any(use == "fit" for _, use, _, _ in entries):
@@ -214,18 +212,6 @@ def _span(table: Table) -> tuple[float, ...] | None:
 def overlap(one: Sequence[float], other: Sequence[float]) -> bool:
     """Whether two spans (begin, end) have a moment in common."""
     return max(one[0], other[0]) < min(one[1], other[1])
-
-
-def choice_of(table: Table, key: str, choices: tuple[str, ...], default: str | None = None) -> str:
-    """The text under a key, one of these; raises ExperimentError: it is none."""
-    value = table.text(key, default)
-    if value not in choices:
-        listed = " or ".join(quote(choice) for choice in choices)
-        raise ExperimentError(
-            f"{table.where(key)}: found {quote(value)}, "
-            f"expected {listed}{did_you_mean(value, choices)}"
-        )
-    return value
 
 
 def _check_path(table: Table, folder: Path, file: str) -> None:

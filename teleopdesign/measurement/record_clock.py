@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
-from .encoder import is_most
+from .encoder import LOST, is_most
 from .reading import count_of
 from .row_places import (
     GOES_ON,
@@ -173,7 +173,7 @@ def _remarks_on_order(
 def _require_enough(count: int, period: float, where: str) -> None:
     if count < FEWEST:
         raise ExperimentError(f"{where}: found {count} rows, expected at least {FEWEST}")
-    if count * period < SHORTEST * (1 - 1e-9):
+    if count * period < SHORTEST * (1 - LOST):
         raise ExperimentError(
             f"{where}: found {count * period:.3g} s of samples, expected at least {SHORTEST:g} s"
         )

@@ -37,7 +37,7 @@ def rows_in_order(
     dropped = moved = restarts = 0
     for segment in segments:
         rows = np.arange(segment.start, segment.stop)
-        back = np.flatnonzero(np.diff(stamps[rows]) < -(GOES_ON + 0.5) * usual) + 1
+        back = np.flatnonzero(are_set_back(np.diff(stamps[rows]), usual)) + 1
         restarts += len(back)
         for part in np.split(rows, back):
             order = np.argsort(stamps[part], kind="stable")
@@ -51,12 +51,17 @@ def rows_in_order(
     return [part for part in parts if len(part) > 1], dropped, moved, restarts
 
 
+def are_set_back(steps: Array, usual: float) -> NDArray[np.bool_]:
+    """Steps between stamps (n,) at which a clock was set back: further than a row out of order."""
+    return np.asarray(steps < -(GOES_ON + 0.5) * usual)
+
+
 def are_out_of_order(stamps: Array) -> bool:
     """Whether stamps are those of one clock, each once, with rows a little out of order."""
     steps, ordered = np.diff(stamps), np.diff(np.sort(stamps))
     if not np.any(steps < 0) or not np.all(ordered > 0):
         return False
-    return bool(steps.min() >= -(GOES_ON + 0.5) * np.median(ordered))
+    return not are_set_back(steps, float(np.median(ordered))).any()
 
 
 def without_pauses(

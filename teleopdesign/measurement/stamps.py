@@ -17,7 +17,7 @@ from ..base.units import si_factor
 from .encoder import SURELY
 from .reading import ReadingStep
 from .record_clock import EVEN, SHORTEST, RecordClock
-from .row_places import GOES_ON, Array
+from .row_places import Array, are_set_back
 
 #: s in a day
 DAY = 86_400.0
@@ -130,7 +130,7 @@ def seconds_since_first(stamps: Array) -> Array:
     if not np.any(steps > 0):
         return np.asarray(since)
     usual = float(np.median(steps[steps > 0]))
-    set_back = steps < -(GOES_ON + 0.5) * usual
+    set_back = are_set_back(steps, usual)
     since[rows[1:]] += np.cumsum(np.where(set_back, usual - steps, 0.0))
     return np.asarray(since)
 

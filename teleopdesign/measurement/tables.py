@@ -36,29 +36,15 @@ Wanted = Mapping[str, str]
 """Column -> the channel that wants it (for messages, "channels.position")."""
 
 DOORS: Mapping[str, Callable[[Path, str], Log]] = {
-    ".csv": open_text,
-    ".csv.gz": open_text,
-    ".txt": open_text,
-    ".tsv": open_text,
-    ".dat": open_text,
-    ".log": open_text,
-    ".lvm": open_text,
-    ".asc": open_text,
-    ".sto": open_text,
-    ".mot": open_text,
-    ".trc": open_text,
-    ".json": open_json,
-    ".jsonl": open_json,
-    ".ndjson": open_json,
+    **dict.fromkeys((".csv", ".csv.gz", ".txt", ".tsv", ".dat", ".log", ".lvm"), open_text),
+    **dict.fromkeys((".asc", ".sto", ".mot", ".trc"), open_text),
+    **dict.fromkeys((".json", ".jsonl", ".ndjson"), open_json),
     ".parquet": open_parquet,
     ".xlsx": open_workbook,
     ".mat": open_matlab,
     ".npz": open_arrays,
-    ".h5": open_hdf5,
-    ".hdf5": open_hdf5,
-    ".bag": open_bag,
-    ".mcap": open_bag,
-    ".db3": open_bag,
+    **dict.fromkeys((".h5", ".hdf5"), open_hdf5),
+    **dict.fromkeys((".bag", ".mcap", ".db3"), open_bag),
 }
 #: first bytes of a file -> the function that reads such a file
 BEGINNINGS: Mapping[bytes, Callable[[Path, str], Log]] = {
@@ -173,13 +159,13 @@ def read_columns(path: Path, file: str, wanted: Wanted) -> LogColumns:
         state = None
     if state is None:  # a folder of tables, or what is not there
         return columns_of(open_log(path, file), file, wanted)
-    return _columns_of_file(path.resolve(), path, file, state, tuple(wanted.items()))
+    return _columns_of_file(path.resolve(), file, state, tuple(wanted.items()))
 
 
 # the fit and the check record are often parts of one file
 @lru_cache(maxsize=2)
 def _columns_of_file(
-    resolved: Path, path: Path, file: str, state: object, wanted: tuple[tuple[str, str], ...]
+    path: Path, file: str, state: object, wanted: tuple[tuple[str, str], ...]
 ) -> LogColumns:
     """The columns of a file, read once as long as it stays as it is: nothing writes into them."""
     columns = columns_of(open_log(path, file), file, dict(wanted))

@@ -87,15 +87,15 @@ def test_how_inertial_parameters_are_treated_is_kept(tmp_path, estimate):
         ("axis = [0, 3, -4]", "axis = [0, true, 1]", "expected 3 finite numbers"),
         ("axis = [0, 3, -4]", 'axis = [0, "3", 1]', "expected 3 finite numbers"),
         ("axis = [0, 3, -4]", "axis = [0, nan, 1]", "expected 3 finite numbers"),
-        ("axis = [0, 3, -4]", "axis = [0, -1e12, 1]", "expected 3 finite numbers"),
+        ("axis = [0, 3, -4]", "axis = [0, -inf, 1]", "expected 3 finite numbers"),
         ("22, 23, 33]", "22, 23]", "inertia: found a list, expected 6 finite numbers"),
         ("mass = 2", "mass = -0.5", "mass: found -0.5, expected 0 or more"),
         ("value = 250", "value = -250", "motor_inertia: found -0.25, expected 0 or more"),
-        ('kind = "prismatic"', 'kind = "slider"', 'kind: found "slider", expected "revolute"'),
+        ('kind = "prismatic"', 'kind = "slider"', 'kind: found "slider", expected revolute'),
         (
             "[model.arm]",
             '[model.arm]\nestimate = "as give"',
-            'found "as give", expected "base parameters" or',
+            'found "as give", expected base parameters, as',
         ),
         ("[model.arm]", '[model.arm]\nestimate = "as give"', 'did you mean "as given"?'),
         (

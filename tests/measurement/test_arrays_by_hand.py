@@ -116,7 +116,7 @@ def test_spans_that_make_no_records_are_refused(spans, message):
 
 
 def test_names_that_are_not_there_are_answered_with_the_nearest():
-    with pytest.raises(ExperimentError, match='units: no column "xx", found t, x, u'):
+    with pytest.raises(ExperimentError, match='units: no column "xx", has t, x, u'):
         made(inertia=1.0, units={"xx": "mm"})
     with pytest.raises(ExperimentError, match='axis: found "prismatc".*did you mean "prismatic"'):
         made(axis="prismatc", inertia=1.0)

@@ -68,7 +68,7 @@ IN_THE_TOML = {
     "no record": ("[[records]]\n" + FIT + '\nuse = "fit"\n', "", "found 1 records, none with"),
     "records as a table": ("[comparison]", "[records]\n[comparison]", "not valid TOML"),
     "unknown use": ('use = "fit"', 'use = "fti"', r'records\[1\].use: found "fti".*mean "fit"?'),
-    "unknown zero": ('"own"', '"mine"', 'position_zero: found "mine", expected "common" or "own"'),
+    "unknown zero": ('"own"', '"mine"', 'position_zero: found "mine", expected common, own'),
     "no file": ('file = "check.csv"', 'file = "chek.csv"', 'no file "chek.csv".*mean "check.csv"?'),
     "file listed twice": ('file = "check.csv"', FIT, '"fit.csv" is listed twice'),
     "file outside": (FIT, 'file = "../fit.csv"', "expected a file inside rod/"),

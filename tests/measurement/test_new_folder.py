@@ -99,10 +99,10 @@ def test_of_several_logs_the_last_is_the_check_record(log, tmp_path):
 
 
 def test_an_inertia_that_is_known_is_kept_and_no_start_is_guessed(log, tmp_path):
-    folder = make(log, tmp_path / "rod", inertia=0.45, effects=("coulomb", "stribeck"))
+    folder = make(log, tmp_path / "rod", inertia=0.45)
     device = written(folder)["model"]["device"]
     assert device["inertia"] == {"value": 0.45, "unit": "kg", "fixed": True}
-    assert device["effects"] == {"coulomb": {}, "stribeck": {}}
+    assert device["effects"] == {"coulomb": {}, "viscous": {}}
     assert "model.device.inertia" not in written(folder).get("guessed", {})
 
 
@@ -158,26 +158,23 @@ def test_a_joint_is_written_in_units_of_turning(tmp_path):
     survey.axis = "revolute"
     guess = FirstGuess(0.012345, 0.23456, 0.0, 0.9, (0.0, 0.0, 0.0))
     survey.guesses = {"channels.time.unit": "by name", "channels.timer": "no", "other": 'a "b"'}
-    text = experiment_text(
-        survey, [], title="t", inertia=None, first=guess, effects=("viscous", "coulomb", "bias")
-    )
+    text = experiment_text(survey, [], title="t", first=guess)
     content = tomllib.loads(text)
     assert content["model"]["device"]["inertia"] == {"value": 0.0123, "unit": "kg*m^2"}
     assert content["model"]["device"]["effects"] == {
         "viscous": {},
         "coulomb": {"level": {"value": 0.235, "unit": "N*m"}},
-        "bias": {},
     }
     assert "# forces in N*m, positions in rad" in text
     assert text.count("# guessed: by name") == 1 and "# guessed: no" not in text
     assert content["guessed"] == survey.guesses
     damped = FirstGuess(0.0, 0.0, 0.5, 0.9, (0.0, 0.0, 0.0))
-    text = experiment_text(survey, [], title="t", inertia=None, first=damped, effects=("viscous",))
+    text = experiment_text(survey, [], title="t", first=damped)
     device = tomllib.loads(text)["model"]["device"]
     assert device["effects"]["viscous"]["damping"] == {"value": 0.5, "unit": "N*m*s/rad"}
     assert device["inertia"]["value"] == 1.0
     survey.guesses, survey.unused = {}, {}
-    text = experiment_text(survey, [], title="t", inertia=None, first=None, effects=())
+    text = experiment_text(survey, [], title="t")
     assert "[guessed]" not in text.split("\n", 2)[2] and "in no channel" not in text
     assert "inertia" not in tomllib.loads(text)["model"]["device"]
 

@@ -38,9 +38,10 @@ def rows_of_numbers(
         refuse_size(count + again, file)
         if bytes_read > MOST_BYTES:
             raise ExperimentError(f"{file}: found over {MOST_BYTES:.2g} bytes of text")
-        if block[0][0] >= dialect.first and _are_plain_rows([x for _, x in block], dialect):
+        lines = [line for _, line in block]
+        if block[0][0] >= dialect.first and _are_plain_rows(lines, dialect):
             count, cut = count + len(block), False
-            yield from (line for _, line in block)
+            yield from lines
             continue
         for k, line in block:
             bare = line.lstrip()

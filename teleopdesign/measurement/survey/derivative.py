@@ -58,7 +58,7 @@ def wrap_of(x: Array) -> float | None:
         return None
     jumps = np.abs(steps[is_jump])
     jump = float(np.median(jumps))
-    if np.any(np.abs(jumps - jump) > 0.1 * jump):
+    if np.any(np.abs(jumps - jump) > SAME * jump):
         return None
     # across a wrap the motion is as in the neighbouring rows
     beside = np.pad(np.where(is_jump, 0.0, steps), 1)

@@ -17,7 +17,7 @@ from ..column_names import (
 )
 from ..encoder import ENOUGH, grid_of, reading_step
 from .axes import axis_that_moves
-from .axis_kind import drives_in_turns, guess_counts_per_turn, is_counter
+from .axis_kind import MOST_ANGLE, drives_in_turns, guess_counts_per_turn, is_counter
 from .content import (
     OF_SENSORS,
     SURE_NAME,
@@ -257,7 +257,7 @@ def _position_unit(
     if axis == "revolute" and (turn := turn_of(column.values)) is not None:
         return turn, f"{turn}: the readings wrap at a turn in {turn}"
     if axis == "revolute":
-        unit = "deg" if reach > 50 else "rad"
+        unit = "deg" if reach > MOST_ANGLE else "rad"
     else:
         unit = "mm" if reach > 3 else "m"
     why = why_no_unit(column.name, column.unit, "position", axis)

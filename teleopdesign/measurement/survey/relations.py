@@ -13,7 +13,6 @@ from collections.abc import Iterator, Mapping
 from ...base.units import is_unit
 from ..column_names import is_another_quantity, is_wanted, likeness, words_of
 from ..doors._log import Log
-from ..first_guess import MOSTLY
 from ..law_of_readings import is_copy
 from .axes import of_another_axis, same_but_axis
 from .content import (
@@ -30,8 +29,6 @@ from .content import (
 from .derivative import (
     DERIVATIVE,
     derivative_factor,
-    follows_direction,
-    has_both_signs,
     is_no_velocity,
     is_velocity,
     may_be_ramp,
@@ -55,12 +52,12 @@ def relations_of(
     velocity: its column, if there is one.  A column in the unit of a force has no relation
     """
     speed = None if velocity is None else survey.columns[velocity].values
-    elsewhere = dict(_motions_elsewhere(survey, x, sample_time_of(survey)))
+    planned = dict(_planned_motions(survey, sample_time_of(survey)))
     for name, column in survey.columns.items():
         used = name in (position, velocity) or name in columns_in_use(survey)
         if used or not moves(column) or is_unit_of(column.unit, "force"):
             continue
-        what = _relation(column, position, x, speed) or elsewhere.get(name)
+        what = _relation(column, position, x, speed) or planned.get(name)
         if what is not None:
             yield name, what
 
@@ -104,12 +101,11 @@ def possible_forces(survey: Survey, *used: str | None) -> dict[str, SurveyedColu
     }
 
 
-def _motions_elsewhere(survey: Survey, x: Array, h: float) -> Iterator[tuple[str, str]]:
-    """Columns without names that are no forces, for one is the derivative of another.
+def _planned_motions(survey: Survey, h: float) -> Iterator[tuple[str, str]]:
+    """Columns without names that are position, velocity and acceleration of a planned path.
 
-    Position, velocity and acceleration of a planned path are exactly so. Two such columns alone
-    tell less: the friction of a body that goes to and fro at one speed is the derivative of its
-    position, too. They are another body's where the position x (n,) leaves more of the velocity.
+    Each is exactly the derivative of the one before. Two such columns alone tell less: the friction
+    of a body that goes to and fro at one speed is the derivative of its position, too.
     """
     columns = {n: c.values for n, c in survey.columns.items() if moves(c) and _is_nameless(c)}
     rates = {
@@ -121,26 +117,6 @@ def _motions_elsewhere(survey: Survey, x: Array, h: float) -> Iterator[tuple[str
         for two, three in ((b, c) for b in after for c in exact[b] if c != one):
             for name in (one, two, three):
                 yield name, "a motion that was planned: an exact derivative, or integral, of others"
-    places: dict[str, str] = {}
-    for name, values in columns.items():
-        of_name = ((of[name], one) for one, of in rates.items() if name in of)
-        agree, place = max(of_name, default=(0.0, ""))
-        if agree <= DERIVATIVE:
-            continue
-        other = columns[place]
-        if has_numbers_of(other, x) or is_copy(other, x):
-            continue
-        beside = abs(derivative_factor(x, values, h)[1])
-        # the velocity of this body has a derivative, too: a force of inertia
-        of_this_body = derivative_factor(x, other, h)[1] > DERIVATIVE
-        if of_this_body or 1.0 - agree > MOSTLY * (1.0 - beside):
-            continue
-        if not follows_direction(other, values, h) and has_both_signs(other, values, h):
-            places[place] = name
-    for place, name in places.items():
-        if place not in places.values():
-            yield place, f"the position of another body: {name!r} is its derivative"
-            yield name, f"the velocity of another body: the derivative of {place!r}"
 
 
 def _is_nameless(column: SurveyedColumn) -> bool:
