@@ -50,7 +50,9 @@ def check_outliers(signal: Signal) -> Iterator[Finding]:
         at, size = lone_samples(x, signal.rounded_to)
         is_outlier = x[at] != x[at - 1]
         if signal.quantity == "actuator_force":
-            is_outlier &= _mark_out_of_range(x, at)
+            rest = np.delete(x, at)
+            margin = OUT_OF_RANGE * float(np.ptp(rest))
+            is_outlier &= (x[at] > rest.max() + margin) | (x[at] < rest.min() - margin)
         rows.append(at[is_outlier] + first)
         sizes.append(size[is_outlier])
     odd, off = np.concatenate(rows), np.concatenate(sizes)
@@ -180,13 +182,6 @@ def _local_scale(e: Array, floor: float) -> Array:
         each = maximum_filter1d(each, 3, mode="nearest")
         scale = np.maximum(scale, each[np.minimum(np.arange(len(e)) // size, count - 1)])
     return scale
-
-
-def _mark_out_of_range(x: Array, at: NDArray[np.intp]) -> NDArray[np.bool_]:
-    rest = np.delete(x, at)
-    low, high = float(rest.min()), float(rest.max())
-    margin = OUT_OF_RANGE * (high - low)
-    return np.asarray((x[at] > high + margin) | (x[at] < low - margin))
 
 
 def _usual_bend(x: Array, events: NDArray[np.intp]) -> float:

@@ -93,7 +93,12 @@ class Experiment(ByValue):
 
     def _repr_html_(self) -> str:
         rows = [
-            (name, body.axis, ", ".join(body.effects) or "no effects", _measured_names(self, name))
+            (
+                name,
+                body.axis,
+                ", ".join(body.effects) or "no effects",
+                ", ".join(q for q in BODY_QUANTITIES if f"{name}.{q}" in self.channels),
+            )
             for name, body in self.bodies.items()
         ]
         rows += [
@@ -224,11 +229,6 @@ def _check_bandwidth(
                 f"{comparison.where('bandwidth')}: found {bandwidth:g} Hz, expected less than "
                 f"{highest:g} Hz, half the sample rate of {record.file}"
             )
-
-
-def _measured_names(experiment: Experiment, body: str) -> str:
-    """Names of the measured quantities of a body."""
-    return ", ".join(q for q in BODY_QUANTITIES if f"{body}.{q}" in experiment.channels)
 
 
 def _exactness(channel: Channel, unit: str) -> str:

@@ -118,6 +118,8 @@ def _hold(n: int, sample_time: float, parts: int, which: int) -> NDArray[np.comp
 class HeldCommand:
     """The transform of a held command on one grid, and the last smooth signal made of it.
 
+    A search evaluates the same record hundreds of times, for one delay of its log after another.
+
     last: delay (s) of the log, gain of the smoothing, and the signal with these
     """
 

@@ -91,7 +91,9 @@ def curve_record(
                 ReadingStep(file, f"{count_of(int(count), 'row')} {what}", "left out", "none")
             )
     rows = np.flatnonzero(moving)
-    rows = rows[in_groups(velocity[rows])]
+    numbers = speed_numbers(velocity[rows])
+    # the points of every fourth speed follow one another
+    rows = rows[np.lexsort((numbers, numbers % FOLDS))]
     return Record(
         file,
         use,
@@ -113,12 +115,6 @@ def speed_numbers(velocity: Array) -> NDArray[np.intp]:
             number, first = number + 1, velocity[row]
         numbers[row] = number
     return numbers
-
-
-def in_groups(velocity: Array) -> NDArray[np.intp]:
-    """The rows in an order in which the points of every fourth speed follow one another."""
-    numbers = speed_numbers(velocity)
-    return np.lexsort((numbers, numbers % FOLDS))
 
 
 def curve_motion(record: Record, body: str) -> Motion:

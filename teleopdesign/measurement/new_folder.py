@@ -191,7 +191,7 @@ def _lasting(survey: Survey, begin: float, end: float) -> float:
 
 def _first_values(survey: Survey, folder: Path, records: Sequence[Mapping[str, Any]]) -> FirstGuess:
     """First values of the model from the fit records, read as the experiment will read them."""
-    content = {"channels": _channels(survey), "model": {"device": {"axis": survey.axis}}}
+    content = {"channels": survey.channels, "model": {"device": {"axis": survey.axis}}}
     table = Table(content, f"{folder.name}/{_FILE}")
     layout = layout_from(table, bodies_from(table.table("model")))
     fitted = [
@@ -199,10 +199,6 @@ def _first_values(survey: Survey, folder: Path, records: Sequence[Mapping[str, A
     ]
     read = [read_record(folder, entry, layout) for entry in fitted]
     return guess_from(read, "device")
-
-
-def _channels(survey: Survey) -> dict[str, Any]:
-    return {k: dict(v) for k, v in survey.channels.items()}
 
 
 def experiment_text(

@@ -222,6 +222,9 @@ def with_slower_signals(
 ) -> LogColumns:
     """The columns; those of slower bodies and sensors have one value and stamp for each reading.
 
+    A program that joins the messages of several devices repeats those of the slower one until its
+    next reading. Held readings would look like a motion in steps on a clock that jitters.
+
     stamps: (n,) s, of the rows
     Where all channels change together, the whole log has a slower source, and its rows are left out
     instead (`clock_of_log`). A command that alone changes seldom is held by its controller, and

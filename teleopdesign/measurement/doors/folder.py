@@ -39,7 +39,7 @@ def open_folder(
     if _are_signals(signals):
         return _log_of_signals(signals)
     if are_quantities(names, [log.names for log in logs.values()]):
-        if not any(_names_time(log) for log in signals.values()):
+        if not any(likeness(n, "time") > 0 for log in signals.values() for n in log.names):
             return _log_of_signals(signals, of_joints=True)
         logs, name_of = signals, _field_name
     else:
@@ -165,10 +165,6 @@ def _refuse_same_columns(logs: Mapping[str, Log], folder: Path, files: Sequence[
             f"{folder}: found tables of the same columns, expected parts of one run; for several "
             f"runs: teleopdesign new {paths}"
         )
-
-
-def _names_time(log: Log) -> bool:
-    return any(likeness(name, "time") > 0 for name in log.names)
 
 
 def _time_column(log: Log, file: str) -> str:

@@ -246,11 +246,8 @@ def _with_points(lines: Iterator[str], separator: str, places: Sequence[int]) ->
     raises ValueError: a point in a wanted cell, where it may separate thousands
     """
     for line in lines:
-        if "." in line and any("." in c for c in _pick(cells_of(line, separator), places)):
-            raise ValueError(line)
+        if "." in line:
+            cells = cells_of(line, separator)
+            if any("." in cells[k] for k in places if k < len(cells)):
+                raise ValueError(line)
         yield line.replace(",", ".")
-
-
-def _pick(cells: Sequence[str], places: Sequence[int]) -> list[str]:
-    """The cells of a row at some places; "" where the row is shorter."""
-    return [cells[k] if k < len(cells) else "" for k in places]

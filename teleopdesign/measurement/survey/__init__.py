@@ -82,7 +82,7 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
         time, columns = interpolate_columns(raw, log, time_name, unit, choices, file)
     except ExperimentError as problem:
         few = min(map(len, raw.values())) < FEWEST
-        how = _guessed_clock(guesses) or _stated_clock(time_name, unit, choices)
+        how = _how_clock_was_read(guesses, time_name, unit, choices)
         raise ExperimentError(f"{problem}{'' if few else how}") from None
     duration = duration_of(raw, time_name, unit, choices)
     # numbers of rows are no signal, though a scope calls them "X"
@@ -124,16 +124,13 @@ def survey_logs(logs: Sequence[Log], files: Sequence[str], choices: Choices) -> 
     return survey
 
 
-def _guessed_clock(guesses: Mapping[str, str]) -> str:
-    """What was guessed of the time, as the end of a message that the clock does not do."""
-    if not guesses:
-        return ""
-    option = "--time COLUMN, --unit COLUMN=UNIT or --sample-rate HZ states it"
-    return f"; {'; '.join(guesses.values())}: {option}"
-
-
-def _stated_clock(time_name: str | None, unit: str, choices: Choices) -> str:
-    """In which unit a column of time was read, as the end of a message; "" for seconds."""
+def _how_clock_was_read(
+    guesses: Mapping[str, str], time_name: str | None, unit: str, choices: Choices
+) -> str:
+    """What was guessed of the time, or its unit, as the end of a message on a useless clock."""
+    if guesses:
+        option = "--time COLUMN, --unit COLUMN=UNIT or --sample-rate HZ states it"
+        return f"; {'; '.join(guesses.values())}: {option}"
     if time_name is None or unit == "s" or time_name in choices.units:
         return ""
     return f"; {time_name!r} is read in {unit}: --unit {time_name + '=UNIT'!r} states another unit"

@@ -216,6 +216,9 @@ def current_that_acted(
 ) -> tuple[str, float] | None:
     """A measured current that acted in place of the commanded `force`, and how far the two differ.
 
+    A model-based controller logs the force that its model demands. Friction that the model lacks
+    shows only in the measured current: with the commanded force no effect would seem to be missing.
+
     returns: the column of the current, and the rms of the part that the command does not explain,
         over the rms of the current; None: `force` is no command, or the drive followed it
     """
@@ -225,7 +228,8 @@ def current_that_acted(
         name
         for name, column in columns.items()
         if name != force and _is_current(column) and not is_wanted(name)
-        if not _lacks_a_side(column.values, columns[force].values)
+        # the current that a drive draws from its supply has one side
+        if not _smaller_side(column.values) < ONE_SIDE < _smaller_side(columns[force].values)
     ]
     if not measured:
         return None
@@ -239,11 +243,6 @@ def _is_current(column: SurveyedColumn) -> bool:
     if likeness(column.name, "actuator_force") < SURE_NAME:
         return False
     return column.unit in ("A", "mA") or column.unit is None and says(column.name, "current")
-
-
-def _lacks_a_side(measured: Array, wanted: Array) -> bool:
-    """Whether a current has one sign although the command has both: it is no motor's current."""
-    return _smaller_side(measured) < ONE_SIDE < _smaller_side(wanted)
 
 
 def _smaller_side(x: Array) -> float:

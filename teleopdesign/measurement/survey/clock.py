@@ -88,7 +88,9 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
             unread[name] = f"one value: {values[0]:g}"
             remarks.append(f"{bare_column(name)} = {values[0]:g}")
         else:
-            unread[name] = _explain_empty(float(filled.mean()) if len(values) else 0.0)
+            finite = float(filled.mean()) if len(values) else 0.0
+            more = f": {OF_ANOTHER_CLOCK}" if finite > 0 else ""
+            unread[name] = f"numbers in {finite:.0%} of its rows{more}"
     if not raw or log.clocks and not log.clocks.keys() & raw.keys():  # or clocks alone
         whys = set(unread.values())
         if len(whys) == 1 and "found" in (why := whys.pop()):  # the same row of all columns
@@ -98,12 +100,6 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
         )
     units = {**log.units, **dict.fromkeys(dated, "s")}
     return raw, unread, replace(log, units=units, remarks=(*log.remarks, *remarks))
-
-
-def _explain_empty(finite: float) -> str:
-    """Why a column with this part of its rows filled is left out, and what to do about it."""
-    content = f"numbers in {finite:.0%} of its rows"
-    return f"{content}: {OF_ANOTHER_CLOCK}" if finite > 0 else content
 
 
 def _without_name(message: str, column: str, file: str) -> str:
@@ -285,13 +281,10 @@ def interpolate_columns(
             continue
         column_unit = choices.units.get(name) or log.units.get(name)
         column_unit = column_unit or unit_in_log(name, log.names)
-        code = None if _is_counter(name) else sign_code_of(x[fine])
+        # the counter of a position wraps, which is the same as a sign
+        is_counter = likeness(name, "position") >= SURE_NAME and not is_wanted(name)
+        code = None if is_counter else sign_code_of(x[fine])
         readings = x[fine] if code is None else code.decode(x[fine])
         grid = np.interp(clock.time, at[fine], readings)
         columns[name] = SurveyedColumn(name, grid, readings, column_unit, code)
     return clock.time, columns
-
-
-def _is_counter(name: str) -> bool:
-    """Whether a name is surely that of a position: its counter wraps, which is the same."""
-    return likeness(name, "position") >= SURE_NAME and not is_wanted(name)

@@ -83,18 +83,13 @@ def is_sent_to_places(position: Array, column: SurveyedColumn) -> bool:
         return False
     if np.abs(values).min() < NEVER_ZERO * np.abs(values).max():
         return False
-    ends = _ends_of_holds(values)
+    ends = np.flatnonzero(np.diff(values))  # the last row of each hold
+    ends = ends[ends > 0]
     if not _rests_at(ends, position) or not np.ptp(values[ends]) > 0.0:
         return False
     line = np.polynomial.Polynomial.fit(values[ends], position[ends], 1)
     apart = float(np.mean((position[ends] - line(values[ends])) ** 2))
     return apart < APART * float(np.var(position[ends]))
-
-
-def _ends_of_holds(column: Array) -> Indices:
-    """The last row of each hold of a column, without that of the log."""
-    ends = np.flatnonzero(np.diff(column))
-    return ends[ends > 0]
 
 
 def _rests_at(ends: Indices, position: Array) -> bool:
