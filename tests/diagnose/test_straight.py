@@ -5,8 +5,6 @@ import pytest
 from diagnose.made_records import write_made
 
 import teleopdesign as td
-from teleopdesign.diagnose.straight import is_bent, is_straight
-from teleopdesign.effects import EFFECTS
 
 AMONG = ("gravity", "hardening_spring", "spring", "bias")
 USER = "coulomb = {}\nviscous = {}"
@@ -37,15 +35,6 @@ def diagnosed(folder, place_force, user=USER, *, prismatic=False):
     if prismatic:
         as_a_slide(folder)
     return td.find_missing(td.load_experiment(folder), among=AMONG)
-
-
-def test_bends_and_lines_are_recognised_by_their_laws():
-    assert {n for n, e in EFFECTS.items() if is_straight(e)} == {"bias", "spring"}
-    assert {n for n, e in EFFECTS.items() if is_bent(e) and not e.free} == {
-        "gravity",
-        "hardening_spring",
-        "stops",
-    }
 
 
 @pytest.mark.slow
