@@ -34,14 +34,6 @@ def test_a_planted_fault_is_in_a_group_where_the_command_was_not_recorded(fault,
     assert is_right(fault, named(fault, 1, way))
 
 
-@pytest.mark.slow
-def test_a_recording_with_the_compensation_off_tells_a_changed_device():
-    (group,) = named("friction", 1, WAYS[2]).deviations
-    assert [f"{one.at}: {one.parameter}" for one in group] == ["Z_M: coulomb.level"]
-    (one,) = group
-    assert one.value == pytest.approx(1.4 * one.designed, rel=0.03)
-
-
 def test_a_law_that_reads_the_command_runs_along_a_recording():
     """A ripple is divided out: without force feedback, C commands its friction over the gain."""
     effects = {"coulomb": {"level": 0.2}, "torque_ripple": {"amplitude": 0.3, "period": 0.5}}

@@ -159,66 +159,6 @@ def test_a_case_that_failed_counts_and_one_that_was_not_run_does_not(tmp_path):
     assert [(r.case, r.outcome) for r in campaign.rows] == [(first.name, "no answer")]
 
 
-def made_library():
-    """One body whose force lacks a spring, among terms that are near-copies or nothing."""
-    from _terms import Library
-
-    rng = np.random.default_rng(3)
-    effects = ("viscous", "spring", "hardening_spring", "cogging", "cogging", "bias")
-    columns = rng.standard_normal((2, 900, len(effects)))
-    columns[:, :, 2] = 0.8 * columns[:, :, 1] + 0.6 * columns[:, :, 2]  # a cube looks like a line
-    target = 0.4 * columns[:, :, 1] + 0.1 * rng.standard_normal((2, 900))
-    return Library(
-        body="slave",
-        effect=effects,
-        size=np.ones(len(effects)),
-        fit=columns[0],
-        check=columns[1],
-        fit_target=target[0],
-        check_target=target[1],
-    )
-
-
-@pytest.mark.parametrize("method", ["pysindy", "sysidentpy"])
-def test_a_baseline_names_the_term_that_is_missing_and_where(method):
-    pytest.importorskip(method, reason="the extra `bench` is not installed")
-    import _baselines
-
-    choose = getattr(_baselines, f"{method}_columns")
-    library = made_library()
-    named = _baselines.name_effects(library, choose(library))
-    assert (named[0].effect, named[0].at) == ("spring", "slave")
-
-
-def test_a_choice_that_the_check_record_does_not_support_names_nothing():
-    from _baselines import name_effects
-
-    library = made_library()
-    assert name_effects(library, np.array([0, 3])) == []
-    assert [n.effect for n in name_effects(library, np.array([1]))] == ["spring"]
-
-
-def test_a_delay_and_a_lag_are_distinguished_by_their_second_coefficient():
-    from _baselines import name_effects
-    from _terms import Library
-
-    rng = np.random.default_rng(1)
-    columns = rng.standard_normal((2, 600, 2))
-    for share, effect in ((0.5, "actuation_delay"), (1.0, "actuator_lag")):
-        tau = 0.3
-        target = columns @ np.array([tau, -share * tau**2])
-        library = Library(
-            body="device",
-            effect=("actuation_delay", "actuation_delay"),
-            size=np.ones(2),
-            fit=columns[0],
-            check=columns[1],
-            fit_target=target[0],
-            check_target=target[1],
-        )
-        assert [n.effect for n in name_effects(library, np.array([0]))] == [effect]
-
-
 @pytest.mark.slow
 def test_the_study_writes_tables_rows_and_figures(tmp_path, capsys):
     """Of one case, the quickest; `make studies STUDY_ARGS=--quick` runs the study as users do."""
