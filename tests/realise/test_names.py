@@ -26,7 +26,6 @@ from teleopdesign.diagrams import (
     position_symbol,
 )
 from teleopdesign.realise._codegen import ANALOG, DIGITAL
-from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.simulate import prepare, simulate
 
 #: words that generated code, Python, sympy or the package might want for itself
@@ -181,38 +180,6 @@ def test_diagrams_that_differ_by_names_alone_share_one_kernel():
     one, other = (prepare(d, duration=0.1, jit=False) for d in (diagram, renamed(diagram, names)))
     assert one.program.loop is other.program.loop
     assert other.program.layout.states[0] in {f"other_{n}" for n in one.program.layout.states}
-
-
-@pytest.mark.parametrize("words", [WORDS[:20], WORDS[20:40], WORDS[40:60], WORDS[60:80]])
-def test_the_python_control_form_takes_any_word_too(words):
-    diagram = DIAGRAMS["hybrid"]
-    old = [*diagram.signals, *(b.name for b in diagram.blocks)]
-    names = dict(zip(old, [*words, *(f"more_{i}" for i in range(len(old)))], strict=False))
-    one, other = to_iosystem(diagram), to_iosystem(renamed(diagram, names))
-
-    def at(system, names):
-        """Rates and outputs where each state and input has a value by its name."""
-        states = [s.split("_", 1)[1] for s in system.state_labels]
-        back = {new: old for old, new in names.items()}
-        plain = [_old_label(s, back) for s in states]
-        x = np.array([1e-3 * (1 + len(s)) for s in plain])
-        u = np.array([0.1 * len(back.get(s, s)) for s in system.input_labels])
-        outputs = [_old_label(s, back) for s in system.output_labels]
-        rates = dict(zip(plain, system.dynamics(0.0, x, u), strict=True))
-        return rates, dict(zip(outputs, system.output(0.0, x, u), strict=True))
-
-    for mine, yours in zip(at(one, {}), at(other, names), strict=True):
-        assert mine.keys() == yours.keys()
-        for key, value in mine.items():
-            assert value == yours[key], key
-
-
-def _old_label(label, back):
-    """A label made from one of the new names, with the old one in its place."""
-    for new in sorted(back, key=len, reverse=True):
-        if label == new or label.startswith(f"{new}_"):
-            return back[new] + label.removeprefix(new)
-    return label
 
 
 @pytest.mark.parametrize(
