@@ -158,9 +158,8 @@ def test_an_experiment_on_an_arm_pickles_and_says_itself(folder):
     assert pickle.loads(pickle.dumps(model)).parameters == model.parameters
 
 
-@pytest.mark.parametrize("command", ["describe", "design", "passivity", "export --to mjcf"])
-def test_a_command_on_one_joint_asks_for_it_in_one_line(folder, capsys, command):
-    assert main([*command.split(), str(folder)]) == 2
+def test_a_command_on_one_joint_asks_for_it_in_one_line(folder, capsys):
+    assert main(["describe", str(folder)]) == 2
     output = capsys.readouterr().err.strip().splitlines()
     assert "joint1, joint2: choose one with --body" in output[-1]
 

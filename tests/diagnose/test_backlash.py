@@ -78,9 +78,9 @@ def test_a_search_finds_a_heavy_and_a_light_tip(number, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [206, 214])  # gaps of 17 mrad and 2.2 mm, several swings wide
+@pytest.mark.parametrize("seed", [206])  # a gap of 17 mrad, several swings wide
 def test_draws_lead_to_a_wide_gap(seed, tmp_path):
-    """From the usual starts 15.0 and 3.8 were left of 17.2 and 3.9, where the truth leaves less."""
+    """From the usual starts 15.0 were left of 17.2, where the truth leaves less."""
     rng = np.random.default_rng(seed)
     write_case(make_case(rng, "clear", ["backlash"], "teleoperator", tries=3), tmp_path)
     truth, experiment = truth_of(tmp_path), load_experiment(tmp_path)
@@ -93,7 +93,7 @@ def test_draws_lead_to_a_wide_gap(seed, tmp_path):
     ((_, best),) = search_among_draws([attempt], base, prepared)
     values = {f"{hidden['at']}.backlash.{n}": v["value"] for n, v in hidden["parameters"].items()}
     true = estimate(new.with_values(values), prepared)
-    # measured: 1.03 and 1.00 times what the fit from the true values leaves; before 3.2 and 6.4
+    # measured: 1.03 times what the fit from the true values leaves; before 3.2
     assert best.fit_error < 1.3 * true.fit_error
     assert best.fit_error < 0.5 * usual.fit_error
     gap = f"{hidden['at']}.backlash.gap"

@@ -106,7 +106,7 @@ def test_a_model_with_a_late_hand_is_written_and_read(diagnosis):
     assert back.log_late(HAND) == diagnosis.model.record_shift[HAND].value
 
 
-@pytest.mark.parametrize("effect", ["actuator_lag", "stribeck"])
+@pytest.mark.parametrize("effect", ["actuator_lag"])
 def test_what_is_missing_keeps_its_name_beside_a_hand_in_time_or_late(tmp_path, effect):
     """A lag of the command is no lag of the sensor: the motion tells which force is late."""
     experiment = td.load_experiment(write_simulated(tmp_path / "case", effect, seed=SEED))

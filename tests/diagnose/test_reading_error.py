@@ -205,16 +205,3 @@ def test_a_right_model_leaves_only_its_sensors_errors_at_turns(rod):
     far = np.min(np.abs(read.keep[:, None] - turns[None, :]), axis=1) > 30
     # next to a turn less than twice of what is left far from one (4 with too few steps)
     assert np.std(left[moving & ~far]) < 2.0 * np.std(left[moving & far])
-
-
-@pytest.mark.slow
-def test_a_body_that_sticks_where_the_record_moved_says_nothing_of_its_readings(rod):
-    """Friction at rest above all forces, as a Stribeck fall far below the slowest motion has."""
-    fit, prepared = rod
-    body = fit.model.body("device").with_values({"coulomb.level": 1e3})
-    motion = prepared.of("fit")[0].motion
-    course = simulated_course(body, motion, deflection=0.1)
-    assert np.ptp(course.position) < 0.01 * np.ptp(motion.position)
-    assert not course.stays_near(motion)
-    stuck = replace(fit, model=fit.model.with_values({"device.coulomb.level": 1e3}))
-    assert reading_error(stuck, prepared, np.random.default_rng(0)) is None

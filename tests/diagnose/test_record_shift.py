@@ -217,7 +217,7 @@ def test_a_shift_that_raises_the_error_on_unseen_records_is_held_at_none(adequat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rows", [-1.36, -1.8])
+@pytest.mark.parametrize("rows", [-1.36])
 def test_a_shift_at_its_bound_that_a_dead_time_explains_better_is_no_clock(adequate, rows):
     """Part of it would leave little more than noise, and nothing would be looked for."""
     experiment = shifted(adequate, rows)
@@ -260,7 +260,7 @@ def logged_late(experiment, rows):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rows", [3, 9])
+@pytest.mark.parametrize("rows", [9])
 def test_a_log_that_is_many_rows_late_is_no_physics(adequate, plain, rows):
     """Nothing moves before its command: from a log in time the search ends in a poor fit."""
     experiment = logged_late(adequate, rows)
@@ -274,7 +274,7 @@ def test_a_log_that_is_many_rows_late_is_no_physics(adequate, plain, rows):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("effect", "rows"), [(None, 2), ("stribeck", 4)])
+@pytest.mark.parametrize(("effect", "rows"), [("stribeck", 4)])
 def test_what_is_missing_keeps_its_name_where_the_log_is_late(tmp_path, effect, rows):
     experiment = logged_late(td.load_experiment(write_simulated(tmp_path / "late", effect)), rows)
     diagnosis = td.find_missing(experiment, among=MISTAKEN)
@@ -325,18 +325,14 @@ def test_a_model_with_a_shift_is_written_and_read(plain):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("seed", "rows", "among"), [(11, -1.0, MISTAKEN), (12, 1.0, None), (13, 0.3, MISTAKEN)]
-)
+@pytest.mark.parametrize(("seed", "rows", "among"), [(12, 1.0, MISTAKEN), (13, 0.3, MISTAKEN)])
 def test_no_effect_is_named_for_a_logger_that_is_off(tmp_path, seed, rows, among):
     experiment = td.load_experiment(write_simulated(tmp_path / "null", None, seed=seed))
     assert not td.find_missing(shifted(experiment, rows), among=among).missing
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("effect", "rows"), [("stribeck", 1.0), ("cogging", -1.0), ("presliding", 1.0)]
-)
+@pytest.mark.parametrize(("effect", "rows"), [("cogging", -1.0), ("presliding", 1.0)])
 def test_an_effect_keeps_its_name_under_a_shift(tmp_path, effect, rows):
     folder = write_simulated(tmp_path / effect, effect)
     late = shifted(td.load_experiment(folder), rows)

@@ -8,7 +8,6 @@ from cases import make_case, write_case
 from diagnose.simulated_cases import FEW, truth_of, write_simulated
 
 from teleopdesign import Model, find_missing, load_experiment
-from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.effects import EFFECTS
 
@@ -34,7 +33,7 @@ def test_a_planted_effect_is_detected(diagnosis, stribeck_case):
     check_diagnosis(diagnosis, stribeck_case, "stribeck")
 
 
-@pytest.mark.parametrize("effect", ["coulomb", "presliding", "spring", "actuator_lag"])
+@pytest.mark.parametrize("effect", ["presliding", "actuator_lag"])
 def test_a_planted_effect_of_another_kind_is_detected(effect, tmp_path):
     folder = write_simulated(tmp_path / effect, effect)
     check_diagnosis(diagnosed(folder, FEW), folder, effect)
@@ -128,12 +127,6 @@ def test_a_fit_alone_gives_what_a_diagnosis_that_adds_nothing_gives(experiment):
     # value and standard error of each, to the last digit: the same steps on the same draws
     assert alone.parameters == diagnosed.model.parameters
     assert alone.parameters != diagnosed.estimated.parameters
-
-
-@pytest.mark.slow  # a whole diagnosis again; golden/ holds its figures too
-def test_the_same_records_give_the_same_answer(experiment, diagnosis):
-    again = find_missing(experiment, Model.from_experiment(experiment, FEW))
-    assert answer(again) == answer(diagnosis)
 
 
 def test_parameters_carry_standard_errors_that_fit_their_distance_to_the_truth(

@@ -2,29 +2,11 @@
 
 from dataclasses import replace
 
-import numpy as np
-from hypothesis import given
-from hypothesis import strategies as st
-
 from teleopdesign.diagnose.answer import answer, load_answer, write_answer
 from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.products import best_product
 from teleopdesign.diagnose.statements import SetAside, Undetermined
 from teleopdesign.effects import EFFECTS
 from teleopdesign.show.diagnose.text import ladder_text
-
-
-@given(power=st.floats(0.3, 3.0), noise=st.floats(1e-4, 1e-2))
-def test_the_product_that_a_record_tells_is_detected(power, noise):
-    """Columns that are alike up to a little: one combination is told, the other hardly."""
-    rng = np.random.default_rng(1)
-    one, little = rng.standard_normal(500), noise * rng.standard_normal(500)
-    columns = np.column_stack([one, power * one + little])
-    covariance = np.linalg.inv(columns.T @ columns)
-    powers, known = best_product(columns, np.sqrt(np.diag(covariance)))
-    expected = np.array([1.0, power]) / max(1.0, power)
-    np.testing.assert_allclose(powers, expected, rtol=0.05)
-    assert known < 0.1 * np.sqrt(np.diag(covariance)).min()
 
 
 def stribeck_of(end):
