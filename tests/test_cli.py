@@ -43,14 +43,6 @@ def refused(capsys, *arguments):
     return lines[0]
 
 
-def edited(folder, old, new, file="experiment.toml"):
-    path = folder / file
-    text = path.read_text()
-    assert old in text
-    path.write_text(text.replace(old, new, 1))
-    return folder
-
-
 # help and lists
 
 
@@ -113,56 +105,6 @@ def test_a_missing_folder_is_one_line_also_in_a_separate_process(tmp_path):
     assert done.returncode == 2
     assert done.stderr.splitlines() == [f"teleopdesign: {'nothing'}: no such folder"]
     assert done.stdout == ""
-
-
-def with_plain_record(folder, change):
-    """The experiment with its fit record as plain text, changed line by line."""
-    import gzip
-
-    lines = gzip.decompress((folder / "fit.csv.gz").read_bytes()).decode().splitlines()
-    (folder / "fit.csv").write_text("\n".join(change(lines)) + "\n")
-    return edited(folder, "fit.csv.gz", "fit.csv")
-
-
-def cell(text, row=500):
-    """Replaces the third cell of a row."""
-
-    def change(lines):
-        parts = lines[row].split(",")
-        parts[2] = text
-        return [*lines[:row], ",".join(parts), *lines[row + 1 :]]
-
-    return change
-
-
-AS_LOGGED = {
-    "nan": (cell("nan"), "1 row with a cell"),
-    "gap": (cell(""), "1 row with a cell"),
-    "samples left out": (lambda lines: [*lines[:500], *lines[700:]], "1 pause"),
-    "not uniform": (
-        lambda lines: [lines[0], *(
-            f"{float(line.split(',')[0]) ** 1.5:.6f},{line.split(',', 1)[1]}" for line in lines[1:]
-        )],
-        "uneven stamps",
-    ),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    "flaw",
-    [
-        "gap",
-        "not uniform",
-        pytest.param("nan", marks=pytest.mark.slow),
-        pytest.param("samples left out", marks=pytest.mark.slow),
-    ],
-)
-def test_what_a_logger_did_to_a_record_is_read_and_reported(flaw, rod, capsys):
-    change, expected = AS_LOGGED[flaw]
-    main(["check", str(with_plain_record(rod, change))])
-    out = capsys.readouterr()
-    assert not out.err
-    assert expected in out.out
 
 
 @pytest.mark.parametrize(

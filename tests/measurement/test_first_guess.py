@@ -118,16 +118,6 @@ def test_a_pendulum_below_its_natural_frequency_is_no_turned_inertia(rate, stiff
         assert explain_force(force, x, 0.01).inertia == pytest.approx(0.05, rel=0.3)
 
 
-def test_of_a_body_that_rests_nothing_is_read_and_nothing_fails():
-    force = np.random.default_rng(0).standard_normal(len(T))
-    for still in (np.zeros(len(T)), np.full(len(T), 2.5)):
-        guess = explain_force(force, still, H)
-        assert (guess.inertia, guess.level, guess.damping) == (0.0, 0.0, 0.0)
-        assert guess.explained == pytest.approx(0.0, abs=1e-9)
-        assert not is_turned(force, still, H)
-        assert balance_factor(force, force, still, H) == (0.0, np.inf)
-
-
 def test_each_value_has_the_error_by_which_it_scatters():
     """Over records with other noise; each second counts as one reading, so the error is wide."""
     v, a = rate_of(SWING), rate_of(SWING, 2)

@@ -156,24 +156,6 @@ def test_a_body_that_rests_a_good_part_of_the_time_is_no_slow_source(rest):
     assert not rows_between_readings([x, 3 * x], [x], stamps).any()
 
 
-def halted(before, leap, after, rows=(100, 100)):
-    """A motion by so much a row that stands for 12 rows, leaps, and goes on by so much a row."""
-    changes = [[before] * rows[0], [0.0] * 12, [leap], [after] * rows[1]]
-    return np.concatenate([[0.0], np.cumsum(np.concatenate(changes))])
-
-
-@pytest.mark.parametrize(
-    ("before", "leap", "after", "is_lost"),
-    [(1, 6, 1, True), (1, -6, 1, True), (2, 6, 1, False), (1, 6, 2, False), (1, 4, 1, False)],
-)
-def test_a_stand_is_lost_rows_where_the_leap_after_it_is_large_beside_both_sides(
-    before, leap, after, is_lost
-):
-    x = halted(before, leap, after)
-    rows = np.flatnonzero(repeated_rows([x, 2 * x], [x]))
-    assert rows.tolist() == (list(range(101, 113)) if is_lost else [])
-
-
 @pytest.mark.parametrize(("times", "is_lost"), [(1, False), (2, True), (20, True)])
 def test_rows_that_agree_by_chance_are_lost_only_where_there_are_more_than_chance_makes(
     times, is_lost

@@ -16,15 +16,12 @@ from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.statements import OpenQuestion, OpenRival
 from teleopdesign.effects import EFFECTS
 from teleopdesign.next_experiment import (
-    Limits,
     proposal_data,
     propose,
     show_in_simulation,
     shown_limits,
     write_reference,
 )
-from teleopdesign.next_experiment.family import Setting, family
-from teleopdesign.next_experiment.path import Servo, follow_path
 from teleopdesign.next_experiment.prediction import refit, with_records
 from teleopdesign.next_experiment.synthesis import command_along, exact_motion
 
@@ -69,29 +66,6 @@ def test_the_motion_keeps_within_the_limits_that_the_records_have_shown(one_spee
     assert signals[0].min() >= limits.low - 1e-9 and signals[0].max() <= limits.high + 1e-9
     for signal, name in zip(signals[1:], ("speed", "acceleration", "jerk"), strict=True):
         assert np.abs(signal).max() <= 1.001 * getattr(limits, name)
-
-
-def test_every_part_of_the_family_starts_and_ends_at_rest_in_the_middle():
-    limits = Limits(-0.05, 0.05, 0.2, 5.0, 500.0, 2.0)
-    setting = Setting(limits, 1e-5, 50.0, 1e-3, lambda v, q: f"{v:.3g} {q}", repeated=30.0)
-    parts = family(setting)
-    assert len(parts) > 20
-    for part in parts:
-        assert abs(part.path[0]) < 1e-9 and abs(part.path[-1]) < 1e-9
-        assert np.abs(np.diff(part.path[:5])).max() < 1e-9
-        assert np.abs(part.path).max() <= limits.high * (1 + 1e-9)
-
-
-def test_a_body_lies_behind_its_servo_by_the_play_and_catches_up_smoothly():
-    t = np.arange(0.0, 3.0, 1e-3)
-    path = 0.02 * np.sin(2 * np.pi * t)
-    servo = Servo(turn=0.02, play=2e-3)
-    behind = follow_path(path, servo, sample_time=1e-3)
-    # half of the play, and the catching up: no more than another play at this acceleration
-    assert np.abs(behind.path - path).max() <= 1.5 * servo.play
-    assert len(behind.stuck) == 6 + 1  # each turn and the start
-    for first, last in behind.stuck:
-        assert np.ptp(behind.path[first:last]) == 0.0
 
 
 def test_the_command_moves_the_model_as_asked(one_speed):

@@ -1,8 +1,5 @@
 """Names are the user's: numbers do not depend on them, and no word is taken."""
 
-import builtins
-import keyword
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -25,7 +22,6 @@ from teleopdesign.diagrams import (
     haptic_interface,
     position_symbol,
 )
-from teleopdesign.realise._codegen import ANALOG, DIGITAL
 from teleopdesign.simulate import prepare, simulate
 
 #: words that generated code, Python, sympy or the package might want for itself
@@ -198,10 +194,3 @@ def test_a_name_that_the_package_makes_itself_is_refused_in_one_line(name, words
     with pytest.raises(ModelError) as caught:
         run(renamed(diagram, names))
     assert words in str(caught.value)
-
-
-#: what the source of the laws holds itself, and the beginnings of private names
-RESERVED = {*dir(math), *keyword.kwlist, *dir(builtins), *ANALOG, *DIGITAL, "jitted", "lane", "phi"}
-RESERVED |= set("rates slopes signals late_values motions record held_commands".split())
-RESERVED |= set("computer_before computer_signals computer_after e f _".split())
-RESERVED |= set("to to_states to_bristles to_positions to_velocities table column".split())

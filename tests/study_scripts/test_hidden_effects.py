@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import json
-
 import hidden_effects
 import numpy as np
 import pytest
 from _campaign import plan
 from _defects import log_as_loggers_do
-from _recovery_tables import collect
 from _scoring import (
     Answer,
     Truth,
@@ -133,30 +130,6 @@ def test_a_plan_hides_every_effect_of_the_catalogue_on_both_kinds_of_machine():
     for name in ("level", "excitation", "rate"):  # each together with each kind
         pairs = {(getattr(c, name), c.kind) for c in cases}
         assert len(pairs) == 2 * len({getattr(c, name) for c in cases})
-
-
-def finished(folder, case, response):
-    """A case whose truth and answer are there already."""
-    for part in ("truth", "answers", f"cases/{case.name}"):
-        (folder / part).mkdir(parents=True, exist_ok=True)
-    content = {
-        "level": "null", "axis": "prismatic", "effects": [], "indistinguishable": [],
-        "check_error_true": 0.02, "noise_floor": 0.019,
-    }  # fmt: skip
-    (folder / "truth" / f"{case.name}.json").write_text(json.dumps(content))
-    (folder / "cases" / case.name / "experiment.toml").write_text("[channels]\n")
-    (folder / "answers" / f"{case.name}.json").write_text(json.dumps(response))
-
-
-def test_a_case_that_failed_counts_and_one_that_was_not_run_does_not(tmp_path):
-    first, second = plan(2, seed=1, levels=("null",))
-    for case in (first, second):
-        finished(tmp_path, case, {})
-        (tmp_path / "answers" / f"{case.name}.json").unlink()
-    (tmp_path / "failed").mkdir()
-    (tmp_path / "failed" / f"{first.name}.answers.txt").write_text("why\n")
-    campaign = collect(tmp_path, [first, second], ["answers"])
-    assert [(r.case, r.outcome) for r in campaign.rows] == [(first.name, "no answer")]
 
 
 @pytest.mark.slow
