@@ -98,7 +98,8 @@ def propose_channels(
     best = search.best()
     _require_fit(search, best, file)
     used = {one.column for one in best.values()}
-    idle |= {n: "fits no signal of the diagram" for n in units if n not in used}
+    left = {n: f" in {unit}" if unit else "" for n, unit in units.items() if n not in used}
+    idle |= {n: f"fits no signal of the diagram{unit}" for n, unit in left.items()}
     known, open_ = _explain(search, best, guesses)
     return ChannelProposal(
         diagram,

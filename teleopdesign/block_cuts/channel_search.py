@@ -83,7 +83,9 @@ class ChannelSearch:
         self.sensed = [one.name for one in what_to_log(diagram).signals]
         alike = {_letters(n) for n in units}
         more = [s for s in diagram.signals if s in stated or _letters(s) in alike]
-        every = dict.fromkeys([*self.sensed, *more])
+        single = [j for j in diagram.junctions if len(j.terms) == 1 and j.output in self.sensed]
+        again = {s for j in single for s in j.terms}  # the same signal under another name
+        every = dict.fromkeys([*(s for s in self.sensed if s not in again), *more])
         # a cut closes as early as possible: motions, forces on bodies, commands, then the rest
         first = [b.motion for b in self.bodies] + [s for b in self.bodies for s in b.loads]
         first += [b.command for b in self.bodies]
@@ -106,8 +108,8 @@ class ChannelSearch:
         if _letters(column) == _letters(signal):
             return 1.0
         text = {w for w in words_of(self.diagram.texts.get(signal, "")) if len(w) > 2}
-        text |= {*words_of(signal)}
         words = words_of(column)
+        text |= {*words_of(signal)} if len(words) > 1 else set()  # a letter alone is no index
         values = [max(self._of_quantity(signal, w), _is_in_text(w, text)) for w in words]
         whole = "".join(words) if all(len(w) == 1 for w in words) else ""
         return max(sum(values) / max(len(words), 1), self._of_quantity(signal, whole))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from ..base.errors import ExperimentError
 from ..base.files import write_text
@@ -35,7 +36,9 @@ def make_diagram_folder(
     names = [log.name for log in logs]
     if spans is not None:
         check_spans(spans, proposal.duration, names)
-    records = [{"file": n, "use": "check" if n == names[-1] else "fit"} for n in names]
+    records: list[dict[str, Any]] = [
+        {"file": n, "use": "check" if n == names[-1] else "fit"} for n in names
+    ]
     if len(names) == 1:
         parts = zip(("fit", "check"), spans or spans_of(proposal.duration), strict=True)
         records = [{"file": names[0], "use": use, "span": part} for use, part in parts]
