@@ -125,18 +125,18 @@ def _require(names: Iterable[str], present: Sequence[str], kind: str, file: str)
 
 
 def _require_fit(search: ChannelSearch, best: Mapping[str, ColumnChoice], file: str) -> None:
-    """Refuse a log without a signal, and a stated column of another quantity."""
-    if not best:
-        raise ExperimentError(
-            f"{file}: no column fits a signal of {search.diagram.name}, found "
-            f"{join_names(tuple(search.data))}: --signal NAME=COLUMN states one"
-        )
+    """Refuse a log that tests no block, and a stated column of another quantity."""
     for signal, name in search.stated.items():
         if name != NONE and signal not in best:
             raise ExperimentError(
                 f"{file}: column {quote(name)} as {signal}: found the unit "
                 f"{search.units.get(name)}, expected one of a {search.quantity(signal)}"
             )
+    if not search.errors(best):
+        raise ExperimentError(
+            f"{file}: no columns fit the signals of {search.diagram.name} so that a block is "
+            f"tested, found {join_names(tuple(search.data))}: --signal NAME=COLUMN states one"
+        )
 
 
 def _explain(

@@ -5,6 +5,7 @@ import pytest
 from block_cuts.interface_simulator import draw_interface, write_case
 
 import teleopdesign as td
+from teleopdesign.block_cuts import propose_channels
 from teleopdesign.cli import main
 
 #: column of the simulated log -> its signal
@@ -109,6 +110,14 @@ def test_what_is_not_there_is_one_line(log, capsys, options, words):
     assert new(*options) == 2
     message = capsys.readouterr().err
     assert message.count("\n") == 1 and all(word in message for word in words), message
+
+
+def test_a_log_of_noise_is_one_line_and_nothing_is_written(folder):
+    noise = np.random.default_rng(2).standard_normal((2, 2000))
+    data = {"t": np.arange(2000) / 1e3, "a": noise[0], "b": noise[1]}
+    with pytest.raises(td.ExperimentError, match="no columns fit the signals") as problem:
+        propose_channels(td.load_experiment(folder).diagram, data)
+    assert "\n" not in str(problem.value)
 
 
 def test_a_stated_column_is_taken(log):
