@@ -20,10 +20,11 @@ import numpy as np
 
 from ..base.errors import TeleopDesignError
 from ..base.units import measures, unit_of
-from ..diagnose import compare
+from ..diagnose.error import force_error
 from ..diagrams import Diagram, Moving
 from ..measurement.column_names import is_another_quantity, is_wanted, likeness, words_of
 from ..measurement.filtering import Array
+from ..measurement.prepare import prepare
 from ..measurement.survey.content import SURE_NAME
 from ..measurement.survey.position import unit_of_reach
 from .body import body_experiment, model_of_body
@@ -236,9 +237,11 @@ def _error(experiment: DiagramExperiment, cut: Cut) -> float:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")  # of columns that are no such signal
             if cut.kind == "body":
-                body = body_experiment(experiment, cut)
-                return compare(model_of_body(experiment.diagram, cut), body).fit_error
-            return data_of_computer(experiment, Cuts((cut,), {}), {}).at(()).error("fit")
+                fitted = prepare(body_experiment(experiment, cut)).of("fit")
+                error = force_error(model_of_body(experiment.diagram, cut), fitted)
+            else:
+                error = data_of_computer(experiment, Cuts((cut,), {}), {}).at(()).error("fit")
+            return error if np.isfinite(error) else 1.0
     except TeleopDesignError:
         return 1.0
 
