@@ -128,6 +128,18 @@ def test_a_stated_column_is_taken(log):
     assert "R_D" not in experiment.recorded
 
 
+def test_of_two_columns_that_fit_as_well_the_user_chooses(log, folder, monkeypatch, capsys):
+    forces = td.load_experiment(folder).logs[0].columns.values["f_h"]
+    log(WORDS, hand_force_2=forces)
+    questions = []
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True)
+    monkeypatch.setattr("builtins.input", lambda text: questions.append(text) or "hand_force_2")
+    assert main(["new", "log.csv", "--diagram", "interface.toml"]) == 0
+    assert len(questions) == 1 and questions[0].startswith("R_M")
+    assert read().channel["R_M"].columns == ("hand_force_2",)
+    assert "known as stated" in capsys.readouterr().out
+
+
 def test_a_hand_is_compared_where_no_command_is_recorded(folder):
     stated = td.load_experiment(folder)
     tables = {n: dict(t.content) for n, t in stated.channels.items() if n in ("time", "L", "R_M")}
