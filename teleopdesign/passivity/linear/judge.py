@@ -24,7 +24,6 @@ from ..search.points import (
     candidates,
     near_axis,
     near_poles,
-    select_fastest,
     wave_out_of,
 )
 from ..two_port.growing_mode import growing_mode
@@ -237,8 +236,8 @@ def _judge_late(family: Family, claim: str, statement: str) -> Verdict:
             return Refutation(_describe_wave(wave), wave)
         return Unknown(f"{why}; no wave that takes energy out was found")
     held = dict(_terminated_waves(family, frequencies))
-    wave = select_fastest(held)
-    if wave is not None:
+    if held:
+        wave = max(held, key=lambda w: w.rate / (w.frequency or w.rate))  # the plainest
         return Refutation(f"port 2 {held[wave]}, a growing wave", wave)
     return Unknown(f"{why}; no termination that makes it grow was found")
 

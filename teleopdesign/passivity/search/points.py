@@ -6,7 +6,7 @@ plane. Without dead times it knows these frequencies exactly, and modes that gro
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -17,7 +17,7 @@ from ..linear.conditions import where_it_fails
 from ..linear.family import Family
 from ..linear.matrices import ZERO, add, close, dampers, multiply, value_at
 from ..linear.sweep import passive_margin, zeros_and_poles
-from .growing_wave import GrowingWave, growing_wave, halvings, wave_of
+from .growing_wave import GrowingWave, is_plain, wave_beside_axis, wave_of
 
 #: most points with a termination that are tested for a motion, a millisecond each
 _MOST = 40
@@ -126,8 +126,11 @@ def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWav
 
     frequencies: where to look, Hz, besides those that are known exactly
     """
+    weak = None
     if family.size == 1 and not family.times:
-        return growing_wave(family.impedance)
+        weak = wave_beside_axis(family.impedance)
+        if weak is not None and is_plain(weak):
+            return weak
     parts = [near_poles(family), near_axis(frequencies, range(33))]
     if not family.times:
         places = where_it_fails(family, "passive")
@@ -137,7 +140,7 @@ def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWav
         ]
     points = np.concatenate(parts)
     z = family.at(points)
-    finite = np.isfinite(z).all(axis=(1, 2))
+    finite = np.isfinite(z).all(axis=(1, 2)) & z.any(axis=(1, 2))
     points, z = points[finite], z[finite]
     share = passive_margin(z) / np.abs(z).max(axis=(1, 2)) * points.real / np.abs(points)
     size = np.abs(np.log(np.abs(points) / np.median(np.abs(points))))
@@ -148,27 +151,7 @@ def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWav
         wave = wave_of(family.z, *at)
         if wave is not None and wave.energy > 0 and (family.times or _takes_out(family, wave)):
             return wave
-    return select_fastest(wave_at(family.z, f) for f in frequencies)
-
-
-def select_fastest(waves: Iterable[GrowingWave | None]) -> GrowingWave | None:
-    """The wave that grows fastest relative to its frequency; None where there is no wave."""
-    growing = [w for w in waves if w is not None]
-    return max(growing, key=lambda w: w.rate / (w.frequency or w.rate), default=None)
-
-
-def wave_at(z: sp.ImmutableMatrix, frequency: float) -> GrowingWave | None:
-    """A growing wave at about that frequency (Hz) that releases energy; None where there is none.
-
-    The rate of growth is halved until a wave releases energy, down to 2^-30 of the frequency: a
-    margin below this share is near rounding.
-    """
-    w = Fraction(2 * np.pi * frequency)
-    for rate in halvings(8 * w, 33):
-        wave = wave_of(z, rate, w)
-        if wave is not None and wave.energy > 0:
-            return wave
-    return None
+    return weak
 
 
 def _modes_between_dampers(family: Family) -> np.ndarray:

@@ -29,9 +29,10 @@ from ...realise.lti import S
 from ..claims.certificate import matrix_certificate
 from ..claims.claim import Claim, prove_by_certificate
 from ..linear.excess import damping_excess, is_positive_real
+from ..linear.family import family_of_impedance
 from ..linear.impedance import Impedance, decimal, exact, impedance, read_expression, readable
 from ..linear.judge import NO_WAVE
-from ..search.growing_wave import growing_wave
+from ..search.points import wave_out_of
 from ..search.sampled_wave import Z, sampled_wave
 from ._hypotheses import Free, NonNegative, Positive, Real, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, refute
@@ -72,7 +73,7 @@ def sampled_passivity(
             "" if margin > 0 else "in the damping",
         )
         return Claim(statement, verdict)
-    wave = growing_wave(operator)
+    wave = wave_out_of(family_of_impedance(operator))
     motion = wave and sampled_wave(law, b, late, k, wave.rate, wave.frequency)
     return refute(
         statement,
