@@ -8,14 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.errors import ModelError
 from ..base.sentences import round_down, round_near, round_up
 from ..controllers import CONTROLLERS, Controller, Stage, controller
 from ..diagrams import haptic_interface
 from ..simulate import Sampling
-from .claims.claim import Claim, Unknown
 from .identified import DIGITS, IdentifiedDevice
-from .search.by_simulation import search_counterexample
 from .theorems import Question, TopicClaim, settle
 
 #: N/m: a stiffness that gives ideal friction a length, for the strokes of a search
@@ -78,39 +75,25 @@ def compensation_claims(
     tries: number of these motions
     returns: claims by theorems, then one claim by the search
     """
-    rng = np.random.default_rng(rng)
-    question = Question(device, compensator.stage, computer=computer)
-    return [*settle(question), _search_claim(device, compensator, computer, rng, tries)]
-
-
-def _search_claim(
-    device: IdentifiedDevice,
-    compensator: Compensator,
-    computer: Sampling | None,
-    rng: np.random.Generator,
-    tries: int,
-) -> TopicClaim:
-    """A claim about the whole device with its compensator, from a search in simulation."""
-    topic, lengths = "search by simulation", [device.lowest.estimate / _RIGID]
+    lengths = [device.lowest.estimate / _RIGID]
     if device.presliding is not None:
         lengths = [device.lowest.estimate / device.presliding.estimate]
     if compensator.stage.value_of("bristle_stiffness") is not None:
         lengths.append(compensator.level / compensator.second)
     stroke = round_near(100 * max(lengths), digits=3)
-    try:
-        claim = search_counterexample(
-            haptic_interface(device.body, cancellation=compensator.controller),
-            stroke=stroke,
-            # a stroke takes a third of a second, or up to a hundred times that
-            speed=round_near(10 * stroke, digits=3),
-            rng=rng,
-            computer=computer or "continuous",
-            give=min(lengths) / 100,
-            tries=tries,
-        )
-    except ModelError as problem:  # a body that this simulation does not take
-        return TopicClaim(topic, Claim("the device as simulated is passive", Unknown(str(problem))))
-    return TopicClaim.from_search(topic, claim)
+    by_search = TopicClaim.from_search(
+        "search by simulation",
+        "the device as simulated is passive",
+        haptic_interface(device.body, cancellation=compensator.controller),
+        stroke=stroke,
+        # a stroke takes a third of a second, or up to a hundred times that
+        speed=round_near(10 * stroke, digits=3),
+        rng=rng,
+        computer=computer or "continuous",
+        give=min(lengths) / 100,
+        tries=tries,
+    )
+    return [*settle(Question(device, compensator.stage, computer=computer)), by_search]
 
 
 def margins(device: IdentifiedDevice, compensator: Compensator | None = None) -> Sequence[Margin]:

@@ -24,7 +24,7 @@ from ...controllers import laws_that_declare
 from ...derive.effort import TooMuchEffort, bounded_effort
 from ...diagrams import Diagram
 from ...diagrams.units import first_axis, unit_of_value
-from ..claims.claim import Claim, use_rotary_units
+from ..claims.claim import use_rotary_units
 from ..diagram_claims import FrictionPair, composed_claim, friction_pairs, pair_claims
 from ..linear.conditions import is_shown
 from ..linear.family import family_of_states
@@ -125,7 +125,13 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> IntervalClaim:
     claim: "passive" or "absolutely stable"
     """
     points = [*box.vertices(), box.centre]
-    answers = [(point, *_claims_at(middle.with_values(box.named(point)))) for point in points]
+    answers = []
+    for point in points:
+        here = drop_absent_effects(middle.with_values(box.named(point)))
+        pairs = friction_pairs(here)
+        composed = composed_claim(here, ports(here), pairs)
+        others = [one.claim for pair in pairs for one in pair_claims(pair, simulated=False)]
+        answers.append((point, composed.claim if composed else None, others))
     worst = Worst(box.centre, float("nan"), len(points))
     statement = f"its ports are {'together ' * (claim == 'passive')}{claim}"
     for point, whole, others in answers:
@@ -146,15 +152,6 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> IntervalClaim:
         return interval_claim(statement, "proved", worst, box, "", how, at_worst=answers[-1][1])
     how = "proved at each of these points alone"
     return interval_claim(statement, "evidence", worst, box, "", how, at_worst=answers[-1][1])
-
-
-def _claims_at(diagram: Diagram) -> tuple[Claim | None, list[Claim]]:
-    """The proof from the parts of a diagram (None: no such proof), and claims on its friction."""
-    there = drop_absent_effects(diagram)
-    pairs = friction_pairs(there)
-    composed = composed_claim(there, ports(there), pairs)
-    others = [one.claim for pair in pairs for one in pair_claims(pair, simulated=False)]
-    return (composed.claim if composed else None), others
 
 
 def _vertices_decide(middle: Diagram, box: ValueBox) -> bool:

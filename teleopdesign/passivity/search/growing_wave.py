@@ -10,24 +10,23 @@ motion starts arbitrarily near to rest, so no stored energy can have paid for th
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
-from typing import Any
 
 import mpmath
 import numpy as np
 import sympy as sp
 
 from ...derive.polynomials import even_part, where_negative
-from ...realise.lti import S
+from ..linear.family import family_of_matrix
 from ..linear.impedance import Impedance
 from ..linear.matrices import square_root
+from ..linear.sweep import passive_margin
 from ..rate_independent import AbstractRecord
 
 LONGEST = 500  # most periods of a wave that are sampled; each of them releases energy
-_DIGITS = 40  # decimal digits of a first numerical value
+_DIGITS = 320  # decimal digits in which Z is evaluated
 #: -Re Z as a share of abs(Z), below which a replay in double precision loses Re Z in its sum (about
 #: 1e4 roundings)
 _WEAKEST = 1e-11
@@ -100,37 +99,16 @@ def last_part(s: complex) -> tuple[np.ndarray, np.ndarray]:
 
 
 def value_at(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> np.ndarray:
-    """Z at rate + j frequency, N s/m, (n, n), to double precision.
-
-    NaN at a pole, and where even 320 decimal digits do not determine the value.
-    """
+    """Z at rate + j frequency, N s/m, (n, n), to double precision; NaN at a pole."""
     # poles and zeros of badly scaled systems lie close together, and near s = 0 dead times leave
     # differences of numbers that agree in tens of digits
-    few = _evaluate_precisely(z, rate, frequency, digits=_DIGITS)
-    for digits in (2 * _DIGITS, 4 * _DIGITS, 8 * _DIGITS):
-        more = _evaluate_precisely(z, rate, frequency, digits=digits)
-        if np.allclose(few, more, rtol=1e-12, atol=0):
-            return more
-        few = more
-    return np.full(z.shape, np.nan, dtype=complex)
-
-
-def _evaluate_precisely(
-    z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction, *, digits: int
-) -> np.ndarray:
-    """Z at rate + j frequency, computed in so many decimal digits, then rounded; NaN at a pole."""
-    with mpmath.workdps(digits):
+    with mpmath.workdps(_DIGITS):
         s = mpmath.mpc(*(mpmath.mpf(x.numerator) / x.denominator for x in (rate, frequency)))
         try:
-            return np.array([[complex(x) for x in row] for row in _numeric_matrix(z, "mpmath")(s)])
+            rows = family_of_matrix(z).precisely(s)
+            return np.array([[complex(x) for x in row] for row in rows])
         except (ZeroDivisionError, OverflowError):
             return np.full(z.shape, np.nan, dtype=complex)
-
-
-@lru_cache(maxsize=16)
-def _numeric_matrix(z: sp.ImmutableMatrix, library: str) -> Callable[[Any], list[list[Any]]]:
-    made: Callable[[Any], list[list[Any]]] = sp.lambdify(S, z.tolist(), library)
-    return made
 
 
 def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
@@ -142,40 +120,24 @@ def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> Growi
     z: N s/m, (n, n);  rate: 1/s;  frequency: rad/s
     returns: None where no wave at s releases energy
     """
-    if z.has(sp.exp) and _is_plainly_passive(z, complex(float(rate), float(frequency))):
-        return None
+    s, is_late = complex(float(rate), float(frequency)), z.has(sp.exp)
+    if is_late:
+        near = family_of_matrix(z).at(np.array([s]))
+        if passive_margin(near)[0] > _PLAIN * np.abs(near).max():
+            return None
     value = value_at(z, rate, frequency)
     if not np.all(np.isfinite(value)):
         return None
     real = (value + value.conj().T) / 2
     sizes, vectors = np.linalg.eigh(real)
-    if sizes[0] >= (-1e-9 * np.abs(value).max() if z.has(sp.exp) else 0):
+    if sizes[0] >= (-1e-9 * np.abs(value).max() if is_late else 0):
         return None
     v = vectors[:, 0]
     if frequency == 0:
         v = v.real  # there is no phase to choose: the wave is one exponential
     else:
-        s = complex(float(rate), float(frequency))
         v = v * np.exp(1j * (math.pi - np.angle(v @ value @ v / s)) / 2)
     return GrowingWave(z, rate, frequency, tuple(complex(x) for x in v))
-
-
-def _is_plainly_passive(z: sp.ImmutableMatrix, s: complex) -> bool:
-    """Whether Z + Z^H at s is positive by far more than rounding, computed in double precision."""
-    with np.errstate(all="ignore"):
-        value = np.array(_numeric_matrix(z, "numpy")(np.complex128(s)), dtype=complex)
-    if not np.all(np.isfinite(value)):
-        return False
-    lowest = np.linalg.eigvalsh((value + value.conj().T) / 2)[0]
-    return bool(lowest > _PLAIN * np.abs(value).max())
-
-
-def first_wave(
-    z: sp.ImmutableMatrix, points: Iterable[tuple[Fraction, Fraction]]
-) -> GrowingWave | None:
-    """The wave at the first of these points (rate, frequency) at which one releases energy."""
-    waves = (wave_of(z, rate, frequency) for rate, frequency in points)
-    return next((wave for wave in waves if wave is not None), None)
 
 
 def rates_at(frequency: Fraction, number: int) -> Iterable[tuple[Fraction, Fraction]]:

@@ -15,7 +15,7 @@ import sympy as sp
 from ...derive.polynomials import roots_of
 from ..linear.conditions import where_it_fails
 from ..linear.family import Family
-from ..linear.matrices import ZERO, add, close, dampers, multiply, value_at
+from ..linear.matrices import close, dampers, exact_complex, value_at
 from ..linear.sweep import passive_margin, zeros_and_poles
 from .growing_wave import GrowingWave, is_plain, wave_beside_axis, wave_of
 
@@ -169,12 +169,12 @@ def _modes_between_dampers(family: Family) -> np.ndarray:
 
 def _takes_out(family: Family, wave: GrowingWave) -> bool:
     """Whether V^H (Z + Z^H) V < 0 at the wave, exactly; V: its velocities, read as fractions."""
-    v = [(Fraction(x.real), Fraction(x.imag)) for x in wave.velocity]
-    at, total = (wave.rate, wave.frequency), ZERO
-    for (re, im), row in zip(v, family.n, strict=True):
+    v = [exact_complex((Fraction(x.real), Fraction(x.imag))) for x in wave.velocity]
+    at, total = (wave.rate, wave.frequency), sp.QQ_I.zero
+    for one, row in zip(v, family.n, strict=True):
         for entry, other in zip(row, v, strict=True):
             value = value_at(entry, family.d, at)
             if value is None:
                 return False
-            total = add(total, multiply(multiply((re, -im), value), other))
-    return total[0] < 0
+            total += sp.QQ_I(one.x, -one.y) * value * other
+    return bool(total.x < 0)

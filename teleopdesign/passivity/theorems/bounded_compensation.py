@@ -81,18 +81,15 @@ def _claims(question: Question) -> list[TopicClaim]:
     if bound is None or device.presliding is not None:
         return []
     acting, time = device.acting_force(bound), question.time_of_bound
-    claims = [TopicClaim("any law within the level", _compare_level(device, acting), time=time)]
+    if math.isinf(acting):
+        why = "no bound is known of the force that the actuation makes of a command"
+        claim = Claim("no law within the friction level drives a motion", Unknown(why))
+    else:
+        claim = bounded_compensation(coulomb_level=device.lowest.low, bound=acting)
+    claims = [TopicClaim("any law within the level", claim, time=time)]
     if question.estimates:
         claims.append(TopicClaim("the same, with damping", _compare_at_every_speed(device, acting)))
     return claims
-
-
-def _compare_level(device: IdentifiedDevice, acting: float) -> Claim:
-    """The claim that the friction level covers any law whose acting force is within `acting`, N."""
-    if math.isinf(acting):
-        why = "no bound is known of the force that the actuation makes of a command"
-        return Claim("no law within the friction level drives a motion", Unknown(why))
-    return bounded_compensation(coulomb_level=device.lowest.low, bound=acting)
 
 
 def _compare_at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:

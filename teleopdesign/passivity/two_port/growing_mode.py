@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
 
 import numpy as np
 import sympy as sp
@@ -26,14 +25,11 @@ from ...realise.lti import S
 from ..linear.conditions import where_it_fails
 from ..linear.family import Family, family_of_matrix
 from ..linear.matrices import (
-    ZERO,
     Gaussian,
-    add,
-    as_complex,
     close,
-    divide,
+    exact_complex,
     inverse_denominator,
-    multiply,
+    parts_of,
     round_point,
     value_at,
 )
@@ -97,7 +93,7 @@ class GrowingMode(AbstractRecord):
 
     def is_confirmed(self) -> bool:
         """Whether the closed loop has a pole in the open right half plane, exactly (Routh)."""
-        family = _family(self.impedance)
+        family = family_of_matrix(self.impedance)
         free = [k for k, held in enumerate(self.terminations) if not held.clamped]
         if not free:
             return False
@@ -107,11 +103,6 @@ class GrowingMode(AbstractRecord):
             rows[row][row] += d * _times_s(self.terminations[k], d.ring)
         q = inverse_denominator(rows, d * s)
         return bool(q) and not is_free_of_growth(as_poly(q, S))
-
-
-@lru_cache(maxsize=8)
-def _family(impedance: sp.ImmutableMatrix) -> Family:
-    return family_of_matrix(impedance.tolist())
 
 
 def _times_s(held: Termination, ring: sp.PolyRing) -> sp.PolyElement:
@@ -170,21 +161,22 @@ def _mode_at(family: Family, at: Gaussian, far: Termination, turned: bool) -> Gr
     """
     ports = (1, 0) if turned else (0, 1)
     values = [value_at(family.n[i][j], family.d, at) for i in ports for j in ports]
-    z11, z12, z21, z22 = (value or ZERO for value in values)
-    if None in values:
+    if any(value is None for value in values):
         return None
+    z11, z12, z21, z22 = values
     at_port, ratio = z11, 0j
     if not far.clamped:
-        below = add(z22, exact_value(far, at))
-        if below == ZERO:
+        below = z22 + exact_complex(exact_value(far, at))
+        if not below:
             return None
-        at_port = add(z11, divide(multiply(z12, z21), below), -1)
-        ratio = -as_complex(divide(z21, below))  # velocity of the far port for 1 m/s of the near
-    plain = termination_of((-at_port[0], -at_port[1]), at)
-    if plain is None or at_port == ZERO:
+        at_port = z11 - z12 * z21 / below
+        # velocity of the far port for 1 m/s of the near
+        ratio = -complex(*map(float, parts_of(z21 / below)))
+    plain = termination_of(parts_of(-at_port), at)
+    if plain is None or not at_port:
         return None
     for near in (plain, with_resonance(plain, at)):
-        velocity = velocities_in_phase(near, far, ratio, as_complex(at))
+        velocity = velocities_in_phase(near, far, ratio, complex(*map(float, at)))
         mode = GrowingMode(family.z, (near, far), *at, velocity)
         if turned:
             mode = replace(mode, terminations=(far, near), velocity=velocity[::-1])
