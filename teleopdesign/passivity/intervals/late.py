@@ -36,7 +36,7 @@ from ...derive.polynomials import is_hurwitz
 from ...frequency.late_zeros import Terms, count_growing, exact_terms, terms_of
 from ..linear.signs import Signs
 from .box import IntervalClaim, Status, ValueBox
-from .late_cells import LateSum, is_zero_free
+from .late_cells import is_zero_free
 from .worst import interval_claim, search_worst
 
 _STATEMENT = "every pole has a negative real part"
@@ -76,7 +76,7 @@ def judge_late(
     # without dead times, in the middle of the box
     together = p.evaluate([(x, 1) for x in p.ring.gens[1 + len(box.names) :]])
     if is_hurwitz(Signs(box.exact).middle(together)):
-        cells = try_within_effort(lambda: is_zero_free(LateSum.of(p, times, box)), None)
+        cells = try_within_effort(lambda: is_zero_free(p, times, box), None)
     status: Status = "evidence" if cells is None else "proved"
     how = "no proof over the whole box: not stable from no dead time on, or not shown part by part"
     if cells is not None:
