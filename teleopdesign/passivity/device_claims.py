@@ -106,35 +106,31 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
         return []  # friction may be less than any model of the records says
     force, stiff = device.force_unit, device.stiffness_unit
     alone = f", for friction without {', '.join(device.set_aside)}" if device.set_aside else ""
-    limits = [
-        Margin(text + alone, level, force)
-        for text, level in (
-            (
-                "largest compensator level f_D for passivity at the estimates",
-                _round_limit(device.lowest.estimate),
-            ),
-            (
-                "largest compensator level f_D for passivity at every level in the interval",
-                _round_limit(device.lowest.low),
-            ),
-        )
-    ]
-    presliding = device.presliding
+
+    def level(text: str, limit: float) -> Margin:
+        """An upper limit of the level, rounded down to the digits of claims."""
+        text = f"largest compensator level f_D {text}{alone}"
+        return Margin(text, round_down(limit, digits=DIGITS), force)
+
+    lowest, presliding = device.lowest, device.presliding
     if device.basis is not None and not device.basis.is_adequate:
         # what is unexplained is in no estimate, nor in the damping
-        text = "largest compensator level f_D for passivity in the covered cells"
-        return [Margin(text + alone, _round_limit(device.lowest.low), force)]
+        return [level("for passivity in the covered cells", lowest.low)]
+    limits = [
+        level("for passivity at the estimates", lowest.estimate),
+        level("for passivity at every level in the interval", lowest.low),
+    ]
     if presliding is None:
-        text = "largest compensator level f_D that drives no motion, with viscous damping"
-        return [*limits, Margin(text + alone, _round_limit(device.least_resistance.low), force)]
-    recoil = device.bristle_damping.high * (device.highest.high - device.lowest.low)
-    if device.damping.low * device.lowest.low < recoil:
+        text = "that drives no motion, with viscous damping"
+        return [*limits, level(text, device.least_resistance.low)]
+    recoil = device.bristle_damping.high * (device.highest.high - lowest.low)
+    if device.damping.low * lowest.low < recoil:
         return []  # no limit is known where the bristle's damping may release energy
     if compensator is not None and compensator.stage.value_of("bristle_stiffness") is None:
         return []  # no limit is known for such a law on a contact that deflects
-    level = min(compensator.level if compensator else math.inf, device.lowest.low)
-    softest = _round_limit(presliding.low * math.sqrt(level / device.highest.high))
-    limits.append(Margin(f"largest sigma_D at f_D = {level:.4g} {force}{alone}", softest, stiff))
+    f_d = min(compensator.level if compensator else math.inf, lowest.low)
+    softest = round_down(presliding.low * math.sqrt(f_d / device.highest.high), digits=DIGITS)
+    limits.append(Margin(f"largest sigma_D at f_D = {f_d:.4g} {force}{alone}", softest, stiff))
     if compensator is not None:
         least = device.highest.high * (compensator.second / presliding.low) ** 2
         least = round_up(least, digits=DIGITS)
@@ -142,8 +138,3 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
             Margin(f"least f_D at sigma_D = {compensator.second:.4g} {stiff}{alone}", least, force)
         )
     return limits
-
-
-def _round_limit(limit: float) -> float:
-    """An upper limit, rounded down to the digits of claims."""
-    return round_down(limit, digits=DIGITS)

@@ -167,25 +167,26 @@ def _vertices_decide(middle: Diagram, box: ValueBox) -> bool:
         # a law of one's own keeps its bound at the values that were looked at, no more is known
         if pair.stage is None or pair.stage.law not in laws_that_declare("bound"):
             return False
-        known = {pair.stage.name: (pair.stage.law.bound, pair.stage.law.bristle_stiffness)}
-        for name in box.names:
-            block, _, rest = name.partition(".")
-            if block == law.name and not _is_of(rest, known):
+        known = pair.stage.law.bound, pair.stage.law.bristle_stiffness
+        for block, part, value in map(_split, box.names):
+            if block == law.name and (part != pair.stage.name or value not in known):
                 return False
     return bool(len(box.vertices()) == 2 ** len(box.names))
 
 
-def _is_of(name: str, known: Mapping[str, tuple[str, ...]]) -> bool:
-    part, _, value = name.rpartition(".")
-    return value in known.get(part, ())
-
-
 def _belongs_to_friction(name: str, pairs: list[FrictionPair]) -> bool:
     """Whether a value belongs to friction or its cancellation, and not to the linear rest."""
-    block, _, rest = name.partition(".")
+    block, part, value = _split(name)
     laws = [pair.cancellation.name for pair in pairs if pair.cancellation is not None]
     bodies = [pair.body.name for pair in pairs]
-    return block in laws or (block in bodies and _is_of(rest, _FRICTION))
+    return block in laws or (block in bodies and value in _FRICTION.get(part, ()))
+
+
+def _split(name: str) -> tuple[str, str, str]:
+    """Block, part of the block and value of a name of `diagram.values`."""
+    block, _, rest = name.partition(".")
+    part, _, value = rest.rpartition(".")
+    return block, part, value
 
 
 def _rest_is_passive(middle: Diagram, box: ValueBox) -> bool:

@@ -6,7 +6,7 @@ plane. Without dead times it knows these frequencies exactly, and modes that gro
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -37,14 +37,9 @@ def near_poles(family: Family) -> np.ndarray:
             points += [low * 2.0**-k * turn, high * 2.0**k * turn]
     for size in np.geomspace(low / 4, high * 4, 25):
         points += list(size * np.exp(1j * np.linspace(0, 0.46 * np.pi, 12)))
-    return np.array(list(_growing(points)))
-
-
-def _growing(points: Sequence[complex]) -> Iterator[complex]:
-    for s in points:
-        imaginary = s.imag if abs(s.imag) > 1e-9 * abs(s) else 0.0  # rounding: no swing
-        if s.real > 1e-12 * abs(s) and imaginary >= 0:
-            yield complex(s.real, imaginary)
+    s = np.array(points)
+    s = np.where(np.abs(s.imag) > 1e-9 * np.abs(s), s, s.real)  # rounding: no swing
+    return np.asarray(s[(s.real > 1e-12 * np.abs(s)) & (s.imag >= 0)])
 
 
 def near_axis(frequencies: Sequence[float], closer: Sequence[int]) -> np.ndarray:

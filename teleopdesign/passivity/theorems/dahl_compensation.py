@@ -88,7 +88,7 @@ def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: 
     coulomb_level: f_C, N;  stiffness: sigma_D, N/m;  amplitude: A, m
     returns: inf where no level releases energy
     """
-    from scipy.optimize import brentq
+    from scipy.optimize import brentq, minimize_scalar
 
     _refuse_not_positive(
         "largest_passive_level: expected levels, stiffness and amplitude > 0",
@@ -100,12 +100,12 @@ def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: 
     def out(level: float) -> float:
         return dahl_loss(level, stiffness, amplitude) / (4 * amplitude) - coulomb_level
 
-    # for a level without limit the compensator is a spring, which releases nothing
-    levels = coulomb_level * np.geomspace(1.0, 1e6, 4001)
-    k = next((k for k, level in enumerate(levels) if out(float(level)) > 0), None)
-    if k is None:
+    # beyond the best level the compensator becomes a spring, which releases nothing
+    best = minimize_scalar(lambda u: -lost_share(u) / u, bounds=(0.1, 10.0), method="bounded")
+    most = max(stiffness * amplitude / float(best.x), coulomb_level)
+    if out(most) <= 0:
         return float("inf")
-    return float(brentq(out, levels[max(k - 1, 0)], levels[k], xtol=1e-12 * coulomb_level))
+    return float(brentq(out, coulomb_level, most, xtol=1e-12 * coulomb_level))
 
 
 def largest_ratio(u: float, *, motion: Literal["cycles", "closed paths"] = "cycles") -> float:
