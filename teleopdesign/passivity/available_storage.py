@@ -165,13 +165,9 @@ def _iterate(
 
 def _stored_energy(stateful: Sequence[AbstractElement], points: int) -> Array:
     """Energy in the springs of friction less that in the compensator's, at each node, J."""
-    total: Array = np.zeros((1,) * len(stateful))
-    for axis, element in enumerate(stateful):
-        forces = np.linspace(-element.level, element.level, points)
-        one = forces**2 * compliance(element) / 2
-        shape = [points if k == axis else 1 for k in range(len(stateful))]
-        total = total + (-one if axis == 0 else one).reshape(shape)
-    return total
+    halves = [compliance(e) / 2 * np.linspace(-e.level, e.level, points) ** 2 for e in stateful]
+    helped, *held = np.meshgrid(*halves, indexing="ij", sparse=True)
+    return np.asarray(sum(held, -helped))
 
 
 def _move(

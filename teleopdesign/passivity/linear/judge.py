@@ -19,7 +19,7 @@ from ...base.errors import ModelError
 from ...derive.effort import TooMuchEffort, bounded_effort
 from ...derive.polynomials import X, as_poly, element, where_negative
 from ..claims.certificate import matrix_certificate
-from ..claims.claim import TOO_MUCH, Claim, Evidence, Proof, Refutation, Unknown, Verdict
+from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown, Verdict
 from ..search.growing_wave import GrowingWave, wave_of
 from ..search.points import (
     candidates,
@@ -140,27 +140,37 @@ def _judge(family: Family, claim: str, statement: str) -> Claim:
 
 
 def _judge_exactly(family: Family, claim: str, statement: str) -> Verdict:
+    return prove(family, claim, statement) or _refute(family, claim)
+
+
+def prove(family: Family, claim: str, title: str) -> Proof | Evidence | None:
+    """The proof of a claim without dead times and values, exactly; None where it does not hold.
+
+    title: of the certificate
+    returns: exact evidence where a certificate would ask for more work than its checker does
+    """
     rows = family.z.tolist()
     if claim == "passive" and family.written is not None:
         rows = family.written.tolist()
     method, margin, unit, equality = _METHODS[claim], float("nan"), "", ""
     try:
-        certificate = matrix_certificate(statement, rows, KINDS[claim])
+        certificate = matrix_certificate(title, rows, KINDS[claim])
         certificate.check()
     except (ModelError, ValueError):  # Python writes no integers of more than 4300 digits
         certificate = None
         if not is_shown(Signs(()), family, claim):
-            return _refute(family, claim)
+            return None
     if family.size == 1:
         excess = damping_excess(family.impedance)
         method, margin, unit = "the positive-real test", float(excess.lower), "N s/m"
         equality = describe_equality(family.impedance, excess)
     if certificate is None:
-        return Evidence(True, f"{method}: {TOO_MUCH}", margin, unit)
+        why = "a certificate would ask for more work than its checker does"
+        return Evidence(True, f"{method}: decided in exact arithmetic; {why}", margin, unit)
     certificates = [certificate]
     if family.hides and not family.undecayed:
-        title = "every mode decays with dampers at the ports"
-        certificates.append(stability_certificate(title, family.held))
+        more = "every mode decays with dampers at the ports"
+        certificates.append(stability_certificate(more, family.held))
     return Proof(method, tuple(certificates), margin, unit, equality)
 
 

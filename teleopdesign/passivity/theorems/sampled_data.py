@@ -26,12 +26,11 @@ import sympy as sp
 from ...base.errors import ModelError
 from ...controllers import from_control
 from ...realise.lti import S
-from ..claims.certificate import matrix_certificate
-from ..claims.claim import Claim, prove_by_certificate
-from ..linear.excess import damping_excess, is_positive_real
+from ..claims.claim import Claim, Proof
+from ..linear.excess import damping_excess
 from ..linear.family import family_of_impedance
 from ..linear.impedance import Impedance, decimal, exact, impedance, read_expression, readable
-from ..linear.judge import NO_WAVE
+from ..linear.judge import NO_WAVE, prove
 from ..search.points import wave_out_of
 from ..search.sampled_wave import Z, sampled_wave
 from ._hypotheses import Free, NonNegative, Positive, Real, require_hypotheses
@@ -62,18 +61,16 @@ def sampled_passivity(
         f"a body with damping {decimal(b)} N s/m{spring} and the sampled force -({readable(law)}) "
         f"x, held for {decimal(late)} s, is passive"
     )
-    if is_positive_real(operator):
-        text = f"{statement}: G((1 + s)/(1 - s)) is positive real"
-        margin = float(late) * float(damping_excess(operator))
-        verdict = prove_by_certificate(
-            "the discrete positive-real test, by bilinear transformation",
-            lambda: matrix_certificate(text, [[operator.expression]]),
-            margin,
-            "N s/m",
-            "" if margin > 0 else "in the damping",
-        )
-        return Claim(statement, verdict)
-    wave = wave_out_of(family_of_impedance(operator))
+    family = family_of_impedance(operator)
+    verdict = prove(family, "passive", f"{statement}: G((1 + s)/(1 - s)) is positive real")
+    if verdict is not None:
+        margin = float(late) * verdict.margin
+        if isinstance(verdict, Proof):
+            method = "the discrete positive-real test, by bilinear transformation"
+            equality = "" if margin > 0 else "in the damping"
+            verdict = replace(verdict, method=method, equality=equality)
+        return Claim(statement, replace(verdict, margin=margin))
+    wave = wave_out_of(family)
     motion = wave and sampled_wave(law, b, late, k, wave.rate, wave.frequency)
     return refute(
         statement,

@@ -100,15 +100,12 @@ class GrowingMode(AbstractRecord):
         s, d = family.d.ring.gens[0], family.d
         rows = [[family.n[i][j] * s for j in free] for i in free]
         for row, k in zip(range(len(free)), free, strict=True):
-            rows[row][row] += d * _times_s(self.terminations[k], d.ring)
+            held = self.terminations[k]  # R + m s + k/s, times s
+            parts = enumerate((held.stiffness, held.damping, held.inertia))
+            times_s = {(power,): sp.QQ(x.numerator, x.denominator) for power, x in parts if x}
+            rows[row][row] += d * d.ring(times_s)
         q = inverse_denominator(rows, d * s)
         return bool(q) and not is_free_of_growth(as_poly(q, S))
-
-
-def _times_s(held: Termination, ring: sp.PolyRing) -> sp.PolyElement:
-    """s times R + m s + k/s."""
-    parts = (held.stiffness, held.damping, held.inertia)
-    return ring({(k,): sp.QQ(x.numerator, x.denominator) for k, x in enumerate(parts) if x})
 
 
 def growing_mode(family: Family) -> GrowingMode | None:
