@@ -23,16 +23,7 @@ from fractions import Fraction
 from itertools import combinations
 from typing import Any
 
-from .algebra import (
-    Algebra,
-    Poly,
-    Quotient,
-    expect,
-    expect_fields,
-    flat,
-    read_number,
-    read_words,
-)
+from .algebra import Algebra, Poly, Quotient, expect, expect_fields, flat, read_number, read_words
 from .box_signs import Ends, are_apart_from_zero, are_non_negative
 from .effort import EFFORT, need
 from .polynomials import (

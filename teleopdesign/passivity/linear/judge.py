@@ -21,12 +21,7 @@ from ...derive.polynomials import X, as_poly, element, where_negative
 from ..claims.certificate import matrix_certificate
 from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown, Verdict
 from ..search.growing_wave import GrowingWave, wave_of
-from ..search.points import (
-    candidates,
-    near_axis,
-    near_poles,
-    wave_out_of,
-)
+from ..search.points import candidates, near_axis, near_poles, wave_out_of
 from ..two_port.growing_mode import growing_mode
 from ..two_port.termination import far_termination
 from .box_certificates import KINDS, stability_certificate

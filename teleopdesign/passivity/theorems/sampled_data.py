@@ -197,8 +197,4 @@ def _claims(question: Question) -> list[TopicClaim]:
     ]
 
 
-THEOREM = Theorem(
-    mathematics=(sampled_passivity, sampled_coupling),
-    claims=_claims,
-    order=30,
-)
+THEOREM = Theorem(mathematics=(sampled_passivity, sampled_coupling), claims=_claims, order=30)

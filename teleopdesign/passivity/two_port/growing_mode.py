@@ -16,11 +16,7 @@ from fractions import Fraction
 import numpy as np
 import sympy as sp
 
-from ...derive.polynomials import (
-    as_poly,
-    is_free_of_growth,
-    roots_of,
-)
+from ...derive.polynomials import as_poly, is_free_of_growth, roots_of
 from ...realise.lti import S
 from ..linear.conditions import where_it_fails
 from ..linear.family import Family, family_of_matrix
