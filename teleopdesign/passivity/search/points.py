@@ -6,7 +6,7 @@ plane. Without dead times it knows these frequencies exactly, and modes that gro
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -117,7 +117,12 @@ _TESTED = 20
 
 
 def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWave | None:
-    """A wave that takes energy out of the ports; None where the search has no result.
+    """The first of `waves_out_of`; None where the search has no result."""
+    return next(waves_out_of(family, frequencies), None)
+
+
+def waves_out_of(family: Family, frequencies: Sequence[float] = ()) -> Iterator[GrowingWave]:
+    """Waves that take energy out of the ports, the plainest first.
 
     frequencies: where to look, Hz, besides those that are known exactly
     """
@@ -125,7 +130,8 @@ def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWav
     if family.size == 1 and not family.times:
         weak = wave_beside_axis(family.impedance)
         if weak is not None and is_plain(weak):
-            return weak
+            yield weak
+            weak = None
     parts = [near_poles(family), near_axis(frequencies, range(33))]
     if not family.times:
         places = where_it_fails(family, "passive")
@@ -145,8 +151,9 @@ def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWav
         at = Fraction(points[k].real), Fraction(points[k].imag)
         wave = wave_of(family.z, *at)
         if wave is not None and wave.energy > 0 and (family.times or _takes_out(family, wave)):
-            return wave
-    return weak
+            yield wave
+    if weak is not None:
+        yield weak
 
 
 def _modes_between_dampers(family: Family) -> np.ndarray:
