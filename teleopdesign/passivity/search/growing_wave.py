@@ -150,7 +150,7 @@ def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> Growi
 
 def rates_at(frequency: Fraction, number: int) -> Iterable[tuple[Fraction, Fraction]]:
     """Rates of growth, halved so many times, at a frequency."""
-    return ((rate, frequency) for rate in halvings(frequency, number))
+    return ((frequency / 2**k, frequency) for k in range(1, number + 1))
 
 
 def wave_beside_axis(z: Impedance) -> GrowingWave | None:
@@ -172,11 +172,6 @@ def is_plain(wave: GrowingWave) -> bool:
     return -at.real / abs(at) > _WEAKEST
 
 
-def halvings(start: Fraction, number: int) -> Iterable[Fraction]:
-    """The numbers start/2, start/4, ...: so many of them."""
-    return (start / 2**k for k in range(1, number + 1))
-
-
 def _find_beside_axis(z: Impedance, x: Fraction) -> GrowingWave | None:
     """A wave at the frequency sqrt(x) or close to it; None where none is resolved.
 
@@ -184,7 +179,7 @@ def _find_beside_axis(z: Impedance, x: Fraction) -> GrowingWave | None:
     """
     for digits in (20, 60, 200):  # enough for a dip in frequency that narrow, relative
         frequency = square_root(x, digits)
-        for rate in halvings(frequency, 4 * digits):
+        for rate, _ in rates_at(frequency, 4 * digits):
             value = z.at(rate, frequency)
             if value is not None and value[0] < 0:
                 wave = wave_of(sp.ImmutableMatrix([[z.expression]]), rate, frequency)
