@@ -181,8 +181,8 @@ def _prove(
         f"{what}: {signs.polynomials} shown by Bernstein coefficients on "
         f"{signs.cells} parts of the box, in exact arithmetic"
     )
-    tried = shares if np.isfinite(made.margin) else ()
-    margins = (Fraction(made.margin * share).limit_denominator(10**6) for share in tried)
+    shares = shares if np.isfinite(made.margin) else ()
+    margins = (Fraction(made.margin * share).limit_denominator(10**6) for share in shares)
     bound = next((c for c in margins if 0 < c <= made.margin and shown(c)), Fraction(0))
     try:
         accepted = certificates(bound)

@@ -113,13 +113,15 @@ class TopicClaim(ByValue):
     time: Time = "continuous"
 
     @classmethod
-    def from_search(cls, topic: str, statement: str, diagram: Diagram, **asked: Any) -> TopicClaim:
+    def from_search(
+        cls, topic: str, statement: str, diagram: Diagram, **settings: Any
+    ) -> TopicClaim:
         """A claim that `search_counterexample` decides, whose motion is replayed in simulation.
 
         statement: of the claim where the simulation does not take the diagram
         """
         try:
-            claim = search_counterexample(diagram, **asked)
+            claim = search_counterexample(diagram, **settings)
         except ModelError as problem:
             claim = Claim(statement, Unknown(str(problem)))
         verdict = claim.verdict

@@ -110,10 +110,10 @@ def growing_mode(family: Family) -> GrowingMode | None:
     family: 2 x 2, without dead times and values
     returns: a motion that is confirmed exactly; None where the search has no result
     """
-    return _over_points(family) or _between_dampers(family)
+    return _search_points(family) or _search_between_dampers(family)
 
 
-def _over_points(family: Family) -> GrowingMode | None:
+def _search_points(family: Family) -> GrowingMode | None:
     """A mode at one of the points of the right half plane at which growth is most likely."""
     places = where_it_fails(family, "absolutely stable")
     negative = [float(x) ** 0.5 / (2 * np.pi) for x in places]
@@ -126,7 +126,7 @@ def _over_points(family: Family) -> GrowingMode | None:
     return None
 
 
-def _between_dampers(family: Family) -> GrowingMode | None:
+def _search_between_dampers(family: Family) -> GrowingMode | None:
     """A mode that grows between dampers, also one that moves one port only."""
     for size in (1, 100, Fraction(1, 100)):
         held = Termination(Fraction(size))
