@@ -23,6 +23,7 @@ import numpy as np
 from ..claims.claim import Claim
 from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, Dahl
+from ..search.stroke_motion import Strokes
 from ._hypotheses import NonNegative, Positive, PositiveOrNone, Whole, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, leave_open, refute, simulate_cycle
 from .bounded_compensation import bounded_compensation
@@ -83,6 +84,13 @@ class Trembling(AbstractMotion):
             force = -float(steady + (force - steady) * forgets**self.samples)
             read = [-float(d) for d in helped[self.samples : self.samples + self.late + 1]]
         return out
+
+    def strokes(self) -> Strokes:
+        """The motion as strokes that begin and end at rest, in step with the samples."""
+        there = np.cumsum(np.tile([self.forth, -self.back], self.samples))
+        points = np.concatenate([there, there[-1] - there])[:-1]
+        speed = math.pi * self.path / (2 * self.sample_time)
+        return Strokes(tuple(map(float, points)), speed, rounds=1)
 
     def _steady_sample(self) -> tuple[float, float, float, float]:
         """Properties of a sample after the transient.
