@@ -190,6 +190,18 @@ def test_every_effect_with_a_check_is_tested_on_both_sides():
     assert {n for n, e in EFFECTS.items() if e.plausible} == set(MISFITS)
 
 
+def test_an_element_that_slips_one_way_only_is_a_spring_beside_those_that_slip():
+    plausible = EFFECTS["maxwell_slip"].plausible
+    # gives by 0.6 rad before it slips, of a travel of 1 rad: a loop would take 1.2 rad
+    soft = {**ELEMENTS, "level_2": 0.3, "stiffness_2": 0.5, "stiffness_1": 3e6}
+    assert plausible(SimpleNamespace(**{**soft, "stiffness_1": 50.0}), FACTS) is None
+    assert "a spring" in plausible(SimpleNamespace(**soft), FACTS)
+    assert plausible(SimpleNamespace(**{**soft, "stiffness_2": 0.7}), FACTS) is None
+    # what carries nothing is of no consequence
+    idle = {**soft, "level_2": 0.01, "stiffness_2": 0.016}
+    assert plausible(SimpleNamespace(**idle), FACTS) is None
+
+
 @given(amplitude=st.floats(0.01, 10.0), centre=st.floats(-3.0, 3.0), turns=st.integers(1, 9))
 def test_one_sine_tells_no_pattern_about_its_centre_from_a_speed(amplitude, centre, turns):
     """What is symmetrical about the centre: at each speed one value. A slope has two."""
