@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
@@ -20,14 +21,20 @@ from ..model import Model
 from ..realise.along_motion import residual_along
 from .by_simulation import SimulationComparison, compare_by_simulation
 from .candidates import restrict_to_curve
+from .covariance import covariance_in_blocks
 from .error import force_error
 from .horizon_errors import RecordedLoop
 from .noise_floor import NoiseFloor, noise_floor
 from .record_offsets import as_logged
+from .recorded_impedance import recorded_impedance
+from .recording import DiagnosedRecording
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
+
+    from ..frequency import FrequencyResponse, ParameterCovariance
+    from .fit import Fit
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +53,25 @@ class Comparison(ByValue):
     check_error: float
     floor: NoiseFloor
     data: Dataset
+
+    @cached_property
+    def fit(self) -> Fit:
+        """The model along the records, with its derivatives; no parameter changes."""
+        return DiagnosedRecording(stated=self.prepared.experiment).evaluate(self.model)
+
+    def covariance(self, blocks: Mapping[str, str] | None = None) -> ParameterCovariance:
+        """Covariance of the fitted parameters, for the bands of responses: `bode(covariance=...)`.
+
+        blocks: block of a diagram -> body of the model; None: "Z_M" is the only body
+        """
+        return covariance_in_blocks(self.fit, blocks)
+
+    def impedance(self, at: str | None = None) -> FrequencyResponse:
+        """Measured force over motion, E/L, with coherence: points for `response.plot(measured=)`.
+
+        at: body; None: the first
+        """
+        return recorded_impedance(self.model, self.prepared, at or next(iter(self.model.bodies)))
 
     def plot(self) -> Figure:
         """Residual over time, velocity and position."""
