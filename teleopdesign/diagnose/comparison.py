@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
@@ -27,14 +26,12 @@ from .horizon_errors import RecordedLoop
 from .noise_floor import NoiseFloor, noise_floor
 from .record_offsets import as_logged
 from .recorded_impedance import recorded_impedance
-from .recording import DiagnosedRecording
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
 
     from ..frequency import FrequencyResponse, ParameterCovariance
-    from .fit import Fit
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,17 +51,12 @@ class Comparison(ByValue):
     floor: NoiseFloor
     data: Dataset
 
-    @cached_property
-    def fit(self) -> Fit:
-        """The model along the records, with its derivatives; no parameter changes."""
-        return DiagnosedRecording(stated=self.prepared.experiment).evaluate(self.model)
-
     def covariance(self, blocks: Mapping[str, str] | None = None) -> ParameterCovariance:
         """Covariance of the fitted parameters, for the bands of responses: `bode(covariance=...)`.
 
         blocks: block of a diagram -> body of the model; None: "Z_M" is the only body
         """
-        return covariance_in_blocks(self.fit, blocks)
+        return covariance_in_blocks(self.model, self.prepared, blocks)
 
     def impedance(self, at: str | None = None) -> FrequencyResponse:
         """Measured force over motion, E/L, with coherence: points for `response.plot(measured=)`.
@@ -73,9 +65,13 @@ class Comparison(ByValue):
         """
         return recorded_impedance(self.model, self.prepared, at or next(iter(self.model.bodies)))
 
-    def plot(self) -> Figure:
-        """Residual over time, velocity and position."""
-        return figure_of(self)
+    def plot(self, *, before: Comparison | None = None) -> Figure:
+        """Residual over time, velocity and position.
+
+        before: of another model of the same records: both residuals on one scale, over the variable
+            that carries the effect by which the models differ
+        """
+        return figure_of(self, before=before)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the data with units to a NetCDF file."""

@@ -287,7 +287,7 @@ class Diagnosis(Shown, ByValue):
 
         blocks: block of a diagram -> body of the model; None: "Z_M" is the only body
         """
-        return covariance_in_blocks(self.last_fit, blocks)
+        return covariance_in_blocks(self.model, self.recording.searched, blocks)
 
     def plot(self) -> Figure:
         """Figure of forces, of the residual over time, velocity and position, and of the ladder."""

@@ -74,6 +74,27 @@ def recorded_response(
             f"recorded_response: found {len(starts)} windows of {rows} samples, expected at least "
             f"{WINDOWS} of 16"
         )
+    f, spectra = _spectra(pairs, starts, rows, sample_time)
+    # the two lowest lines hold what is left of the trend
+    used = (f >= 2 * f[1]) & (f <= (up_to or 0.25 / sample_time))
+    return _response(
+        _bands_of(f[used], [one[used] for one in spectra]),
+        OF_WINDOWS * len(starts),
+        noise,
+        (output, input, unit),
+    )
+
+
+def _spectra(
+    pairs: Sequence[tuple[Array, Array]],
+    starts: Sequence[tuple[int, int]],
+    rows: int,
+    sample_time: float,
+) -> tuple[Array, list[NDArray[np.complex128]]]:
+    """Frequency of each line (Hz), and mean spectra of input, output and both over the windows.
+
+    starts: of each window, its stretch and its first sample
+    """
     hann = np.hanning(rows + 1)[:-1]
     lines = np.array(
         [
@@ -82,12 +103,20 @@ def recorded_response(
         ]
     )
     x, y = lines[:, 0], lines[:, 1]
-    f = np.fft.rfftfreq(rows, sample_time)
-    # the two lowest lines hold what is left of the trend
-    used = (f >= 2 * f[1]) & (f <= (up_to or 0.25 / sample_time))
-    spectra = [np.mean(a, axis=0)[used] for a in (np.abs(x) ** 2, np.abs(y) ** 2, np.conj(x) * y)]
-    at, xx, yy, xy, averages = _bands_of(f[used], spectra)
-    n = OF_WINDOWS * len(starts) * averages
+    products = (np.abs(x) ** 2, np.abs(y) ** 2, np.conj(x) * y)
+    means = [np.mean(one, axis=0).astype(complex) for one in products]
+    return np.fft.rfftfreq(rows, sample_time), means
+
+
+def _response(
+    bands: tuple[Array, Array, Array, NDArray[np.complex128], Array],
+    windows: float,
+    noise: Literal["output", "both"],
+    names: tuple[str, str, str],
+) -> FrequencyResponse:
+    """The response with its errors; bands: as `_bands_of`;  names: output, input and unit."""
+    at, xx, yy, xy, averages = bands
+    n = windows * averages
     coherence = np.clip(np.abs(xy) ** 2 / (xx * yy), 1e-12, 1.0)
     phase_error = np.sqrt((1.0 - coherence) / (2.0 * n * coherence))
     values, error = xy / xx, phase_error
@@ -104,9 +133,8 @@ def recorded_response(
         at,
         np.where(sure, np.abs(values), np.nan)[None, :],
         phase[None, :],
-        unit,
-        output,
-        input,
+        names[2],
+        *names[:2],
         left_out={},
         measured=True,
         band=ResponseBand(error[None, :], np.degrees(phase_error)[None, :]),

@@ -175,10 +175,7 @@ def bode(
     cases = cases_of(diagrams)
     if amplitude and speed:
         raise ModelError("bode: speed and amplitude: found both, expected one of them")
-    steps = 200 if amplitude else 2001
-    f = np.geomspace(0.1, 1000.0, steps) if frequency is None else np.asarray(frequency, float)
-    if f.ndim != 1 or not np.all(np.isfinite(f)) or np.any(f < 0):
-        raise ModelError("bode: frequency: expected numbers in Hz from 0, in one row")
+    f = _frequencies(frequency, steps=200 if amplitude else 2001)
     signals = _Signals(output, input, given)
 
     def case_of(one: Diagram, *, stability: bool = True) -> _Case:
@@ -188,8 +185,10 @@ def bode(
 
     made = {name: case_of(one) for name, one in cases.items()}
     diagram = next(iter(cases.values()))
-    rows = [one.values for one in made.values()]
-    values = np.array(rows)
+    values = np.array([one.values for one in made.values()])
+    band = covariance and confidence_band(
+        lambda one: case_of(one, stability=False).values, cases.values(), covariance
+    )
     return FrequencyResponse(
         tuple(cases),
         f,
@@ -203,12 +202,16 @@ def bode(
         amplitude=amplitude,
         unstable={n: one.modes for n, one in made.items() if one.modes is not None},
         left_over={name: one.left_over for name, one in made.items()},
-        band=None
-        if covariance is None
-        else confidence_band(
-            lambda one: case_of(one, stability=False).values, cases.values(), covariance
-        ),
+        band=band,
     )
+
+
+def _frequencies(stated: np.ndarray | Sequence[float] | None, *, steps: int) -> Array:
+    """The stated frequencies, or so many steps from 0.1 to 1000 Hz."""
+    f = np.geomspace(0.1, 1000.0, steps) if stated is None else np.asarray(stated, float)
+    if f.ndim != 1 or not np.all(np.isfinite(f)) or np.any(f < 0):
+        raise ModelError("bode: frequency: expected numbers in Hz from 0, in one row")
+    return f
 
 
 class _Signals(NamedTuple):

@@ -8,6 +8,7 @@ from diagnose.linear_records import STEP, experiment, fitted, recordings, true_r
 import teleopdesign as td
 from teleopdesign.base.errors import ModelError
 from teleopdesign.diagnose.covariance import covariance_in_blocks
+from teleopdesign.measurement.prepare import prepare
 
 IMPEDANCE = {"output": "E", "input": "L", "given": "L"}
 
@@ -25,7 +26,7 @@ def recorded():
 
 def test_a_covariance_has_the_standard_errors_and_correlations_of_the_fit(recorded):
     fit = fitted(recorded)
-    covariance = covariance_in_blocks(fit, {"Z_M": "device"})
+    covariance = covariance_in_blocks(fit.model, prepare(recorded), {"Z_M": "device"})
     assert covariance.names == ("Z_M.inertia", "Z_M.viscous.damping", "Z_M.spring.stiffness")
     errors = [fit.model.parameters[name].stderr for name in fit.free]
     np.testing.assert_allclose(np.sqrt(np.diag(covariance.matrix)), errors, rtol=1e-9)
@@ -33,7 +34,7 @@ def test_a_covariance_has_the_standard_errors_and_correlations_of_the_fit(record
     expected = covariance.matrix[0, 2] / (errors[0] * errors[2])
     assert fit.correlations[stiffness, mass] == pytest.approx(expected)
     with pytest.raises(ModelError, match="rod"):
-        covariance_in_blocks(fit, {"Z_M": "rod"})
+        covariance_in_blocks(fit.model, prepare(recorded), {"Z_M": "rod"})
 
 
 def test_a_comparison_has_the_band_and_the_recorded_impedance_in_one_figure(recorded):
@@ -57,8 +58,9 @@ def test_the_band_covers_the_true_response_in_95_percent_of_fits():
     time, commands, positions = recordings(40)
     assert STEP * len(time) == 8.0
     for command, position in zip(commands, positions, strict=True):
-        fit = fitted(experiment(time, command, position))
-        made = response(fit.model, covariance_in_blocks(fit, None), frequency)
+        recorded = experiment(time, command, position)
+        model = fitted(recorded).model
+        made = response(model, covariance_in_blocks(model, prepare(recorded)), frequency)
         size = np.abs(np.log(made.magnitude[0] / np.abs(true))) / made.band.log_magnitude[0]
         phase = np.abs(np.angle(made.values() / true, deg=True)) / made.band.phase[0]
         inside.append([size < 1.96, phase < 1.96])

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 PageColumns = Literal[1, 2]
 MEASURED = "#7F7F7F"
-#: inches that the longest entry of a legend takes
-ENTRY = 1.7
+#: inches that an entry of a legend takes beside its words, and that a letter takes
+ENTRY, LETTER = 0.45, 0.05
 
 
 def look(case: str) -> dict[str, Any]:
@@ -96,7 +96,8 @@ def mark_degrees(axis: matplotlib.axes.Axes) -> None:
 def legend_below(figure: matplotlib.figure.Figure, axis: matplotlib.axes.Axes) -> None:
     """The legend of one axis below the whole figure, where it covers no curve."""
     handles, labels = axis.get_legend_handles_labels()
-    across = max(1, int(figure.get_figwidth() / ENTRY))
+    longest = max(len(str(label)) for label in labels)
+    across = max(1, int(figure.get_figwidth() / (ENTRY + LETTER * longest)))
     figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), across))
 
 
