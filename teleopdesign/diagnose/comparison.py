@@ -58,12 +58,14 @@ class Comparison(ByValue):
         """
         return covariance_in_blocks(self.model, self.prepared, blocks)
 
-    def impedance(self, at: str | None = None) -> FrequencyResponse:
+    def impedance(self, at: str | None = None, *, modelled: bool = False) -> FrequencyResponse:
         """Measured force over motion, E/L, with coherence: points for `response.plot(measured=)`.
 
         at: body; None: the first
+        modelled: of the force that the model needs along the same motion: a line
         """
-        return recorded_impedance(self.model, self.prepared, at or next(iter(self.model.bodies)))
+        place = at or next(iter(self.model.bodies))
+        return recorded_impedance(self.model, self.prepared, place, modelled=modelled)
 
     def plot(self, *, before: Comparison | None = None) -> Figure:
         """Residual over time, velocity and position.

@@ -104,8 +104,8 @@ def _spectra(
     )
     x, y = lines[:, 0], lines[:, 1]
     products = (np.abs(x) ** 2, np.abs(y) ** 2, np.conj(x) * y)
-    means = [np.mean(one, axis=0).astype(complex) for one in products]
-    return np.fft.rfftfreq(rows, sample_time), means
+    means = [np.asarray(np.mean(one, axis=0), dtype=complex) for one in products]
+    return np.asarray(np.fft.rfftfreq(rows, sample_time), dtype=float), means
 
 
 def _response(

@@ -178,23 +178,22 @@ def bode(
     f = _frequencies(frequency, steps=200 if amplitude else 2001)
     signals = _Signals(output, input, given)
 
-    def case_of(one: Diagram, *, stability: bool = True) -> _Case:
+    def case_of(one: Diagram, stability: bool = True) -> _Case:
         if amplitude:
             return _first_harmonics(one, signals, amplitude, f)
         return _freeze(one, signals, abs(speed), f, stability=stability)
 
     made = {name: case_of(one) for name, one in cases.items()}
-    diagram = next(iter(cases.values()))
     values = np.array([one.values for one in made.values()])
-    band = covariance and confidence_band(
-        lambda one: case_of(one, stability=False).values, cases.values(), covariance
-    )
+    band = None
+    if covariance is not None:
+        band = confidence_band(lambda one: case_of(one, False).values, cases.values(), covariance)
     return FrequencyResponse(
         tuple(cases),
         f,
         np.abs(values),
         phase_of(values, f),
-        ratio_unit(linear_tips(diagram), output, input),
+        ratio_unit(linear_tips(next(iter(cases.values()))), output, input),
         output,
         input,
         {name: one.left_out for name, one in made.items()},

@@ -90,28 +90,36 @@ def plot_bode(
     A case that is zero at every frequency has no curve; the legend says that it is zero. Bands and
     bars are intervals of 95 %. A coherence has a panel of its own.
     """
-    drawn = [one for one in (response, measured) if one is not None]
-    coherent = [one for one in drawn if one.coherence is not None]
-    figure, axes = panels(columns, 3 if coherent else 2)
-    for one in drawn:
-        for name in one.cases:
-            _bode_lines(axes, one, response, name)
+    curves = [one for one in (response, measured) if one is not None]
+    figure, axes = panels(columns, 3 if any(c.coherence is not None for c in curves) else 2)
+    draw_bode(axes, curves, columns)
     ratio = f"{_symbol(response.output)}/{_symbol(response.input)}"
     unit = "" if response.unit == "1" else f" re 1 {unit_at_axis(response.unit)}"
     axes[0].set_ylabel(f"$|{ratio}|$ (dB{unit})")
     axes[1].set_ylabel(rf"$\angle\,{ratio}$ (deg)")
-    for axis in axes[:2]:
-        keep_scale(axis)
-    mark_degrees(axes[1])
-    if coherent:
-        axes[2].set_ylabel("coherence (1)")
-        axes[2].set_ylim(0.0, 1.05)
-    ends = float(response.frequency[0]), float(response.frequency[-1])
-    share_abscissa(axes, "frequency (Hz)", ends, columns)
     _warn(axes[0], response)
     if len(axes[0].get_legend_handles_labels()[1]) > 1:
         legend_below(figure, axes[0])
     return figure
+
+
+def draw_bode(
+    axes: Sequence[matplotlib.axes.Axes],
+    curves: Sequence[FrequencyResponse],
+    columns: PageColumns = 1,
+) -> None:
+    """Magnitude (dB), phase (deg) and coherence of responses; the first one rules the phases."""
+    for one in curves:
+        for name in one.cases:
+            _bode_lines(axes, one, curves[0], name)
+    for axis in axes[:2]:
+        keep_scale(axis)
+    mark_degrees(axes[1])
+    if len(axes) > 2:
+        axes[2].set_ylabel("coherence (1)")
+        axes[2].set_ylim(0.0, 1.05)
+    ends = float(curves[0].frequency[0]), float(curves[0].frequency[-1])
+    share_abscissa(axes, "frequency (Hz)", ends, columns)
 
 
 def _bode_lines(
