@@ -8,7 +8,6 @@ import numpy as np
 
 from ..base.units import unit_of
 from ..frequency import FrequencyResponse, recorded_response
-from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared
 from ..model import Model
 from ..realise.along_motion import residual_along
@@ -25,15 +24,22 @@ def recorded_impedance(
     modelled: of the force that the model needs along the same motion, its nonlinear laws included
     raises ModelError: the records are too short for it
     """
-    motion_of, force = _signals(model, prepared, place, modelled=modelled)
-    some = next(s.motion for s in prepared.stretches if s.motion.body == place)
+    of_body = [s for s in prepared.stretches if s.motion.body == place]
+    positions, forces = [], []
+    for stretch in of_body:
+        motion = as_logged(model, stretch.motion)
+        rows = slice(stretch.keep[0], stretch.keep[-1] + 1)
+        force = motion.at_rows(motion.command) + motion.interaction
+        if modelled:
+            force = force - residual_along(model.body(place), motion).residual.value
+        positions.append(motion.position[rows])
+        forces.append(force[rows])
     made = recorded_response(
-        motion_of,
-        force,
-        sample_time=some.sample_time,
-        up_to=some.bandwidth,
+        positions,
+        forces,
+        sample_time=of_body[0].motion.sample_time,
+        up_to=of_body[0].motion.bandwidth,
         unit=unit_of("stiffness", model.body(place).axis),
-        noise="both",
     )
     if not modelled:
         return made
@@ -49,21 +55,3 @@ def energetic_speed(model: Model, prepared: Prepared, place: str) -> float:
         [s.motion.velocity[s.keep] for s in prepared.stretches if s.motion.body == place]
     )
     return float(np.mean(velocity**2) / np.mean(np.abs(velocity)))
-
-
-def _signals(
-    model: Model, prepared: Prepared, place: str, *, modelled: bool
-) -> tuple[list[Array], list[Array]]:
-    """Position and acting force (n,) of each stretch, over the rows that count."""
-    positions, forces = [], []
-    for stretch in prepared.stretches:
-        if stretch.motion.body != place:
-            continue
-        motion = as_logged(model, stretch.motion)
-        rows = slice(stretch.keep[0], stretch.keep[-1] + 1)
-        positions.append(motion.position[rows])
-        force = motion.at_rows(motion.command) + motion.interaction
-        if modelled:
-            force = force - residual_along(model.body(place), motion).residual.value
-        forces.append(force[rows])
-    return positions, forces
