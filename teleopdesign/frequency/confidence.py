@@ -86,52 +86,39 @@ def confidence_band(
             f"covariance: found {', '.join(covariance.names) or 'no parameter'}, expected "
             f"parameters of the diagram, such as {', '.join(sorted(here)[:3])}"
         )
-    rows = [_standard_errors(values_of, one, covariance) for one in diagrams]
-    size, phase = (np.array(part) for part in zip(*rows, strict=True))
-    return ResponseBand(size, phase, tuple(n for n in covariance.undetermined if n in here))
+    rows = [_variances(values_of, one, covariance) for one in diagrams]
+    size, phase = (np.sqrt(np.maximum(part, 0.0)) for part in zip(*rows, strict=True))
+    undetermined = tuple(n for n in covariance.undetermined if n in here)
+    return ResponseBand(size, np.degrees(phase), undetermined)
 
 
-def _standard_errors(
+def _variances(
     values_of: Callable[[Diagram], NDArray[np.complex128]],
     diagram: Diagram,
     covariance: ParameterCovariance,
-) -> tuple[Array, Array]:
-    """Standard errors of ln |H| and of the phase (deg), (..., n)."""
-    known = diagram.values
+) -> list[Array]:
+    """Variances of ln |H| and of the phase (rad), (..., n)."""
     spread = np.sqrt(np.diag(covariance.matrix))
-    chosen = [k for k, n in enumerate(covariance.names) if n in known and spread[k] > 0]
+    chosen = [k for k, n in enumerate(covariance.names) if n in diagram.values and spread[k] > 0]
     matrix = covariance.matrix[np.ix_(chosen, chosen)]
-    if not chosen:
-        zero = np.zeros(np.shape(values_of(diagram)))
-        return zero, zero
-    slopes = np.array(
-        [_slope(values_of, diagram, covariance.names[k], STEP * spread[k]) for k in chosen]
-    )
-    size, phase = (
-        np.sqrt(np.maximum(np.einsum("p...,pq,q...->...", part, matrix, part), 0.0))
-        for part in (slopes.real, slopes.imag)
-    )
-    return size, np.degrees(phase)
+    slopes = np.zeros((len(chosen), *np.shape(values_of(diagram))), dtype=complex)
+    for row, k in enumerate(chosen):
+        low, high = _ends(diagram, covariance.names[k], STEP * spread[k])
+        before, after = (
+            values_of(diagram.with_values({covariance.names[k]: x})) for x in (low, high)
+        )
+        with np.errstate(divide="ignore", invalid="ignore"):  # a response may be zero
+            slopes[row] = np.log(after / before) / (high - low)
+    return [
+        np.einsum("p...,pq,q...->...", part, matrix, part) for part in (slopes.real, slopes.imag)
+    ]
 
 
-def _slope(
-    values_of: Callable[[Diagram], NDArray[np.complex128]],
-    diagram: Diagram,
-    name: str,
-    step: float,
-) -> NDArray[np.complex128]:
-    """Derivative of ln H by a parameter, within its bounds; NaN where H is zero."""
-    value, (lower, upper) = diagram.values[name], _bounds(diagram, name)
-    low, high = max(value - step, lower), min(value + step, upper)
-    before, after = (values_of(diagram.with_values({name: x})) for x in (low, high))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.log(after / before) / (high - low))
-
-
-def _bounds(diagram: Diagram, name: str) -> tuple[float, float]:
+def _ends(diagram: Diagram, name: str, step: float) -> tuple[float, float]:
+    """Values of a parameter on both sides, within its bounds."""
     block, _, parameter = name.partition(".")
-    part = diagram.block(block)
+    value, part = diagram.values[name], diagram.block(block)
     if isinstance(part, Control) or not isinstance(part.body, Body):
-        return -np.inf, np.inf
+        return value - step, value + step
     declared = part.body.parameter(parameter)
-    return declared.lower, declared.upper
+    return max(value - step, declared.lower), min(value + step, declared.upper)

@@ -36,7 +36,6 @@ def recorded_response(
     *,
     sample_time: float,
     up_to: float | None = None,
-    window: float | None = None,
     output: str = "E",
     input: str = "L",
     unit: str = "1",
@@ -47,23 +46,10 @@ def recorded_response(
 
     input_signal, output_signal: stretches of (n,) each
     sample_time: s;  up_to: highest frequency, Hz; None: a quarter of the sample rate
-    window: s; None: an eighth of all stretches together, at most the longest stretch
     output, input: names of the signals;  unit: of output per input
     raises ModelError: signals of different lengths, or too short for six windows
     """
-    lengths = [len(x) for x in input_signal]
-    if lengths != [len(y) for y in output_signal] or not lengths:
-        raise ModelError("recorded_response: expected an input and an output of the same length")
-    rows = min(round(window / sample_time) if window else sum(lengths) // 8, max(lengths))
-    pairs = zip(input_signal, output_signal, strict=True)
-    long = [pair for pair, length in zip(pairs, lengths, strict=True) if length >= rows]
-    counts = [2 * (len(x) - rows) // max(rows, 1) + 1 for x, _ in long]
-    if sum(counts) < WINDOWS or rows < 16:
-        raise ModelError(
-            f"recorded_response: found {sum(counts)} windows of {rows} samples, expected at least "
-            f"{WINDOWS} of 16"
-        )
-    f, spectra = _spectra(long, counts, rows, sample_time)
+    windows, f, spectra = _spectra(input_signal, output_signal, sample_time)
     # the two lowest lines hold what is left of the trend
     used = (f >= 2 * f[1]) & (f <= (up_to or 0.25 / sample_time)) & (np.abs(spectra[:2]) > 0).all(0)
     f, spectra = f[used], spectra[:, used]
@@ -71,7 +57,7 @@ def recorded_response(
     _, first, lines = np.unique(band, return_index=True, return_counts=True)
     at = np.add.reduceat(f, first) / lines
     xx, yy, xy = np.add.reduceat(spectra, first, axis=1) / lines
-    n = OF_WINDOWS * sum(counts) * np.maximum(OF_LINES * lines, 1.0)
+    n = OF_WINDOWS * windows * np.maximum(OF_LINES * lines, 1.0)
     coherence = np.clip(np.abs(xy) ** 2 / (xx * yy).real, 1e-12, 1.0)
     # 95 % of the coherences of signals that have nothing in common are below it
     sure = coherence > 1.0 - 0.05 ** (1.0 / np.maximum(n - 1.0, 0.1))
@@ -97,17 +83,28 @@ def recorded_response(
 
 
 def _spectra(
-    pairs: Sequence[tuple[Array, Array]], counts: Sequence[int], rows: int, sample_time: float
-) -> tuple[Array, NDArray[np.complex128]]:
-    """Lines (n,) in Hz, and spectra of input, output and both (3, n), weighted by windows."""
+    inputs: Sequence[Array], outputs: Sequence[Array], sample_time: float
+) -> tuple[int, Array, NDArray[np.complex128]]:
+    """Number of windows, lines (n,) in Hz, and spectra of input, output and both (3, n).
+
+    A window is an eighth of all stretches together, at most the longest stretch.
+    """
     from scipy.signal import csd  # its import takes longer than a Bode plot
 
-    how = {
-        "fs": 1 / sample_time,
-        "nperseg": rows,
-        "noverlap": rows - rows // 2,
-        "detrend": "linear",
-    }
+    lengths = [len(x) for x in inputs]
+    if lengths != [len(y) for y in outputs] or not lengths:
+        raise ModelError("recorded_response: expected an input and an output of the same length")
+    rows = max(min(sum(lengths) // 8, max(lengths)), 1)
+    pairs = [(x, y) for x, y in zip(inputs, outputs, strict=True) if len(x) >= rows]
+    counts = [2 * (len(x) - rows) // rows + 1 for x, _ in pairs]
+    if sum(counts) < WINDOWS or rows < 16:
+        raise ModelError(
+            f"recorded_response: found {sum(counts)} windows of {rows} samples, expected at least "
+            f"{WINDOWS} of 16"
+        )
+    half = rows - rows // 2
+    how = {"fs": 1 / sample_time, "nperseg": rows, "noverlap": half, "detrend": "linear"}
     made = [[csd(*both, **how) for both in ((x, x), (y, y), (x, y))] for x, y in pairs]
     spectra = np.array([[s for _, s in row] for row in made], dtype=complex)
-    return np.asarray(made[0][0][0], dtype=float), np.average(spectra, axis=0, weights=counts)
+    lines = np.asarray(made[0][0][0], dtype=float)
+    return sum(counts), lines, np.average(spectra, axis=0, weights=counts)
