@@ -7,7 +7,6 @@ import time
 from pathlib import Path
 
 import teleopdesign as td
-from teleopdesign.base.machine import can_copy
 
 
 def interface():
@@ -47,27 +46,6 @@ def deadly_product(x, y, folder):
     return product(x, y)
 
 
-def lost_product(x, y, folder):
-    """As `product`; the process that has computed x = 0 is killed before that result is read.
-
-    The file "read" says that another result is read, "killed" that the process is killed. For 3 s,
-    in which x = 0 is computed again, its result is lost.
-    """
-    holder, read, killed = (Path(folder) / name for name in ("holder", "read", "killed"))
-    if x == 0 and killed.exists():
-        time.sleep(3)
-    elif x == 0:
-        wait_for(read)
-        holder.write_text(str(os.getpid()))
-    elif x > 1 and not killed.exists():
-        wait_for(holder)
-        if holder.read_text() == str(os.getpid()):
-            killed.write_text("")
-            os.kill(os.getpid(), signal.SIGKILL)
-        wait_for(killed)
-    return product(x, y)
-
-
 def ending(x):
     """The number x; at x = 2 the function ends Python."""
     if x == 2.0:
@@ -75,20 +53,8 @@ def ending(x):
     return x
 
 
-def wait_for(path, most=20.0):
-    """Return as soon as a file exists, at the latest after `most` seconds."""
-    end = time.monotonic() + most
-    while not path.exists() and time.monotonic() < end:
-        time.sleep(0.01)
-
-
 def lethal_product(x, y):
     """As `product`, but at x = 3, y = 0.1 the process that computes it is killed every time."""
     if x == 3 and y == 0.1:
         os.kill(os.getpid(), signal.SIGKILL)
     return product(x, y)
-
-
-def can_be_copied(x):
-    """Whether the process that computes it may be copied."""
-    return float(can_copy())

@@ -43,14 +43,6 @@ def refused(capsys, *arguments):
     return lines[0]
 
 
-def edited(folder, old, new, file="experiment.toml"):
-    path = folder / file
-    text = path.read_text()
-    assert old in text
-    path.write_text(text.replace(old, new, 1))
-    return folder
-
-
 # help and lists
 
 
@@ -115,108 +107,6 @@ def test_a_missing_folder_is_one_line_also_in_a_separate_process(tmp_path):
     assert done.stdout == ""
 
 
-IN_THE_TOML = {
-    "column": ('column = "x"', 'column = "pos"', 'fit.csv.gz: channels.position: no column "pos"'),
-    "unit": ('"x", unit = "m"', '"x", unit = "N"', 'found "N", expected a length'),
-    "key": ("[comparison]", "[comparsion]", 'unknown key "comparsion".*"comparison"'),
-    "syntax": ("[channels]", "[channels", "not valid TOML"),
-    "effect": ("viscous =", "viscus =", 'no effect "viscus"; did you mean "viscous"'),
-    "parameter": ("{ damping", "{ dampng", 'no parameter "dampng"'),
-    "bandwidth": ("value = 60", "value = 450", "450 Hz is too high"),
-    "file": ('"check.csv.gz"', '"chek.csv.gz"', 'no file "chek.csv.gz"'),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("mistake", IN_THE_TOML)
-def test_a_mistake_in_the_toml_is_one_line_and_status_2(mistake, rod, capsys):
-    import re
-
-    old, new, expected = IN_THE_TOML[mistake]
-    line = refused(capsys, "diagnose", edited(rod, old, new))
-    assert "rod/" in line
-    assert re.search(expected, line), line
-
-
-def with_plain_record(folder, change):
-    """The experiment with its fit record as plain text, changed line by line."""
-    import gzip
-
-    lines = gzip.decompress((folder / "fit.csv.gz").read_bytes()).decode().splitlines()
-    (folder / "fit.csv").write_text("\n".join(change(lines)) + "\n")
-    return edited(folder, "fit.csv.gz", "fit.csv")
-
-
-def cell(text, row=500):
-    """Replaces the third cell of a row."""
-
-    def change(lines):
-        parts = lines[row].split(",")
-        parts[2] = text
-        return [*lines[:row], ",".join(parts), *lines[row + 1 :]]
-
-    return change
-
-
-def every_second(text):
-    """Replaces the third cell of every second row."""
-
-    def change(lines):
-        rows = [line.split(",") for line in lines]
-        for parts in rows[1::2]:
-            parts[2] = text
-        return [",".join(parts) for parts in rows]
-
-    return change
-
-
-IN_A_RECORD = {
-    "nan in half the rows": every_second("nan"),
-    "half the cells empty": every_second(""),
-    "text": cell("here"),
-    "time backwards": lambda lines: [lines[0], *lines[:0:-1]],
-    "one stamp": lambda lines: [lines[0], *[lines[1]] * 5000],
-    "too short": lambda lines: lines[:400],
-    "only a header": lambda lines: lines[:1],
-    "nothing": lambda lines: [],
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("mistake", IN_A_RECORD)
-def test_a_mistake_in_a_record_is_one_line_and_status_2(mistake, rod, capsys):
-    line = refused(capsys, "diagnose", with_plain_record(rod, IN_A_RECORD[mistake]))
-    assert "rod/fit.csv" in line
-
-
-AS_LOGGED = {
-    "nan": (cell("nan"), "1 row with a cell"),
-    "gap": (cell(""), "1 row with a cell"),
-    "samples left out": (lambda lines: [*lines[:500], *lines[700:]], "1 pause"),
-    "not uniform": (
-        lambda lines: [lines[0], *(
-            f"{float(line.split(',')[0]) ** 1.5:.6f},{line.split(',', 1)[1]}" for line in lines[1:]
-        )],
-        "uneven stamps",
-    ),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    "flaw",
-    [
-        "gap",
-        "not uniform",
-        pytest.param("nan", marks=pytest.mark.slow),
-        pytest.param("samples left out", marks=pytest.mark.slow),
-    ],
-)
-def test_what_a_logger_did_to_a_record_is_read_and_reported(flaw, rod, capsys):
-    change, expected = AS_LOGGED[flaw]
-    main(["check", str(with_plain_record(rod, change))])
-    out = capsys.readouterr()
-    assert not out.err
-    assert expected in out.out
-
-
 @pytest.mark.parametrize(
     ("option", "path", "expected"),
     [
@@ -235,12 +125,6 @@ def test_a_result_that_cannot_be_written_is_refused_before_the_work(
     assert expected in line
 
 
-def test_a_folder_in_place_of_a_result_is_refused(rod, tmp_path, capsys):
-    (tmp_path / "answer.json").mkdir()
-    line = refused(capsys, "diagnose", rod, "--json", tmp_path / "answer.json")
-    assert "is a folder" in line
-
-
 @pytest.mark.parametrize("command", [["effects"], ["diagnose", str(ROD)]])
 def test_a_bad_effect_file_is_one_line(command, tmp_path, capsys):
     file = tmp_path / "own_drag.py"
@@ -252,11 +136,6 @@ def test_a_bad_effect_file_is_one_line(command, tmp_path, capsys):
 def test_an_unknown_effect_page_and_recording_are_one_line(tmp_path, capsys):
     assert 'did you mean "stribeck"' in refused(capsys, "effects", "stribek")
     assert 'did you mean "emps"' in refused(capsys, "fetch", "emsp", "--folder", tmp_path)
-
-
-def test_a_demo_folder_that_cannot_be_made_is_one_line(tmp_path, capsys):
-    (tmp_path / "file").write_text("")
-    assert str(tmp_path / "file") in refused(capsys, "demo", "--output", tmp_path / "file" / "demo")
 
 
 # results
@@ -306,9 +185,3 @@ def test_the_demo_names_the_effect_and_writes_its_files(tmp_path, capsys):
     assert violations(answer) == []
     assert answer["verdict"] == "effects_missing"
     assert answer["missing"] == [{"effect": "stribeck", "at": "device"}]
-
-
-def test_a_reader_that_stops_early_is_no_error():
-    command = f"{sys.executable} -m teleopdesign.cli effects | head -1"
-    done = subprocess.run(command, shell=True, capture_output=True, text=True)
-    assert done.stderr == ""

@@ -14,10 +14,8 @@ from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
 from teleopdesign.diagnose import RecordedLoop
 from teleopdesign.diagnose.by_simulation import compare_by_simulation, simulation_data
-from teleopdesign.diagnose.driven import _without_coupling
 from teleopdesign.diagnose.linked_course import ArmLinks
 from teleopdesign.diagnose.parts import PreparedParts, prepare_parts
-from teleopdesign.effects import EFFECTS
 
 SECONDS = 6.0
 LOOP = RecordedLoop(200.0, 20.0)
@@ -56,13 +54,6 @@ def test_the_links_need_what_an_independent_simulator_says(two):
     assert np.allclose(inertia, np.swapaxes(inertia, 1, 2))
     needed = np.einsum("nij,jn->in", inertia + bodies, a) + force
     assert np.allclose(needed, forces(arm, q, v, a), rtol=1e-9)
-
-
-def test_a_coupling_is_a_part_of_the_inertia_that_joins_the_joints(two):
-    _, _, model = two
-    body = model.body("joint1").with_effect(EFFECTS["coupling"], {"inertia": 0.25})
-    assert _without_coupling(body) == (model.body("joint1"), 0.25)
-    assert _without_coupling(model.body("joint2")) == (model.body("joint2"), 0.0)
 
 
 def test_a_loop_of_a_joint_that_is_not_there_is_one_line(two):

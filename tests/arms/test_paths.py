@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import write_answer
 from teleopdesign.diagnose.search_plan import QUICK
@@ -46,22 +45,6 @@ def test_paths_tell_more_than_one_sine_a_joint_within_its_limits(poor):
         # at rest at the beginning: half a step of jerk is what a difference sees
         assert abs(velocity[0]) < 1e-3 * limit.speed
         assert position[0] == pytest.approx(position[-1], abs=1e-9)
-
-
-@pytest.mark.slow
-def test_the_same_records_give_the_same_paths(poor):
-    diagnosis, _ = poor
-    one, two = (propose_paths(diagnosis, duration=10.0, seed=3) for _ in range(2))
-    assert one == two
-
-
-@pytest.mark.slow
-def test_a_force_limit_below_gravity_is_one_line(poor):
-    diagnosis, _ = poor
-    limits = shown_limits(diagnosis.joints["joint2"].prepared)["joint2"]
-    with pytest.raises(ExperimentError, match="more force than the limits allow") as caught:
-        propose_paths(diagnosis, limits={"joint2": limits.with_values(force=1e-3)})
-    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.slow

@@ -114,21 +114,6 @@ def a_law(now, p):
     return p.drag * now.velocity
 
 
-def test_an_effect_without_a_file_says_why_it_does_not_pickle():
-    def made(law):
-        parameters = {"drag": td.Parameter("damping", "any")}
-        effect = td.Effect(role="force", law=law, parameters=parameters, absent={"drag": 0.0})
-        return effect.named("own", "Own.")
-
-    with pytest.raises(td.ModelError, match='Effect "own": cannot be written .* law is a function'):
-        pickle.dumps(made(lambda now, p: p.drag * now.velocity))
-    lambda_effect = made(lambda now, p: p.drag * now.velocity)
-    assert copy.deepcopy(BODY.with_effect(lambda_effect)) == BODY.with_effect(lambda_effect)
-    importable = sys.modules.get(a_law.__module__) is not None
-    if importable:
-        assert pickle.loads(pickle.dumps(made(a_law))) == made(a_law)
-
-
 def test_a_frozen_mapping_cannot_be_changed_and_equals_a_dictionary():
     frozen = Frozen({"a": 1})
     assert frozen == {"a": 1} and {"a": 1} == frozen and hash(frozen) == hash(Frozen({"a": 1}))

@@ -84,14 +84,6 @@ def test_forces_of_the_position_only_repeat_a_virtual_spring(law):
 
 
 @pytest.mark.slow
-def test_a_virtual_spring_with_a_damper_is_no_spring_of_the_device():
-    """`spring` was named with 0.01 % left, in a log whose angle counts the other way round."""
-    turned = moved_by_a_hand(lambda *motion: -spring_and_damper(*motion), digits=5)
-    diagnosis = td.find_missing(turned)
-    assert diagnosis.verdict == "undecided" and diagnosis.missing == ()
-
-
-@pytest.mark.slow
 def test_a_virtual_spring_is_no_spring_of_the_device():
     """`spring` was named with 0.04 % left, beside an inertia of 5e-6 kg m^2."""
     diagnosis = td.find_missing(moved_by_a_hand(spring))

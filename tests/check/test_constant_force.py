@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from check.made_channels import ask
 
 import teleopdesign as td
 
@@ -44,18 +43,6 @@ def test_a_check_warns_of_a_force_of_one_size(levels, warned):
         assert "what the record can show" not in findings, "it listed what cannot be told"
 
 
-@pytest.mark.parametrize(("varies", "is_constant"), [(0.009, True), (0.02, False)])
-def test_a_force_that_varies_by_less_than_a_hundredth_is_constant(varies, is_constant):
-    """A motor that spun up under one torque left 0.00 % with an inertia of zero."""
-    made = spun_up()
-    record = made.records[0]
-    sine = np.sqrt(2.0) * varies * np.sin(2.0 * np.pi * record.time)
-    torque = record.signals["device.actuator_force"] * (1.0 + sine)
-    signals = {**record.signals, "device.actuator_force": torque}
-    findings = ask("constant_force", replace(made, records=(replace(record, signals=signals),)))
-    assert [f.stops for f in findings] == [True] * is_constant
-
-
 @pytest.mark.slow
 def test_no_effect_is_named_under_a_constant_force():
     """A bias of the size of the command, and a Stribeck friction, were named."""
@@ -63,11 +50,3 @@ def test_no_effect_is_named_under_a_constant_force():
     assert diagnosis.verdict == "undecided" and diagnosis.missing == ()
     assert "The force is constant" in str(diagnosis)
     assert "The force is constant" in diagnosis.silence
-
-
-@pytest.mark.slow
-def test_a_known_inertia_tells_the_force_that_remains():
-    """With the inertia fixed, a constant force is as good as any other."""
-    made = spun_up(fixed=True)
-    assert "constant force" not in {f.topic for f in td.check_experiment(made)}
-    assert not td.find_missing(made).silence

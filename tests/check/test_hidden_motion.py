@@ -47,27 +47,9 @@ def test_a_bandwidth_that_hides_the_motion_is_a_reason_and_a_warning(noise, band
     assert any("no model is tested" in one for one in warnings) == hidden
 
 
-def test_no_bandwidth_is_proposed_that_hides_the_motion_too():
-    experiment = swinging(0.005, 100.0)
-    (sentence,) = reasons(experiment)
-    assert "record more motion" in sentence
-
-
 def test_without_dry_friction_each_row_tests_the_model():
     experiment = swinging(0.002, 100.0, coulomb=0.0)
     assert not reasons(experiment)
-
-
-def test_records_that_hardly_move_say_for_how_long():
-    t = H * np.arange(5000)
-    moving = np.clip(t - 9.98, 0.0, 0.01)
-    table = {"t": t, "q": 1e-4 * np.round(1e4 * moving), "u": 0.2 * np.sin(3.0 * t)}
-    position = {"column": "q", "unit": "rad", "resolution": 1e-4}
-    experiment = td.experiment(
-        table, axis="revolute", inertia=0.02, bandwidth=5.0, position=position, actuator_force="u"
-    )
-    (sentence,) = reasons(experiment)
-    assert "no model is tested: record more motion" in sentence
 
 
 def test_no_model_is_adequate_where_none_is_tested():

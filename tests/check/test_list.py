@@ -1,12 +1,10 @@
 """One list of findings: who asks it is told the same."""
 
-from collections import Counter
-
 import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.check import CHECKS, findings_of, look_at, stopping_findings, why_silent
+from teleopdesign.check import findings_of, look_at, stopping_findings, why_silent
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model
 
@@ -28,10 +26,6 @@ def log(force):
     return td.experiment(
         table, axis="revolute", inertia=0.05, position=position, actuator_force="u"
     )
-
-
-def test_no_two_checks_have_the_same_place():
-    assert max(Counter(check.order for check in CHECKS.values()).values()) == 1
 
 
 @pytest.mark.parametrize("topic", FORCES)

@@ -89,24 +89,6 @@ def test_a_tone_is_reported_with_its_frequency_and_rms_and_taken_off_whole(frequ
     assert np.sqrt(np.mean(left**2)) < 0.005
 
 
-@pytest.mark.parametrize(("size", "is_reported"), [(0.5, False), (2.0, True)])
-def test_a_tone_that_a_position_shows_or_that_is_a_tiny_part_of_the_force_is_none(
-    size, is_reported
-):
-    h, t = 1e-3, 1e-3 * np.arange(8000)
-    random = np.random.default_rng(1)
-    tone = np.sin(2 * np.pi * 50.0 * t)
-    rest = 1e-4 * random.standard_normal(8000) + np.sin(2 * np.pi * 0.8 * t)
-    # 0.2 % of the rms of a sine of one: of the tone, its amplitude over that of the force
-    force = rest + size * 0.002 * tone
-    assert (hum_of(force, [], h) is not None) == is_reported
-    still = random.standard_normal(8000)
-    assert (hum_of(force, [still], h) is not None) == is_reported
-    assert hum_of(force, [still + tone], h) is None
-    assert hum_of(force[:1900], [], h) is None, "too short to part it from what is beside it"
-    assert hum_of(force[::10], [], 10 * h) is None, "the samples do not tell so high a frequency"
-
-
 @pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
 @pytest.mark.parametrize("frequency", [50.0, 59.94])
 def test_a_hum_is_reported_with_frequency_and_share_in_any_unit(unit, frequency):

@@ -45,12 +45,6 @@ def short_log(tmp_path, monkeypatch, capsys):
     assert main(["new", "bench.csv", "--yes", "--output", "joint"]) == 0
 
 
-def test_no_command_shows_the_commands_and_where_to_begin(capsys):
-    assert main([]) == 2
-    output = capsys.readouterr().err
-    assert "teleopdesign new log.csv" in output and "diagnose" in output
-
-
 def test_a_guess_is_corrected_by_the_option_that_is_printed(short_log, capsys):
     output = capsys.readouterr().out
     (option,) = re.findall(r"otherwise: --torque-constant .*", output)
@@ -63,17 +57,6 @@ def test_a_guess_is_corrected_by_the_option_that_is_printed(short_log, capsys):
     assert "torque_constant = { value = 0.05," in Path("joint/experiment.toml").read_text()
 
 
-def test_an_answer_that_is_no_number_is_refused_in_one_line(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    t = np.arange(3000) / 500
-    rows = np.column_stack([np.round(2000 * np.sin(2 * t)), np.sign(np.cos(2 * t))])
-    np.savetxt("log.csv", rows, delimiter=",", header="enc,i (A)", comments="")
-    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
-    monkeypatch.setattr("builtins.input", lambda prompt: "many" if "sample_rate" in prompt else "")
-    assert main(["new", "log.csv"]) == 2
-    assert "sample_rate: found 'many', expected a number" in capsys.readouterr().err
-
-
 def test_check_says_once_how_the_log_was_read_and_names_no_steps_that_were_interpolated(
     short_log, capsys
 ):
@@ -83,20 +66,6 @@ def test_check_says_once_how_the_log_was_read_and_names_no_steps_that_were_inter
     # two records, the fit and the check one
     assert output.count("of a row off an even clock") == output.count("rows lost") == 2
     assert "not read in steps" not in output
-
-
-def test_an_inertia_that_the_motion_does_not_tell_is_reported_at_once(
-    tmp_path, monkeypatch, capsys
-):
-    monkeypatch.chdir(tmp_path)
-    t = np.arange(3000) / 500
-    rows = np.column_stack([t, np.sin(2 * t), np.cos(2 * t + 0.01) - 0.3 * np.sin(2 * t)])
-    np.savetxt("log.csv", rows, delimiter=",", header="t [s],q [rad],tau [Nm]", comments="")
-    assert main(["new", "log.csv", "--yes", "--position", "q [rad]"]) == 0
-    toml = Path("log_experiment/experiment.toml").read_text()
-    assert ("the motion tells no inertia" in toml) == (
-        "the motion tells no inertia" in capsys.readouterr().out
-    )
 
 
 def next_commands(output, name):
@@ -143,18 +112,3 @@ def test_each_command_prints_the_next_one_up_to_claims_and_a_figure(tmp_path, mo
         ".toml",
     }
     assert min(p.stat().st_size for p in Path("design").iterdir()) > 500
-
-
-@pytest.mark.slow
-def test_derive_takes_the_device_of_an_answer_and_refuses_options_of_one_beside_a_diagram(
-    rod, tmp_path, monkeypatch, capsys, refused
-):
-    monkeypatch.chdir(tmp_path)
-    only = ["--only", "stribeck", "--quick"]
-    assert main(["diagnose", str(rod), *only, "--json", "answer.json"]) == 0
-    capsys.readouterr()
-    assert main(["derive", "answer.json"]) == 0
-    output = capsys.readouterr().out
-    assert "Left out, because they have no linear form: Z_M.coulomb, Z_M.stribeck" in output
-    assert re.search(r"With values.*frozen at a speed of \S+ m/s:", output)
-    assert "--body: found beside a diagram" in refused("derive", "haptic-interface", "--body", "x")

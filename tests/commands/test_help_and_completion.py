@@ -101,19 +101,6 @@ def test_an_unknown_shell_is_one_line(refused):
     assert 'did you mean "bash"' in refused("completion", "bsh")
 
 
-def test_a_warning_of_another_package_is_one_line_without_code(capsys):
-    import warnings
-
-    from teleopdesign.commands._terminal import plain_warnings
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("always")  # not an error here
-        with plain_warnings():
-            warnings.warn("the disk is slow", UserWarning, stacklevel=1)
-            warnings.warn("Glyph 20301 missing from font(s) DejaVu Sans.", stacklevel=1)
-    assert capsys.readouterr().err == "teleopdesign: warning: the disk is slow\n"
-
-
 def test_the_package_is_the_command():
     import subprocess
     import sys

@@ -1,12 +1,8 @@
 """Options of `teleopdesign new` that cannot be taken are refused, each in one line."""
 
-import re
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-import teleopdesign
 from teleopdesign.cli import main
 
 T = np.arange(2000) / 500.0
@@ -42,22 +38,3 @@ def test_what_to_type_next_can_be_typed_where_a_name_has_spaces(tmp_path, monkey
     assert capsys.readouterr().err.endswith("to make one: teleopdesign new 'my log.csv'\n")
     assert main(["new", "my log.csv", "--yes", "--torque-constant", "0.1 Nm/A"]) == 0
     assert "teleopdesign check 'my log_experiment'\n" in capsys.readouterr().out
-
-
-def test_every_command_that_is_proposed_quotes_its_paths():
-    """A path in an f-string behind a command's name goes through what quotes it for a shell."""
-    files = Path(teleopdesign.__file__).parent.rglob("*.py")
-    bare = re.compile(
-        r"teleopdesign [a-z-]+ \{(?!shell_word|shlex|paths|prog)[^}]*(path|folder|file)"
-    )
-    assert not [f"{f.name}: {m[0]}" for f in files if (m := bare.search(f.read_text("utf-8")))]
-
-
-@pytest.mark.parametrize(("columns", "widest"), [("60", 60), ("200", 100), ("10", 40)])
-def test_findings_keep_within_the_terminal(monkeypatch, columns, widest):
-    from teleopdesign.base.finding import Finding
-    from teleopdesign.commands.check import text_of
-
-    monkeypatch.setenv("COLUMNS", columns)
-    lines = text_of([Finding("topic", "note", "a word and another " * 20)]).split("\n")
-    assert widest - 10 <= max(map(len, lines)) <= widest

@@ -3,18 +3,11 @@
 import json
 import re
 import shutil
-from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
-from teleopdesign import load_experiment
-from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
-from teleopdesign.commands.report import _next_steps
-from teleopdesign.measurement.prepare import prepare
-from teleopdesign.next_experiment import shown_limits
 
 
 @pytest.fixture(scope="module")
@@ -58,19 +51,6 @@ def test_the_page_of_an_answer_tells_what_the_answer_tells(answer, capsys):
 
 
 @pytest.mark.slow
-def test_a_folder_that_holds_an_answer_stands_for_it(answer, tmp_path):
-    page = tmp_path / "page.html"
-    assert main(["report", str(answer.parent), "--output", str(page)]) == 0
-    assert data_of(page)["answer"]["verdict"] == json.loads(answer.read_text())["verdict"]
-
-
-@pytest.mark.slow
-def test_an_answer_alone_is_described(answer, capsys):
-    assert main(["describe", str(answer), "--as-is"]) == 0
-    assert "Your model, re-estimated:" in capsys.readouterr().out
-
-
-@pytest.mark.slow
 def test_the_page_of_a_folder_is_that_of_a_diagnosis_made_now(rod, few, tmp_path):
     page = tmp_path / "page.html"
     assert main(["report", str(rod), "--only", "stribeck", "--output", str(page)]) == 0
@@ -90,31 +70,3 @@ def test_an_answer_of_other_records_is_one_line(answer, rod, refused):
     text = toml.read_text()
     toml.write_text(text.replace('title = "', 'title = "Another '))
     assert "answer.json: is not an answer to rod but to another" in refused("report", answer)
-
-
-def test_two_answers_are_one_line(answer, refused):
-    line = refused("report", answer, "--answer", answer)
-    assert "which is an answer itself" in line
-
-
-def test_a_page_in_another_format_is_refused(answer, refused):
-    assert "expected .html" in refused("report", answer, "--output", answer.with_suffix(".pdf"))
-
-
-def test_a_record_that_never_moved_has_a_page_without_a_next_experiment(short_rod):
-    """It has shown no stroke to be safe, so nothing can be proposed; the diagnosis stands."""
-    prepared = prepare(load_experiment(short_rod))
-    still = [
-        replace(s, motion=replace(s.motion, position=0.0 * s.motion.position))
-        for s in prepared.stretches
-    ]
-    undecided = SimpleNamespace(
-        verdict="undecided",
-        kind="",
-        joints={},
-        groups=(),
-        prepared=replace(prepared, stretches=tuple(still)),
-    )
-    assert _next_steps(undecided) == ()
-    with pytest.raises(ModelError, match="the stroke ends at"):
-        shown_limits(undecided.prepared)

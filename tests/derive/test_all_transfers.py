@@ -1,6 +1,5 @@
 """Every transfer function of a diagram: right for matrices, with numbers, loops told by name."""
 
-import re
 import time
 
 import numpy as np
@@ -24,7 +23,6 @@ from teleopdesign.derive import (
     transfer,
 )
 from teleopdesign.derive.elimination import rows
-from teleopdesign.derive.printing import as_text, name_as_latex, polynomial_as_text
 from teleopdesign.diagrams import (
     ANY,
     SHIPPED,
@@ -218,47 +216,6 @@ def test_the_return_difference_is_that_of_the_opened_loop():
     Z_M, Z_H, H = map(block_symbol, ("Z_M", "Z_H", "H"))
     expected = 1 + H * Z_H * (Z_M + Z_H) ** -1
     assert proved_equal(return_difference(diagram, "H"), expected)
-
-
-@pytest.mark.parametrize(
-    ("coefficients", "text"),
-    [
-        ([2.0, 0.0, -1.0], "2 s^2 - 1"),
-        ([-1.0, 3.5], "-s + 3.5"),
-        ([0.0], "0"),
-        ([1.0], "1"),
-        ([1.23456e-5, 1.0, 0.0], "1.235e-05 s^2 + s"),
-    ],
-)
-def test_a_polynomial_is_printed_as_it_is_read(coefficients, text):
-    assert polynomial_as_text(coefficients) == text
-
-
-def test_names_are_printed_with_their_indices():
-    assert name_as_latex("Zhat_M") == r"\hat Z_{M}"
-    assert name_as_latex("R_M/R_MBC") == r"R_{M}/R_{\mathrm{MBC}}"
-
-
-def test_names_that_are_greek_letters_are_printed_as_these():
-    assert name_as_latex("phi/u_theta") == r"\phi/u_{\mathrm{theta}}"
-    assert name_as_latex("theta_m/f_x") == r"\theta_{m}/f_{x}"
-
-
-@pytest.mark.parametrize("arm", [0.1 * np.cos(0.5), 1 / 3, np.pi * 1e-6, 12345.678901])
-def test_a_lever_arm_is_printed_with_six_digits_and_is_exact_in_the_expression(arm):
-    moved = Moving("Z", ANY, "x", "u", {"f": 1.0}, "f")
-    levers = Diagram("lever", (moved,), (Junction("u", {"t": arm}),), {"f": "force", "t": "force"},
-                     ("x",))  # fmt: skip
-    one = all_transfers(levers)["x/t"]
-    assert one.expression.as_coeff_Mul()[0] == sp.Rational(repr(float(arm)))
-    for text in (one.text(), one.latex()):
-        numbers = [float(x) for x in re.findall(r"\d+\.\d+(?:e-?\d+)?", text)]
-        assert numbers[:1] == pytest.approx([float(arm)], rel=1e-5) or "10^" in text
-        assert not re.search(r"\d{8}", text.replace("0.", "")), text
-
-
-def test_a_simple_fraction_stays_a_fraction():
-    assert as_text(sp.Rational(1, 20) * block_symbol("Z")) == "(1/20) Z"
 
 
 def test_numbers_alone_are_recognised_on_matrices_of_a_given_size():

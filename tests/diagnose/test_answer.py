@@ -14,11 +14,7 @@ from teleopdesign import Model, compare, find_missing
 from teleopdesign.diagnose.answer import answer, write_answer
 from teleopdesign.diagnose.predictions import write_predictions
 from teleopdesign.diagnose.probability import shares
-from teleopdesign.diagnose.ranking import REFUSALS
-from teleopdesign.diagnose.result import _bandwidth_source
-from teleopdesign.diagnose.rungs import first_rise, without_rise
-from teleopdesign.diagnose.statements import NotAccepted
-from teleopdesign.show.diagnose.text import command_error_text, ladder_text
+from teleopdesign.show.diagnose.text import ladder_text
 
 EVERY_KEY = {
     "verdict", "missing", "ladder", "noise_floor", "candidates", "indistinguishable",
@@ -46,26 +42,6 @@ def test_what_is_less_likely_than_not_is_not_named(diagnosis):
     # the leading candidate is still shown
     assert answer(unlikely)["candidates"][0]["effect"] == "stribeck"
     assert "less likely than not" in ladder_text(unlikely)
-
-
-def test_a_ladder_ends_before_a_rung_that_leaves_more(end):
-    rungs = end.rungs
-    worse = replace(rungs[-1], fit=replace(rungs[-1].fit, check_error=2 * rungs[0].fit.check_error))
-    assert first_rise(rungs) is None and without_rise(rungs) == rungs
-    assert first_rise((*rungs, worse)) == len(rungs)
-    assert without_rise((*rungs, worse)) == rungs
-
-
-def test_the_error_at_the_command_is_reported_where_it_differs(diagnosis):
-    after = diagnosis.after
-    assert command_error_text(after) is None  # nothing stands between command and force
-    less = replace(after, check_error_at_command=2 * after.check_error, blind=0.1)
-    note = f"{200 * after.check_error:.2f} %, undefined in 10 % of the motion"
-    assert command_error_text(less).endswith(note)
-    other, half = diagnosis.candidates[1].candidate, 0.5 * after.check_error
-    one = NotAccepted("refused", other, half, half, REFUSALS["blind"])
-    text = ladder_text(replace(diagnosis, not_accepted=(one,)))
-    assert f"refused: {other}" in text and REFUSALS["blind"] in text
 
 
 def test_the_answer_states_the_result_of_the_diagnosis(written, diagnosis):
@@ -114,19 +90,6 @@ def test_predictions_hold_every_sample_and_add_up(diagnosis, experiment, tmp_pat
     write_predictions(diagnosis, zipped)
     with gzip.open(zipped, "rt") as a, file.open() as b:
         assert a.read() == b.read().replace("\r\n", "\n")
-
-
-def test_the_ladder_is_a_table_with_parameters_floor_and_verdict(diagnosis):
-    text = ladder_text(diagnosis)
-    assert repr(diagnosis) == text
-    for part in ("your model, re-estimated", "+ stribeck at device", "noise floor", "N*m",
-                 "verdict: effects_missing"):  # fmt: skip
-        assert part in text
-    assert f"compared up to {diagnosis.bandwidth:.3g} Hz (stated)\n" in text
-    unstated = replace(diagnosis.experiment, bandwidth=None)
-    words = _bandwidth_source(unstated, diagnosis.bandwidth)
-    assert words == "chosen: up to there the positions show motion"
-    assert max(map(len, text.splitlines())) < 120
 
 
 @pytest.mark.slow

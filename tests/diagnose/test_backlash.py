@@ -7,16 +7,14 @@ import pytest
 from cases import make_case, write_case
 from diagnose.simulated_cases import truth_of, write_simulated
 
-from teleopdesign import Model, Value, find_missing, load_experiment
-from teleopdesign.diagnose import draws
-from teleopdesign.diagnose.candidates import Candidate, make_starts
+from teleopdesign import Model, find_missing, load_experiment
+from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.draws import search_among_draws
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.residual import residuals
-from teleopdesign.diagnose.search import Base, _vary_starts, base_of, estimate_from_starts
-from teleopdesign.diagnose.search_plan import PLAN
+from teleopdesign.diagnose.search import base_of, estimate_from_starts
 from teleopdesign.diagnose.stated_fit import estimate_stated
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
@@ -59,25 +57,6 @@ def test_a_true_model_leaves_what_its_sensors_leave(case):
     assert left < 0.5 * force_error(free_running(true), prepared.of("check"))
 
 
-def test_a_gap_is_sought_from_every_width_however_little_it_promises(case):
-    _, _, stated, _ = case
-    new = stated.with_effect(BACKLASH, at="device")
-    widths = BACKLASH.parameters["gap"].search.starts
-    inertias = (0.1, 0.3, 0.2)
-    # as if the narrowest promised most by far
-    ordered = [
-        new.with_values({"device.backlash.gap": w, "device.backlash.tip_inertia": m})
-        for w in widths
-        for m in inertias
-    ]
-    starts = _vary_starts(new, ordered)[: PLAN.wide]
-    values = [
-        [start.parameters[f"device.backlash.{n}"].value for n in ("gap", "tip_inertia")]
-        for start in starts
-    ]
-    assert values == [[w, inertias[0]] for w in widths] + [[widths[0], inertias[1]]]
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [1, 108])  # a tip of 0.64 and of 0.15 times the body's inertia
 def test_a_search_finds_a_heavy_and_a_light_tip(number, tmp_path):
@@ -99,9 +78,9 @@ def test_a_search_finds_a_heavy_and_a_light_tip(number, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [206, 214])  # gaps of 17 mrad and 2.2 mm, several swings wide
+@pytest.mark.parametrize("seed", [206])  # a gap of 17 mrad, several swings wide
 def test_draws_lead_to_a_wide_gap(seed, tmp_path):
-    """From the usual starts 15.0 and 3.8 were left of 17.2 and 3.9, where the truth leaves less."""
+    """From the usual starts 15.0 were left of 17.2, where the truth leaves less."""
     rng = np.random.default_rng(seed)
     write_case(make_case(rng, "clear", ["backlash"], "teleoperator", tries=3), tmp_path)
     truth, experiment = truth_of(tmp_path), load_experiment(tmp_path)
@@ -114,66 +93,11 @@ def test_draws_lead_to_a_wide_gap(seed, tmp_path):
     ((_, best),) = search_among_draws([attempt], base, prepared)
     values = {f"{hidden['at']}.backlash.{n}": v["value"] for n, v in hidden["parameters"].items()}
     true = estimate(new.with_values(values), prepared)
-    # measured: 1.03 and 1.00 times what the fit from the true values leaves; before 3.2 and 6.4
+    # measured: 1.03 times what the fit from the true values leaves; before 3.2
     assert best.fit_error < 1.3 * true.fit_error
     assert best.fit_error < 0.5 * usual.fit_error
     gap = f"{hidden['at']}.backlash.gap"
     assert best.model.parameters[gap].value == pytest.approx(values[gap], rel=0.1)
-
-
-def test_draws_are_made_only_for_gaps_that_are_there_and_where_nothing_explains(case, monkeypatch):
-    _, prepared, stated, true = case
-    base = Base(estimate(stated, prepared), estimate(stated, prepared))
-    there, absent = estimate(true, prepared), base.fit
-    gap, spring = Candidate(BACKLASH, "device"), Candidate(EFFECTS["spring"], "device")
-    searches = []
-
-    def starts(model, *_, **__):
-        searches.append(model.absent)
-        return [true]
-
-    monkeypatch.setattr(draws, "best_draws", starts)
-    absent = replace(absent, model=base.fit.model.with_effect(BACKLASH, at="device"))
-    explained = search_among_draws([(gap, there)], base, prepared)
-    assert explained == [(gap, there)]
-    monkeypatch.setattr(draws, "PLAN", replace(PLAN, unexplained=0.0))
-    kept = search_among_draws([(gap, absent), (spring, there)], base, prepared)
-    assert kept == [(gap, absent), (spring, there)]
-    assert not searches
-    ((_, best),) = search_among_draws([(gap, there)], base, prepared)
-    assert searches == [(("backlash", "device"),)]
-    assert best.fit_error <= there.fit_error
-
-    def with_a_bound(*_):
-        """A fit that leaves nothing, with friction that the base needs at its bound."""
-        nothing = np.zeros_like(there.fit_residual)
-        return replace(there, fit_residual=nothing, at_bound=("device.coulomb.level",))
-
-    monkeypatch.setattr(draws, "estimate_best_start", with_a_bound)
-    kept = search_among_draws([(gap, there)], base, prepared)
-    assert kept == [(gap, there)]
-
-
-def test_draws_stay_within_bounds_and_leave_fixed_parameters(case, monkeypatch):
-    _, prepared, stated, _ = case
-    base = estimate(stated, prepared)
-    new = base.model.with_effect(BACKLASH, at="device")
-    plan = replace(PLAN, draws=6, draws_kept=2, draw_evaluations=8)
-    monkeypatch.setattr(draws, "PLAN", plan)
-    starts = draws.best_draws(new, prepared, base)
-    again = draws.best_draws(new, prepared, base)
-    assert [s.parameters for s in starts] == [s.parameters for s in again]
-    assert len(starts) == 2 * plan.draws_kept
-    usual = [m.parameters["device.backlash.gap"].value for m in make_starts(new, prepared.scales)]
-    for start in starts[: plan.draws_kept]:
-        for name in GAP_PARAMETERS:
-            declared = new.declared(name)
-            assert declared.lower <= start.parameters[name].value <= declared.upper
-        gap = start.parameters["device.backlash.gap"].value
-        assert np.sqrt(min(usual) * max(usual)) <= gap <= plan.draws_beyond * max(usual)
-    fixed = new.with_values({"device.backlash.gap": Value(1e-3, fixed=True)})
-    for start in draws.best_draws(fixed, prepared, base):
-        assert start.parameters["device.backlash.gap"].value == 1e-3
 
 
 def test_tangents_of_the_led_tip_are_the_slopes_of_the_residual(case, monkeypatch):
@@ -214,13 +138,6 @@ def test_tangents_say_what_a_change_that_could_be_made_does(case, monkeypatch):
     assert kept < 2
     monkeypatch.setattr(ode_scan, "GROWTH", np.inf)
     assert largest() > 4 * kept
-
-
-def test_a_tip_without_inertia_follows_nothing():
-    symbols = BACKLASH.symbols()
-    momentum = BACKLASH.led_momentum()
-    assert momentum.subs(symbols["tip_inertia"], 0) == 0
-    assert BACKLASH.corrections()["tip_position"].subs(symbols["tip_inertia"], 0) == 0
 
 
 @pytest.mark.slow

@@ -8,13 +8,9 @@ from cases import make_case, write_case
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose import bodies_apart
-from teleopdesign.diagnose.bodies_apart import BodyByBody, select_bodies, separate_bodies
-from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.bodies_apart import select_bodies, separate_bodies
 from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.promise import Promises
-from teleopdesign.diagnose.rank import rank_candidates
-from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
 
 
@@ -73,47 +69,6 @@ def test_a_fit_that_follows_tangents_ends_where_one_that_computes_all_again_does
             assert abs(one.value - other.value) < 0.05 * other.stderr, name
 
 
-def test_a_residual_without_derivatives_is_the_same_near_and_far(two_bodies):
-    """A body that hardly moved follows tangents, whichever was computed last."""
-    prepared, model = two_bodies
-    names = ("slave.inertia", "master.inertia")
-    before = np.array([model.parameters[n].value for n in names])
-    courses = []
-    for without in (False, True):
-        bodies = BodyByBody(model, names, prepared.of("fit"), tolerance=1e-4)
-        left = []
-        for by in ((1.0, 1.0), (1.3, 1.0), (1.3, 1.0 + 1e-6), (1.1, 1.0 + 1e-6)):
-            moved = model.with_values(dict(zip(names, before * by, strict=True)))
-            point = np.array(by), before
-            if without and by != (1.0, 1.0):
-                left.append(bodies.residual(moved, *point))
-            else:
-                left.append(bodies.both(moved, *point)[0])
-        courses.append([*left, bodies.both(moved, *point)[1]])
-    for one, other in zip(*courses, strict=True):
-        assert other == pytest.approx(one, rel=1e-9, abs=1e-12)
-
-
-def test_starts_that_differ_at_one_body_compute_the_other_once(two_bodies, monkeypatch):
-    prepared, model = two_bodies
-    base, computed = estimate(model, prepared, effort=EFFORTS.first_steps), []
-    starts = [
-        base.model.with_values({"slave.inertia": f * base.model.parameters["slave.inertia"].value})
-        for f in (1.0, 1.1, 1.2, 1.1)
-    ]
-    relative = bodies_apart.Apart.relative
-
-    def counted(part, *arguments):
-        computed.extend(part.bodies)
-        return relative(part, *arguments)
-
-    monkeypatch.setattr(bodies_apart.Apart, "relative", counted)
-    promises = Promises(prepared, base)
-    squares = [promises.squares(start) for start in starts[1:]]
-    assert (computed.count("master"), computed.count("slave")) == (1, 2)
-    assert squares[0] == squares[2] == Promises(prepared, base).squares(starts[1])
-
-
 def test_what_is_gained_at_one_body_does_not_depend_on_effects_at_another(two_bodies):
     """So effects of two bodies cannot mask each other: a pair is sought at one body alone."""
     prepared, model = two_bodies
@@ -129,16 +84,3 @@ def test_what_is_gained_at_one_body_does_not_depend_on_effects_at_another(two_bo
         ]
     )
     assert beside == pytest.approx(alone, abs=1e-6 * fit_squares(base))
-
-
-def test_a_ranking_at_one_body_has_its_candidates_alone(two_bodies):
-    prepared, model = two_bodies
-    base = estimate(model, prepared)
-    some = [Candidate(EFFECTS[n], at) for n in ("bias", "spring") for at in ("master", "slave")]
-    both = rank_candidates(base, prepared, among=some)
-    there = rank_candidates(base, prepared, among=some, body="slave")
-    mine = [r for r in both.ranked if r.candidate.at == "slave"]
-    assert [r.candidate.key for r in there.ranked] == [r.candidate.key for r in mine]
-    assert [fit_squares(r.fit) for r in there.ranked] == pytest.approx(
-        [fit_squares(r.fit) for r in mine], rel=1e-9
-    )

@@ -8,7 +8,6 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign import Value
-from teleopdesign.cli import main
 from teleopdesign.diagnose import RecordedLoop
 from teleopdesign.diagnose.by_simulation import HORIZONS, simulation_data
 
@@ -103,16 +102,6 @@ def test_a_zero_of_one_record_does_not_count_as_an_error(experiment):
     assert two.error(np.inf).position == pytest.approx(one.error(np.inf).position)
 
 
-def test_what_is_asked_for_wrongly_is_reported_in_one_line(experiment):
-    model = model_of(experiment)
-    with pytest.raises(td.ModelError, match="a loop is simulated"):
-        td.compare(model, experiment, loop=RecordedLoop(1.0))
-    with pytest.raises(td.ModelError, match="zero or more"):
-        RecordedLoop(-1.0)
-    with pytest.raises(td.ModelError, match="no error for a horizon of 7 s"):
-        td.compare(model, experiment, by="simulation").error(7.0)
-
-
 def test_the_answer_holds_every_horizon_with_units(experiment):
     comparison = td.compare(model_of(experiment), experiment, by="simulation")
     data = json.loads(json.dumps(simulation_data(comparison), allow_nan=False))
@@ -121,20 +110,3 @@ def test_the_answer_holds_every_horizon_with_units(experiment):
     assert data["horizons"][-1]["horizon"]["value"] is None  # the whole record
     assert data["horizons"][0]["position"]["unit"] == "m"
     assert "whole record" in repr(comparison) and "whole record" in comparison._repr_html_()
-
-
-def test_a_simulation_that_cannot_be_is_refused_by_the_command(tmp_path, capsys):
-    folder = str(td.example("rod"))
-    assert main(["diagnose", folder, "--loop", "100", "1"]) == 2
-    assert "--simulate" in capsys.readouterr().err
-    assert main(["diagnose", folder, "--simulate", "--output", str(tmp_path / "answers")]) == 2
-    assert "--simulate: is for one folder" in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_the_command_simulates_the_final_model(tmp_path, capsys):
-    path = tmp_path / "answer.json"
-    arguments = ["diagnose", str(td.example("rod")), "--simulate", "--json", str(path)]
-    assert main([*arguments, "--quick", "--only", "stribeck"]) == 0
-    assert "driven freely by the recorded command" in capsys.readouterr().out
-    assert json.loads(path.read_text())["simulation"]["horizons"]

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from diagnose.made_records import write_made
-from diagnose.simulated_cases import FEW
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.base.errors import ExperimentError
@@ -41,11 +40,6 @@ def prepared(experiment):
 
 def names(model):
     return {c.effect.name for c in candidates(model)}
-
-
-def test_what_the_model_has_is_no_candidate(model):
-    assert {"coulomb", "viscous"}.isdisjoint(names(model))
-    assert "stribeck" in names(model)
 
 
 def test_an_effect_that_needs_another_waits_for_it(model):
@@ -101,16 +95,6 @@ def test_a_channel_says_that_its_force_was_measured(experiment, tmp_path):
         load_experiment(path.parent)
 
 
-def test_a_power_of_the_speed_waits_for_dry_friction(model):
-    """A power that is steep near rest stands for both, and dry friction would have no name."""
-    whole = replace(model, known=EFFECTS)
-    bare = whole.without_effect("coulomb")
-    assert "shear_thinning" in names(whole)
-    assert "shear_thinning" not in names(bare) and "coulomb" in names(bare)
-    alone = replace(bare, known={"shear_thinning": EFFECTS["shear_thinning"]})
-    assert "shear_thinning" in names(alone), "nothing that it waits for is sought"
-
-
 def test_elements_that_may_change_places_go_softest_first(model, prepared):
     """The same hysteresis; those that may be rigid come last, and those that are told first."""
     level = model.parameters["device.coulomb.level"].value
@@ -132,19 +116,6 @@ def test_elements_that_may_change_places_go_softest_first(model, prepared):
     errors = [force_error(one, prepared.of("fit")) for one in (mixed, ordered)]
     # the same law: only the order of its sum differs
     assert errors[0] == pytest.approx(errors[1], rel=1e-9)
-
-
-def test_a_second_shape_of_friction_is_no_candidate(model):
-    shaped = model.with_effect("presliding", values={"stiffness": 1e4})
-    assert not [n for n in names(shaped) if EFFECTS[n].role == "friction_shape"]
-
-
-def test_every_body_is_a_place(model):
-    pair = replace(model, bodies={"master": model.body("device"), "slave": model.body("device")})
-    entries = candidates(pair)
-    assert {c.at for c in entries} == {"master", "slave"}
-    assert len(entries) == 2 * len(candidates(model))
-    assert str(entries[0]).endswith(" at master")
 
 
 def needs_of(name):
@@ -175,17 +146,6 @@ def test_a_search_starts_within_bounds_at_every_combination(name, slower, model,
             value = values[f"{name}.{parameter}"].value
             assert np.isfinite(value)
             assert declared.lower <= value <= declared.upper
-
-
-def test_scales_are_those_of_the_record(prepared):
-    motions = [s.motion for s in prepared.of("fit")]
-    unit = scales(motions, prepared.bandwidth)
-    (m,) = motions
-    assert unit["velocity"] == pytest.approx(np.std(m.velocity), rel=0.05)
-    assert unit["stiffness"] * unit["position"] == pytest.approx(unit["force"])
-    assert unit["inertia"] * unit["acceleration"] == pytest.approx(unit["force"])
-    assert all(np.isfinite(v) for v in unit.values())
-    assert all(v > 0.0 for name, v in unit.items() if name not in ENDS)
 
 
 @pytest.mark.parametrize("factor", [0.0, 1e-300, 1e-110, 1e-30, 1e30, 1e150])
@@ -295,7 +255,3 @@ def test_without_check_records_blocks_are_held_out(experiment, model):
     # blocks that a fit has not seen are fitted a little worse than those it has
     assert fit.fit_error < fit.check_error < 1.5 * fit.fit_error
     assert len(fit.check_residual) == len(fit.check_blocks) == len(fit.fit_residual)
-
-
-def test_few_is_part_of_the_catalogue():
-    assert set(FEW) <= set(EFFECTS)

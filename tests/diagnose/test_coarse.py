@@ -1,20 +1,13 @@
 """The search for effects on few samples has the results of a search on all samples."""
 
-from collections import Counter
-from dataclasses import replace
-
-import numpy as np
 import pytest
 from diagnose.simulated_cases import FEW, truth_of, write_simulated
 
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose.error import force_error
-from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.record_shift import record_shifts
-from teleopdesign.diagnose.residual import residuals
+from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.search import base_of
-from teleopdesign.measurement.prepare import SOUGHT, prepare
-from teleopdesign.realise import compiled, scan, shape_scan
+from teleopdesign.measurement.prepare import prepare
 
 
 @pytest.fixture(scope="module")
@@ -42,26 +35,6 @@ def test_few_samples_hold_what_all_of_them_hold(case):
         assert few == pytest.approx(all_of_them, abs=0.012)
 
 
-def test_a_held_command_is_the_same_force_at_the_samples_that_are_left(case):
-    prepared, *_ = case
-    for few, whole in zip(prepared.coarse.stretches, prepared.of("fit"), strict=True):
-        here = few.motion.at_rows(few.motion.command)
-        there = whole.motion.at_rows(whole.motion.command)[:: few.motion.merged]
-        # but for the ends, where records are continued: the smoothing leaves little above its edge
-        inner = slice(len(here) // 10, -len(here) // 10)
-        assert np.std((here - there)[inner]) < 5e-3 * np.std(there)
-
-
-def test_rows_of_a_record_stay_what_they_are_on_few_samples(case):
-    prepared, *_ = case
-    few, whole = prepared.coarse.of("fit"), prepared.of("fit")
-    assert record_shifts(few, 10).row == pytest.approx(record_shifts(whole, 10).row)
-    for one, other in zip(few, whole, strict=True):
-        assert one.weight * len(one.keep) == pytest.approx(other.weight * len(other.keep))
-        # what stands for the record's own measured force does so on few samples too
-        assert one.measured == pytest.approx(other.measured, rel=0.01)
-
-
 def test_the_optimum_of_a_base_on_few_samples_is_next_to_that_on_all(case):
     prepared, stated, _ = case
     fit = estimate(stated, prepared)
@@ -69,44 +42,3 @@ def test_the_optimum_of_a_base_on_few_samples_is_next_to_that_on_all(case):
     for name in fit.free:
         here, there = base.coarse.model.parameters[name], fit.model.parameters[name]
         assert here.value == pytest.approx(there.value, rel=0.01)
-
-
-def test_what_few_samples_leave_more_hides_no_gain(case):
-    prepared, stated, _ = case
-    base = base_of(estimate(stated, prepared), prepared)
-    louder = replace(base, coarse=replace(base.coarse, fit_residual=3 * base.coarse.fit_residual))
-    gain = fit_squares(louder.coarse) - louder.least(0.1)
-    # nine times the squares on few samples: a tenth of those of the records still counts
-    assert gain == pytest.approx(0.1 * fit_squares(base.fit))
-
-
-def test_records_without_samples_to_spare_are_sought_on_themselves(case):
-    prepared, stated, _ = case
-    rate = 1.0 / prepared.stretches[0].motion.sample_time
-    dense = prepare(prepared.experiment, bandwidth=1.01 * rate / (2.0 * SOUGHT))
-    assert dense.coarse is dense
-    fit = estimate(stated, dense)
-    assert base_of(fit, dense) == replace(base_of(fit, dense), fit=fit, coarse=fit)
-
-
-def test_each_kernel_is_compiled_once_for_few_samples_and_for_all(case, monkeypatch):
-    prepared, _, true = case
-    model = true.with_effect(true.known["presliding"], at="device", values={"stiffness": 1e4})
-    kernels = Counter()
-
-    def counted(source, function):
-        kernel = compiled.compile_source(source, function)
-        kernels[kernel] += 1
-        return kernel
-
-    for module in (scan, shape_scan):
-        monkeypatch.setattr(module, "compile_source", counted)
-    every = tuple(model.parameters)
-    residuals(model, prepared.of("fit"), every)
-    # a kernel may hold what other tests compiled
-    first = {kernel: tuple(kernel.signatures) for kernel in kernels}
-    for stretches in (prepared.of("fit"), prepared.coarse.of("fit")):
-        for names in ((), every, ("device.inertia",)):
-            residuals(model, stretches, names)
-    assert len(kernels) == 2 and min(kernels.values()) >= 7  # a lag, and bristles
-    assert {kernel: tuple(kernel.signatures) for kernel in kernels} == first

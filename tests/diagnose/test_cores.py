@@ -1,22 +1,15 @@
 """Work on all cores: results as on one core, whatever happens to a copy of the process."""
 
 import os
-import platform
 import signal
 import subprocess
 import sys
-import threading
 import time
 
-import numpy as np
 import pytest
 
-from teleopdesign.base.machine import one_thread
 from teleopdesign.diagnose import cores
 from teleopdesign.diagnose.cores import map_in_threads, map_on_cores
-
-#: arrays of 1 MiB that a residual and its tangents take together, and how often they are made
-TOGETHER, TIMES = 16, 50
 
 copied = pytest.mark.skipif(sys.platform != "linux", reason="processes are copied on Linux only")
 
@@ -36,22 +29,6 @@ def test_results_keep_the_order_of_the_arguments(work):
     assert map_on_cores(lambda x: x - 1, range(50)) == [x - 1 for x in range(50)]
 
 
-def test_each_part_begins_once_and_is_reported_by_this_process(work):
-    begun = []
-    map_on_cores(lambda x: x, range(20), begun=begun.append)
-    assert sorted(begun) == list(range(20))
-
-
-def test_large_results_come_back_whole(work):
-    """Longer than a pipe holds, while other copies send theirs."""
-    whole = map_on_cores(lambda i: np.full(200_000, float(i)), range(7))
-    assert [(len(one), one[0], one[-1]) for one in whole] == [(200_000, i, i) for i in range(7)]
-
-
-def test_no_parts_give_no_results(work):
-    assert map_on_cores(lambda x: x, []) == []
-
-
 def test_this_process_raises_the_error_of_a_part(work):
     def fail_at_three(x):
         if x == 3:
@@ -60,12 +37,6 @@ def test_this_process_raises_the_error_of_a_part(work):
 
     with pytest.raises(ZeroDivisionError, match="part 3"):
         map_on_cores(fail_at_three, range(6))
-
-
-def test_a_result_that_cannot_travel_is_computed_here(work):
-    """A function of its own cannot be pickled."""
-    made = map_on_cores(lambda x: lambda: x, range(3))
-    assert [one() for one in made] == [0, 1, 2]
 
 
 @copied
@@ -98,14 +69,6 @@ def test_an_interrupt_ends_the_copies(monkeypatch):
         os.waitpid(-1, os.WNOHANG)
 
 
-@copied
-def test_a_worker_of_a_study_makes_no_copies(monkeypatch):
-    monkeypatch.setattr(cores, "can_copy", lambda: True)
-    with one_thread():
-        processes = map_on_cores(lambda _: os.getpid(), range(4))
-    assert set(processes) == {os.getpid()}
-
-
 @pytest.mark.slow
 @copied
 def test_copies_end_with_a_process_that_is_killed():
@@ -133,40 +96,3 @@ def test_a_part_makes_no_copies_itself(work):
     for x, (pairs, outer) in enumerate(map_on_cores(inner, range(4))):
         assert work == "alone" or {pid for pid, _ in pairs} == {outer}
         assert [value for _, value in pairs] == [x, x + 1, x + 2]
-
-
-@copied
-def test_a_process_with_other_threads_is_not_copied():
-    stay = threading.Event()
-    other = threading.Thread(target=stay.wait)
-    other.start()
-    try:
-        assert not cores.can_copy()
-    finally:
-        stay.set()
-        other.join()
-
-
-def faults_of_arrays(after: str) -> int:
-    """Pages that the system clears while arrays are made and dropped, in a process of its own."""
-    code = f"""
-import resource
-import numpy as np
-from teleopdesign.diagnose.cores import map_on_cores
-{after}
-before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
-for _ in range({TIMES}):
-    arrays = [np.ones(2**17) for _ in range({TOGETHER})]
-    del arrays
-print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
-"""
-    output = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    return int(output.stdout)
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="it is glibc's rule")
-def test_arrays_are_not_cleared_by_the_system_again_and_again():
-    assert faults_of_arrays("map_on_cores(abs, [1])") < faults_of_arrays("") / 5

@@ -17,9 +17,8 @@ from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.predictions import write_predictions
 from teleopdesign.diagnose.residual import relative_residuals, residuals
 from teleopdesign.diagnose.search import estimate_from_starts
-from teleopdesign.measurement.bandwidth import default_bandwidth
 from teleopdesign.measurement.channel import Channel
-from teleopdesign.measurement.prepare import FOLDS, prepare
+from teleopdesign.measurement.prepare import prepare
 from teleopdesign.realise.along_motion import residual_along
 
 
@@ -94,10 +93,6 @@ def test_a_model_with_nothing_in_it_leaves_everything(prepared, model):
     assert force_error(empty, prepared.of("check")) == pytest.approx(1.0, rel=1e-3)
 
 
-def test_no_records_of_a_use_have_no_error(model):
-    assert np.isnan(force_error(model, ()))
-
-
 def test_the_true_parameters_leave_the_error_that_the_simulation_says(
     prepared, model, stribeck_case
 ):
@@ -155,13 +150,6 @@ def test_a_right_model_lies_at_its_floor(seed, tmp_path):
     assert 0.75 < fit.check_error / floor.value < 1.4
 
 
-def test_the_floor_hardly_depends_on_the_draws(prepared, model):
-    drawn = [noise_floor(model, prepared, np.random.default_rng(s)).value for s in (1, 2, 3)]
-    assert np.ptp(drawn) < 0.15 * np.mean(drawn)
-    again = noise_floor(model, prepared, np.random.default_rng(1)).value
-    assert again == drawn[0], "the generator is the only chance in it"
-
-
 def test_a_floor_from_the_readings_says_so_and_is_near_the_stated_one(experiment, prepared, model):
     channels = {n: replace(c, resolution=None, noise=None) for n, c in experiment.channels.items()}
     blind = prepare(replace(experiment, channels=channels))
@@ -203,18 +191,6 @@ def test_a_hands_force_of_unstated_noise_raises_the_floor_by_what_its_readings_s
 # what is compared
 
 
-def test_the_default_bandwidth_ends_where_the_position_tells_no_acceleration(experiment):
-    # the simulated machines are driven up to 15 to 18 Hz, sampled at 1 kHz
-    assert 10.0 < default_bandwidth(experiment) <= 100.0
-    record = experiment.records[0]
-    rng = np.random.default_rng(0)
-    x = record.signals["device.position"]
-    noisy = x + 0.02 * np.std(x) * rng.standard_normal(len(x))
-    worse = replace(record, signals={**record.signals, "device.position": noisy})
-    lower = default_bandwidth(replace(experiment, records=(worse,)))
-    assert lower < default_bandwidth(experiment)
-
-
 def test_a_bandwidth_too_high_for_the_samples_is_one_line(experiment):
     with pytest.raises(ExperimentError, match="bandwidth: 450 Hz is too high for fit.csv.gz"):
         prepare(experiment, bandwidth=450.0)
@@ -242,19 +218,6 @@ def test_segments_are_separate_stretches(experiment, model):
     assert force_error(model, parts.of("fit")) == pytest.approx(
         force_error(model, one.of("fit")), rel=0.1
     )
-
-
-def test_held_out_blocks_cover_every_row_once(prepared):
-    stretches = prepared.of("fit")
-    pairs = folds(stretches)
-    assert len(pairs) == FOLDS
-    for i, s in enumerate(stretches):
-        held = np.concatenate([unseen[i].keep for _, unseen in pairs])
-        np.testing.assert_array_equal(np.sort(held), s.keep)
-        for inner, unseen in pairs:
-            assert not set(inner[i].keep) & set(unseen[i].keep)
-    whole = sum(s.measured for s in stretches)
-    assert sum(u.measured for _, un in pairs for u in un) == pytest.approx(whole)
 
 
 def test_an_encoder_zero_of_one_record_costs_nothing_where_a_spring_knows_the_position(

@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose.candidates import candidates
-from teleopdesign.diagnose.model_data import model_data, model_from
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.stated_fit import estimate_stated
 from teleopdesign.measurement.prepare import prepare
@@ -61,11 +59,6 @@ def test_they_follow_a_force_and_a_friction_that_no_law_describes(recording):
     assert levels == pytest.approx(level(speeds[1:]), abs=0.04)
 
 
-def test_no_search_tries_them(recording):
-    model = td.Model.from_experiment(stated(recording, "coulomb"))
-    assert not {"free_force", "free_friction"} & {c.effect.name for c in candidates(model)}
-
-
 def test_range_that_a_user_states_is_kept_and_not_estimated(recording):
     model = td.Model.from_experiment(stated(recording, "coulomb", "viscous"))
     model = model.with_effect("free_force", values=RANGE)
@@ -93,10 +86,3 @@ def test_fitted_curves_can_be_cancelled_and_simulated():
 
     # left: smoothing near reversals
     assert left(cancellation=td.cancel(body, smoothing_velocity=2e-3)) < 0.15 * left()
-
-
-def test_saved_model_with_them_is_the_same(recording):
-    model = td.Model.from_experiment(stated(recording, "coulomb", "viscous"))
-    model = model.with_effect("free_force", values={"value_3": 0.2} | RANGE)
-    again = model_from(model_data(model), td.EFFECTS, "here")
-    assert again.parameters == model.parameters

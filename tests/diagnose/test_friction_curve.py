@@ -144,13 +144,6 @@ def test_a_curve_without_a_named_law_is_fitted_by_free_friction():
     assert "no named law" in repr(answer)
 
 
-def test_points_at_rest_are_left_out_and_counted():
-    v = np.concatenate([np.zeros(3), np.linspace(-1, 1, 20)])
-    curve = td.friction_curve(v, np.sign(v) + v, axis="prismatic")
-    assert len(curve.records[0].time) == 20
-    assert any("3 rows at rest" in step.observed for step in curve.reading)
-
-
 def test_force_of_the_wrong_sign_names_nothing_and_says_what_mends_it():
     curve = drawn(10, lambda v: -(0.4 + 0.25 * v))
     answer = td.find_missing(curve)
@@ -193,12 +186,3 @@ def test_new_reads_a_table_of_speeds_and_torques(tmp_path, monkeypatch):
     assert curve.is_curve and curve.axis("device") == "revolute"
     assert np.abs(curve.records[0].signals["device.velocity"]).max() == pytest.approx(10.47, 1e-3)
     assert "kind" in curve.guesses
-
-
-def test_new_asks_for_the_axis_where_no_unit_tells_it(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    write_table(tmp_path / "motor.csv", "a,b")
-    command = ["new", "motor.csv", "--kind", "friction curve", "--velocity", "a", "--force", "b"]
-    assert main(command) == 2
-    assert "--axis" in capsys.readouterr().err
-    assert main([*command, "--axis", "prismatic"]) == 0

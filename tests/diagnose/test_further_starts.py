@@ -6,12 +6,10 @@ friction says little of it, and one linear step beside a bristle gives a spring 
 
 import numpy as np
 import pytest
-from cases import make_case, write_case
 from diagnose.made_records import write_made
 from diagnose.test_slip_elements import slip
 
 from teleopdesign import Model, find_missing, load_experiment
-from teleopdesign.blocks import Value
 from teleopdesign.diagnose.fit import estimate, fit_squares
 from teleopdesign.diagnose.further_starts import with_what_they_need
 from teleopdesign.diagnose.search import base_of, estimate_from_starts
@@ -94,15 +92,6 @@ def test_the_search_reaches_a_bristle_beside_a_level_of_zero(tmp_path):
     assert best.check_error < 0.15 < 0.8 < rigid.check_error
 
 
-def test_a_level_that_is_known_or_large_stays(tmp_path):
-    experiment = yielding(tmp_path, 16.0)
-    prepared = prepare(experiment)
-    bristle = Model.from_experiment(experiment).with_effect("presliding")
-    for level in (Value(0.01, fixed=True), Value(prepared.scales["force"])):
-        model = bristle.with_values({"device.coulomb.level": level})
-        assert with_what_they_need(model, [model], prepared) == []
-
-
 def test_a_structure_that_yields_has_a_spring_and_an_element_that_slips(tmp_path):
     """A bristle alone left 24 %: the spring beside it was lost, and alone it was refused."""
     diagnosis = find_missing(yielding(tmp_path, 16.0))
@@ -110,23 +99,3 @@ def test_a_structure_that_yields_has_a_spring_and_an_element_that_slips(tmp_path
     assert diagnosis.after.check_error < 0.01
     stiffness = diagnosis.model.parameters["device.spring.stiffness"]
     assert abs(stiffness.value - 16.0) < 3.0 * stiffness.stderr < 1.0
-
-
-@pytest.mark.parametrize(
-    ("name", "at", "before"),
-    [
-        ("contact_hardening", "environment", ()),
-        ("tip_friction", "slave", ("backlash",)),
-        ("maxwell_slip", "slave", ()),
-    ],
-)
-def test_an_effect_may_need_what_has_no_level_or_another_of_its_role(tmp_path, name, at, before):
-    """A contact has no level at its place, and a gap stands in for a compliance."""
-    rng = np.random.default_rng(3)
-    write_case(make_case(rng, "null", kind="teleoperator"), tmp_path / "case")
-    experiment = load_experiment(tmp_path / "case")
-    model = Model.from_experiment(experiment)
-    for one in (*before, name):
-        model = model.with_effect(one, at=at)
-    starts = with_what_they_need(model, [model], prepare(experiment).coarse)
-    assert starts == []  # nothing was taken away

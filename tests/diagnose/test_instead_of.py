@@ -5,8 +5,6 @@ bristle turns each loop with a force that leads the position, as a damper's does
 """
 
 import json
-from dataclasses import replace
-from importlib import import_module
 
 import numpy as np
 import pytest
@@ -19,14 +17,8 @@ from teleopdesign import Body, Model, find_missing, load_experiment
 from teleopdesign.base.errors import ModelError
 from teleopdesign.diagnose.answer import answer, load_answer, write_answer
 from teleopdesign.diagnose.candidates import Candidate, candidates
-from teleopdesign.diagnose.decision import find_superfluous_effect
-from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.identifiability import OpenWidths
 from teleopdesign.diagnose.rung import Rung, restore_replaced
-from teleopdesign.diagnose.search import estimate_from_starts
-from teleopdesign.diagnose.statements import OpenRival
 from teleopdesign.effects import EFFECTS
-from teleopdesign.next_experiment.rivals import rival_instead
 from teleopdesign.show.diagnose.text import ladder_text
 from teleopdesign.show.report.parameter_table import parameter_rows
 
@@ -94,21 +86,6 @@ def test_the_table_of_parameters_holds_what_gave_way(search):
     assert [r.name for r in rows.values() if r.gave_way_to] == ["device.viscous.damping"]
 
 
-def test_a_rival_of_what_took_another_place_has_that_other_back(search):
-    """Unless the rival, too, was compared without it."""
-    _, diagnosis = search
-    added, before = diagnosis.rungs[1].added, diagnosis.before.model
-    beside = before.with_effect("spring", at="device", values={"stiffness": 1.0})
-    spring = OpenRival(Candidate(EFFECTS["spring"], "device"), beside)
-    fit = rival_instead(diagnosis, added, spring)
-    assert [e.name for e in fit.model.body("device").effects] == ["coulomb", "viscous", "spring"]
-    alone = estimate(beside, diagnosis.prepared)
-    assert fit.check_error == pytest.approx(alone.check_error, rel=0.01)
-    without = replace(spring, model=beside.without_effect("viscous", at="device"))
-    fit = rival_instead(diagnosis, added, without)
-    assert not fit.model.body("device").has("viscous")
-
-
 def test_the_answer_says_what_it_takes_the_place_of(search):
     _, diagnosis = search
     document = answer(diagnosis)
@@ -138,55 +115,6 @@ def test_a_damper_that_is_there_stays_beside_the_bristle(tmp_path):
     assert diagnosis.rungs[1].instead_of is None
     damping = diagnosis.model.parameters["device.viscous.damping"]
     assert damping.value == pytest.approx(300.0, rel=0.1)
-
-
-def test_what_ends_at_its_absence_gives_way_before_what_is_only_open(search):
-    """Two are no longer told beside a candidate; one of them is gone."""
-    names = ("device.coulomb.level", "device.viscous.damping")
-    fit, candidate = search[1].fit(search[1].before.model), search[1].rungs[1].added
-    sure, unsure = (
-        fit.model.with_values(
-            {n: replace(fit.model.parameters[n], value=1.0, stderr=e) for n in names}
-        )
-        for e in (0.01, 2.0)
-    )
-    base = replace(fit, model=sure, at_bound=())
-    open_now = replace(fit, model=unsure, at_bound=())
-    assert find_superfluous_effect(base, open_now, candidate) is None, "either may be the one"
-    gone = unsure.with_values({names[1]: replace(unsure.parameters[names[1]], value=0.0)})
-    ended = replace(fit, model=gone, at_bound=(names[1],))
-    assert find_superfluous_effect(base, ended, candidate).effect.name == "viscous"
-
-
-#: the module: the folder has a function of the same name
-rank = import_module("teleopdesign.diagnose.rank")
-
-
-def ranked_beside_discredited(search, monkeypatch, name):
-    """The bristle as a candidate, where an effect of the model loses its name beside it."""
-    experiment, diagnosis = search
-    monkeypatch.setattr(rank, "find_superfluous_effect", lambda *_, **__: None)
-    monkeypatch.setattr(
-        rank,
-        "implausible_effects",
-        lambda model, _: (
-            {(name, "device"): "it stands for something else"}
-            if model.body("device").has("presliding") and model.body("device").has(name)
-            else {}
-        ),
-    )
-    base = diagnosis.fit(diagnosis.before.model)
-    candidate = Candidate(EFFECTS["presliding"], "device")
-    added = base.model.with_effect("presliding", at="device")
-    records = diagnosis.prepared
-    fit = estimate_from_starts(added, records, base)
-    return rank._ranked_best(base, (candidate, fit), OpenWidths(records))
-
-
-def test_a_candidate_that_needs_what_loses_its_name_is_refused(search, monkeypatch):
-    ranked = ranked_beside_discredited(search, monkeypatch, "coulomb")
-    assert ranked.instead_of is None
-    assert ranked.implausible == "with it, coulomb is implausible: it stands for something else"
 
 
 #: an effect that another can count as -> its parameter
@@ -219,15 +147,6 @@ def test_what_rests_on_either_stays_while_one_gives_way_to_the_other(new, old, o
     back = rung.undo_addition(model)
     assert {n for n, _ in back.effects} == {old, other}
     assert back.parameters[f"device.{old}.{STRENGTH[old]}"].value == 2.0
-
-
-def test_a_shape_of_friction_that_comes_back_takes_the_place_of_the_other():
-    body = Body("prismatic", {"inertia": 1.0, "coulomb.level": 1.0}, (EFFECTS["coulomb"],))
-    plain = Model({"device": body})
-    before, after = plain.with_effect("presliding"), plain.with_effect("maxwell_slip")
-    gave_way = restore_replaced(Candidate(EFFECTS["presliding"], "device"), before)
-    rung = Rung(Candidate(EFFECTS["maxwell_slip"], "device"), None, replaced=gave_way)
-    assert {n for n, _ in rung.undo_addition(after).effects} == {"coulomb", "presliding"}
 
 
 @settings(max_examples=15, deadline=None)

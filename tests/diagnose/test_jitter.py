@@ -5,8 +5,7 @@ import pytest
 from diagnose.made_records import jittered
 from diagnose.simulated_cases import write_simulated
 
-from teleopdesign import check_experiment, find_missing, load_experiment
-from teleopdesign.check import sample_clock, why_silent
+from teleopdesign import load_experiment
 from teleopdesign.check.sample_clock import jitter_share
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.search import estimate_from_starts
@@ -55,19 +54,3 @@ def test_the_share_of_jitter_is_what_newly_drawn_readings_add_to_the_acceleratio
         added, whole = added + np.sum((ours - true) ** 2), whole + np.sum(ours**2)
     assert jitter_share(prepared.of("fit"), jitters) == pytest.approx(added / whole, rel=0.5)
     assert jitter_share(still.of("fit"), adequate) == 0.0
-
-
-@pytest.mark.slow
-def test_records_with_much_jitter_tell_no_effect(adequate, monkeypatch):
-    """At half a row of jitter and 500 Hz a tip behind a spring was named, which weakens it."""
-    late = jittered(adequate, 0.3)
-    share = jitter_share(prepare(late).of("fit"), late)
-    monkeypatch.setattr(sample_clock, "JITTER", 0.99 * share)
-    diagnosis = find_missing(late)
-    assert diagnosis.verdict == "undecided" and not diagnosis.missing
-    assert diagnosis.candidates == ()
-    assert "taken at other moments than their rows say" in str(diagnosis)
-    warning = [f for f in check_experiment(late) if "taken at other moments" in f.sentence]
-    assert [f.concern for f in warning] == ["warning"]
-    monkeypatch.setattr(sample_clock, "JITTER", 1.01 * share)
-    assert why_silent(prepare(late), Model.from_experiment(late)) == ""

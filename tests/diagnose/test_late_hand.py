@@ -10,11 +10,9 @@ from scipy.signal import lfilter
 
 import teleopdesign as td
 from teleopdesign.diagnose.answer import answer
-from teleopdesign.diagnose.clock import with_late_hand, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.model_data import model_data, model_from
-from teleopdesign.diagnose.noise_floor import noise_floor
-from teleopdesign.diagnose.record_shift import name_of_hand, shifts_of
+from teleopdesign.diagnose.record_shift import name_of_hand
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
@@ -78,24 +76,6 @@ def test_the_filter_of_the_hands_sensor_is_reported_and_nothing_is_missing(adequ
         assert there == pytest.approx(value.value, rel=0.03, abs=5 * value.stderr)
 
 
-def test_a_hand_whose_shift_ends_early_at_its_bound_is_no_late_actuator(adequate):
-    """A dead time may stand behind a command that is early, behind no force of a hand."""
-    prepared = prepare(adequate)
-    row = adequate.records[0].sample_time
-    model = td.Model.from_experiment(adequate).with_record_shift({HAND: td.Value(-2.0 * row)})
-    fit = estimate(model, prepared)
-    assert with_paying_shift(fit, prepared).check_error <= fit.check_error
-
-
-def test_a_force_that_is_in_time_gets_no_shift(adequate):
-    prepared = prepare(adequate)
-    fit = estimate(td.Model.from_experiment(adequate), prepared)
-    floor = noise_floor(fit.model, prepared, np.random.default_rng(0))
-    assert with_late_hand(fit, (), floor, prepared) is None
-    assert HAND not in fit.model.record_shift
-    assert {s.at for s in shifts_of(fit.model, prepared.stretches)} <= {"device"}
-
-
 @pytest.mark.parametrize("effect", [None, "transmission_compliance", "actuator_lag"])
 def test_the_slope_by_the_shift_is_that_of_the_residual(late, effect):
     """Where a tip follows the hand too, and behind an actuation that does not."""
@@ -126,7 +106,7 @@ def test_a_model_with_a_late_hand_is_written_and_read(diagnosis):
     assert back.log_late(HAND) == diagnosis.model.record_shift[HAND].value
 
 
-@pytest.mark.parametrize("effect", ["actuator_lag", "stribeck"])
+@pytest.mark.parametrize("effect", ["actuator_lag"])
 def test_what_is_missing_keeps_its_name_beside_a_hand_in_time_or_late(tmp_path, effect):
     """A lag of the command is no lag of the sensor: the motion tells which force is late."""
     experiment = td.load_experiment(write_simulated(tmp_path / "case", effect, seed=SEED))

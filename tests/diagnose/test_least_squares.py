@@ -65,27 +65,6 @@ def test_a_parameter_without_effect_stays_where_it_was():
     np.testing.assert_allclose(optimum.values, [3.0, 7.0], rtol=1e-6)
 
 
-def test_steps_that_fail_one_after_another_cost_no_derivatives():
-    """Far out on an arc tangent each full step leads beyond the other end."""
-    derivatives = []
-
-    def arc(x):
-        derivatives.append(float(x[0]))
-        return np.arctan(x), np.diag(1.0 / (1.0 + x**2))
-
-    def search(**more):
-        derivatives.clear()
-        bound = np.full(1, 1e4)
-        return minimise(
-            arc, np.array([20.0]), -bound, bound, tolerance=1e-9, evaluations=60, **more
-        )
-
-    whole, each = search(), list(derivatives)
-    alone = search(residual_alone=np.arctan)
-    assert alone.values == whole.values == pytest.approx([0.0], abs=1e-6)
-    assert set(derivatives) < set(each) and len(derivatives) <= len(each) - 3
-
-
 def test_no_step_follows_columns_whose_squares_overflow():
     """A motion that grows leaves finite columns of 1e200: neither a step nor a warning."""
     grown = np.array([[1.0, 1e200], [2.0, -1e200]])

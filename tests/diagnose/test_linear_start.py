@@ -60,23 +60,6 @@ def test_a_fine_period_is_detected_among_a_hundred(cogged, base):
     assert fit["device.cogging.phase"].value == pytest.approx(PHASE, abs=0.1)
 
 
-@pytest.mark.parametrize(
-    ("name", "strength", "phase"),
-    [
-        ("cogging", "amplitude", "phase"),
-        ("torque_ripple", "amplitude", "phase"),
-        ("viscous", "damping", None),
-        ("stribeck", "extra_static_level", None),
-        ("actuation_delay", None, None),
-        ("presliding", None, None),
-        ("contact_hardening", None, None),
-    ],
-)
-def test_a_strength_is_what_the_law_is_linear_in(name, strength, phase):
-    assert EFFECTS[name].strength == strength
-    assert EFFECTS[name].phase == phase
-
-
 def test_the_start_of_a_linear_effect_is_where_the_search_ends(cogged, base):
     """Bias and damping enter the residual linearly but for friction that balances."""
     prepared = prepare(cogged)
@@ -86,8 +69,3 @@ def test_the_start_of_a_linear_effect_is_where_the_search_ends(cogged, base):
     assert start.model.parameters["device.bias.force"].value == pytest.approx(
         exact.value, abs=3 * exact.stderr
     )
-
-
-def test_an_effect_without_a_strength_is_refused(cogged, base):
-    with pytest.raises(ValueError, match="actuation_delay: the law is not linear"):
-        linear_starts([base.model], EFFECTS["actuation_delay"], "device", prepare(cogged), base)

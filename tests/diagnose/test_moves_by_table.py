@@ -4,14 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnose.stand_ins import SHAPE, floor
+from diagnose.stand_ins import SHAPE
 from diagnose.stub_models import Names, Table, candidate
 
 from teleopdesign.diagnose import rungs as rungs_module
 from teleopdesign.diagnose.moves import add, add_two, remove
 from teleopdesign.diagnose.outside_tone import Tone
 from teleopdesign.diagnose.ranking import Ranking
-from teleopdesign.diagnose.rung import Replaced
 from teleopdesign.diagnose.search_plan import PLAN
 
 SPRING, HARD, BIAS, DRAG, GRAVITY = map(
@@ -58,15 +57,6 @@ def test_the_simplest_of_those_that_explain_as_well_is_added_with_its_alternativ
     assert moved.rungs[-1].instead_of is None
 
 
-def test_beside_a_model_that_leaves_noise_what_else_helps_is_reported(use):
-    table = use(shares(spring=0.5, bias=0.4, quadratic_drag=0.1))
-    state = looked(table, table.state(table.rungs()), SPRING, BIAS, DRAG)
-    noise = floor(0.6)
-    assert add(table.search(), replace(state, floor=noise)).rungs[-1].could_be == (BIAS,)
-    louder = floor(0.5)
-    assert add(table.search(), replace(state, floor=louder)).rungs[-1].could_be is None
-
-
 def in_place_of(ranked, effect, fit):
     """A candidate beside which that effect is superfluous: its model lacks it."""
     return replace(ranked, fit=fit, instead_of=effect)
@@ -88,43 +78,6 @@ def test_what_an_added_effect_stood_in_for_takes_its_place(use):
     assert add(table.search(), again) is None
 
 
-def test_what_it_replaced_in_its_turn_stays_replaced(use):
-    table = use(shares(spring=0.8, hardening_spring=0.4))
-    first, rung = table.rungs("hardening_spring")
-    gone = Replaced(DRAG, ())
-    state = table.state([first, replace(rung, replaced=gone)])
-    (ranked,) = table.rank(state.fit, among=[SPRING]).ranked
-    ranked = in_place_of(ranked, HARD, table.fit("spring"))
-    ranking = Ranking(state.fit, (ranked,))
-    moved = add(table.search(), replace(state, ranking=ranking, supported=(ranked,)))
-    assert names(moved) == ["spring"] and moved.rungs[1].replaced is gone
-
-
-def test_an_effect_of_the_users_model_that_comes_back_was_not_replaced(use):
-    table = use(shares(spring=0.5, bias=0.3))
-    first, rung = table.rungs("spring")
-    state = table.state([first, replace(rung, replaced=Replaced(BIAS, ()))])
-    state = looked(table, state, BIAS)
-    moved = add(table.search(), state)
-    assert names(moved) == ["spring"] and moved.rungs[1].replaced is None
-    assert moved.fit.model.names == {"spring", "bias"}
-
-
-def test_where_the_best_leads_to_no_ladder_the_next_is_added(use):
-    """What was added first needs what the best would take the place of."""
-    table = use(shares(spring=0.8, hardening_spring=0.4, bias=0.1, gravity=0.2),
-                needs=(("bias", "hardening_spring"),))  # fmt: skip
-    state = table.state(table.rungs("hardening_spring", "bias"))
-    best, other = table.rank(state.fit, among=[SPRING, GRAVITY]).ranked
-    rises = table.fit("spring", "bias")
-    rises.check_error = 2.0  # on the check records it leaves more than the bias alone
-    best = in_place_of(best, HARD, rises)
-    ranking = Ranking(state.fit, (best, other))
-    moved = add(table.search(), replace(state, ranking=ranking, supported=(best, other)))
-    assert names(moved) == ["hardening_spring", "bias", "gravity"]
-    assert add(table.search(), replace(state, ranking=ranking, supported=(best,))) is None
-
-
 def test_an_effect_that_others_made_superfluous_is_removed(use):
     def rule(names):  # drag helps as long as there is no spring
         return (
@@ -141,12 +94,6 @@ def test_an_effect_that_others_made_superfluous_is_removed(use):
     # the last was added a moment ago, and is no older than what it was held against
     assert remove(table.search(), table.state(table.rungs("spring", "quadratic_drag"))) is None
     assert remove(table.search(), table.state(table.rungs("bias"))) is None
-
-
-def test_what_another_effect_needs_is_not_removed(use):
-    table = use(shares(spring=0.5, bias=0.3), needs=(("spring", "quadratic_drag"),))
-    state = table.state(table.rungs("quadratic_drag", "spring", "bias"))
-    assert remove(table.search(), state) is None
 
 
 def masked(names, both=0.1):

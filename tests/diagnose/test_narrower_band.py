@@ -1,7 +1,6 @@
 """A filtered or coarse position leads to a proposal of a narrower bandwidth, and only then."""
 
-from dataclasses import dataclass, replace
-from types import SimpleNamespace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +9,7 @@ from scipy.signal import lfilter
 import teleopdesign as td
 from teleopdesign import Model
 from teleopdesign.diagnose.criteria import CRITERIA
-from teleopdesign.diagnose.narrower_band import choose_band, narrower_band, narrower_to_search
+from teleopdesign.diagnose.narrower_band import narrower_band
 from teleopdesign.fitted_checks.bandwidth import check_bandwidth
 from teleopdesign.measurement.prepare import prepare
 
@@ -76,40 +75,6 @@ def test_a_bandwidth_that_is_stated_is_the_users(filtered):
     model, prepared = filtered
     stated = replace(prepared.experiment, bandwidth=prepared.bandwidth)
     assert narrower_band(model, replace(prepared, experiment=stated)) is None
-
-
-def ended(error, bandwidth, *, more=True):
-    """A diagnosis whose final model leaves this error."""
-    return Ended(
-        after=SimpleNamespace(fit_error=error, check_error=error),
-        before=None,
-        bandwidth=bandwidth,
-        more_is_missing=more,
-    )
-
-
-@dataclass(frozen=True)
-class Ended:
-    after: object
-    before: object
-    bandwidth: float
-    more_is_missing: bool
-    left_out: tuple = ("pairs",)
-    joints: tuple = ()
-    kind: str = ""
-
-
-def test_the_narrower_band_is_kept_where_its_final_model_leaves_far_less():
-    wide, narrow = ended(0.6, 80.0), ended(0.6 / CRITERIA.falls - 1e-6, 20.0)
-    kept = choose_band(wide, narrow)
-    assert kept.bandwidth == 20.0 and kept.left_out[0] == "pairs"
-    assert "faster than 20 Hz" in kept.left_out[1] and "up to 80 Hz" in kept.left_out[1]
-    # a resonance that an effect explains leaves little in the wide band
-    assert choose_band(ended(0.6 / CRITERIA.falls, 80.0), ended(0.2, 20.0)).bandwidth == 80
-
-
-def test_no_narrower_band_is_searched_where_nothing_is_missing():
-    assert narrower_to_search(ended(0.6, 80.0, more=False)) is None
 
 
 @pytest.mark.slow

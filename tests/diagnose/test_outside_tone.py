@@ -8,15 +8,10 @@ from diagnose.made_records import write_made
 from diagnose.simulated_cases import write_simulated
 
 import teleopdesign as td
-from teleopdesign.diagnose import climb, ladder, ladder_state
-from teleopdesign.diagnose.adequacy import is_a_tone
 from teleopdesign.diagnose.evidence import check_squares
 from teleopdesign.diagnose.fit import estimate, weigh_residuals
-from teleopdesign.diagnose.noise_floor import NoiseFloor
-from teleopdesign.diagnose.outside_tone import Tone, _tone_squares, best_tone, is_of_mains
-from teleopdesign.diagnose.ranking import Ranking
+from teleopdesign.diagnose.outside_tone import _tone_squares, best_tone
 from teleopdesign.diagnose.search import estimate_from_starts
-from teleopdesign.effects import EFFECTS, depends_on_time
 from teleopdesign.measurement.prepare import prepare
 
 FRICTION = 'coulomb = { level = { value = 1.0, unit = "N*m" } }'
@@ -129,11 +124,6 @@ def test_a_tone_above_the_band_is_as_strong_as_what_the_band_shows_of_it_says(ro
     assert best_tone(before, hummed).squares == pytest.approx(check_squares(fit), rel=0.05)
 
 
-def test_frequencies_of_the_mains_are_distinguished_from_those_beside_them():
-    assert all(is_of_mains(f) for f in (49.95, 50.0, 60.1, 100.0, 120.2))
-    assert not any(is_of_mains(f) for f in (0.0, 25.0, 47.9, 51.0, 58.8, 150.0))
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [2, 6])
 def test_a_hum_that_moves_the_machine_is_no_tip_that_rings(tmp_path, seed):
@@ -142,46 +132,8 @@ def test_a_hum_that_moves_the_machine_is_no_tip_that_rings(tmp_path, seed):
     assert not td.find_missing(td.load_experiment(folder), among=among).missing
 
 
-def test_what_leaves_as_much_as_a_tone_does_not_beat_it(rod):
-    prepared, fit = rod
-    noise = np.random.default_rng(3).standard_normal(len(fit.check_residual))
-    tone = Tone(fit.check_residual + 0.1 * np.std(fit.check_residual) * noise)
-    assert not tone.is_beaten_by(fit)
-    assert Tone(3.0 * fit.check_residual).is_beaten_by(fit)
-    assert Tone().is_beaten_by(fit)
-
-
 def _off_the_residual(fit, prepared):
     stretches = prepared.of("check")
     parts = np.split(fit.check_residual, np.cumsum([len(s.keep) for s in stretches])[:-1])
     squares = sum(_tone_squares(s, r, 23.0) for s, r in zip(stretches, parts, strict=True))
     return check_squares(fit) - squares
-
-
-def test_an_effect_that_acts_by_the_clock_may_be_the_tone_itself():
-    assert depends_on_time(EFFECTS["friction_drift"])
-    assert not depends_on_time(EFFECTS["transmission_compliance"])
-    assert not depends_on_time(EFFECTS["torque_ripple"])
-
-
-@pytest.mark.slow
-def test_no_pair_is_sought_where_a_tone_leaves_only_noise(rod, monkeypatch):
-    prepared, fit = rod
-    floor = NoiseFloor(0.01, "stated", drawn=0.01)
-    squares = check_squares(fit) * (floor.value / fit.check_error) ** 2
-    noise = Tone(fit.check_residual * floor.value / fit.check_error)
-    assert noise.squares == pytest.approx(squares)
-    assert is_a_tone(fit, Tone(1.5 * noise.residual), floor)
-    assert not is_a_tone(fit, Tone(2.5 * noise.residual), floor)
-    assert not is_a_tone(fit, Tone(), floor)
-
-    def searched(*_, **__):
-        raise AssertionError("a pair was sought")
-
-    monkeypatch.setattr(ladder_state, "rank_candidates", lambda base, *_, **__: Ranking(base, ()))
-    monkeypatch.setattr(climb, "add_two", searched)
-    with pytest.raises(AssertionError, match="sought"):
-        ladder.find_missing(prepared.experiment)
-    monkeypatch.setattr(ladder_state, "best_tone", lambda *_: noise)
-    diagnosis = ladder.find_missing(prepared.experiment)
-    assert diagnosis.verdict == "undecided" and diagnosis.missing == ()

@@ -54,33 +54,6 @@ def test_the_product_of_a_valley_is_estimated_whatever_the_units(scale):
     assert str(product) == "extra_static_level * stribeck_velocity^0.5"
 
 
-def test_parameters_at_a_bound_zero_unknown_or_angles_have_no_part_in_a_product():
-    def of(**changed):
-        return product_of(valley(**{**OPEN, **changed}), "device.stribeck")
-
-    assert of() is not None
-    assert of(extra_static_level=(0.0, 0.6)) is None
-    assert of(stribeck_velocity=(0.1, float("nan"))) is None
-    fit = valley(**OPEN)
-    fit.at_bound = ("device.stribeck.stribeck_velocity",)
-    assert product_of(fit, "device.stribeck") is None
-    assert product_of(valley(**OPEN), "device.coulomb") is None
-    angles = fitted(model("coulomb", "cogging"), "cogging")
-    assert "phase" not in str(product_of(angles, "device.cogging"))
-
-
-def test_a_parameter_that_hardly_counts_is_no_part_of_a_product():
-    """Of two that are known as well each alone there is no product that is known better."""
-    fit = fitted(model("coulomb", "stribeck", extra_static_level=(0.5, 1e-4)), "stribeck")
-    assert product_of(fit, "device.stribeck") is None
-
-
-def test_what_other_parameters_make_up_for_tells_no_product():
-    """Where coulomb's level does what both do, the speed alone is told by what is left."""
-    assert product_of(valley(little=0.3, **OPEN), "device.stribeck") is not None
-    assert product_of(valley(little=0.3, also=1e6, **OPEN), "device.stribeck") is None
-
-
 @pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (5.0, 1e3, 1e-3)])
 @pytest.mark.parametrize(("little", "is_known"), [(0.0, False), (1e-9, False), (1e-4, True)])
 def test_two_parameters_of_one_change_tell_no_product(little, is_known, scale):

@@ -7,12 +7,8 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.base.errors import ModelError
-from teleopdesign.blocks import Body, Value
-from teleopdesign.diagnose.effort import EFFORTS
-from teleopdesign.diagnose.estimates import correct_fit
+from teleopdesign.blocks import Body
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.ladder_state import LadderSearch
-from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.reading_error import (
     ReadingError,
     as_read,
@@ -20,7 +16,6 @@ from teleopdesign.diagnose.reading_error import (
     with_reading_error,
 )
 from teleopdesign.diagnose.simulated_course import (
-    Course,
     as_led,
     dead_times,
     grid,
@@ -157,18 +152,6 @@ def test_a_model_that_leaves_more_keeps_its_values_with_wider_errors(rod):
         assert before.stderr < after.stderr < 20 * before.stderr
 
 
-@pytest.mark.slow
-def test_a_correction_is_the_same_each_time_and_costs_next_to_no_fit(rod):
-    fit, prepared = rod
-    first, second = (
-        with_reading_error(fit, prepared, np.random.default_rng(1), adequate=always)
-        for _ in range(2)
-    )
-    assert first.model.parameters == second.model.parameters
-    assert first.model.parameters != fit.model.parameters
-    assert first.check_error == pytest.approx(fit.check_error, rel=0.02)
-
-
 def test_what_reading_moves_to_another_magnitude_is_not_corrected(rod, monkeypatch):
     rod_fit, prepared = rod
     far = np.where(np.arange(len(rod_fit.free)) == 0, 5.0, 0.01)  # the inertia, on a log scale
@@ -184,47 +167,6 @@ def test_what_reading_moves_to_another_magnitude_is_not_corrected(rod, monkeypat
         rod_fit, prepared, np.random.default_rng(1), adequate=lambda fit: fit is rod_fit
     )
     assert refused.model.parameters["device.coulomb.level"].value == level.value
-
-
-def test_a_shift_that_depends_on_the_values_is_followed_to_its_end(rod, monkeypatch):
-    """An estimate half way from the truth to 2: 1.5 where the truth is 1."""
-    fit, prepared = rod
-    name = "device.viscous.damping"
-    i = fit.free.index(name)
-    model = fit.model.with_values({name: Value(1.5, False, 0.01)})
-
-    def shifted(there, *_):
-        off = np.zeros(len(fit.free))
-        off[i] = 0.5 * (2.0 - there.model.parameters[name].value)
-        return ReadingError(shift=off, spread=0.01 + 0 * off)
-
-    monkeypatch.setattr("teleopdesign.diagnose.reading_error.reading_error", shifted)
-    start = replace(fit, model=model)
-    after = with_reading_error(start, prepared, np.random.default_rng(1), adequate=always)
-    # 1.5 -> 1.25 -> 1.125 -> 1.06 -> 1.03: four simulations
-    assert after.model.parameters[name].value == pytest.approx(1.0, abs=0.04)
-
-
-def test_what_cannot_be_simulated_is_left_as_it_is(rod, monkeypatch):
-    fit, prepared = rod
-
-    def refused(*_, **__):
-        raise ModelError("no equations")
-
-    monkeypatch.setattr("teleopdesign.diagnose.reading_error.simulated_course", refused)
-    same = with_reading_error(fit, prepared, np.random.default_rng(1), adequate=always)
-    assert same is fit
-
-
-@pytest.mark.parametrize("times", [1e3, 1e200, np.nan])
-def test_a_course_that_runs_away_says_nothing_of_readings(rod, monkeypatch, times):
-    fit, prepared = rod
-
-    def runs_away(body, motion, **_):
-        return Course(times * motion.position, times * motion.velocity, motion.command)
-
-    monkeypatch.setattr("teleopdesign.diagnose.reading_error.simulated_course", runs_away)
-    assert with_reading_error(fit, prepared, np.random.default_rng(1), adequate=always) is fit
 
 
 @pytest.mark.parametrize("effects", [(), ("tip_friction",)])
@@ -248,52 +190,6 @@ def test_what_is_simulated_is_what_the_residual_knows(rod, effects):
     assert np.std(left) < 0.011 * np.std(whole)
 
 
-@pytest.mark.parametrize(("times", "is_taken"), [(1.22, True), (1.23, False)])
-def test_a_correction_that_leaves_clearly_more_is_not_taken(rod, monkeypatch, times, is_taken):
-    """Half more of the squares, and no more: 1.2247 squared."""
-    rod_fit, prepared = rod
-    worse = replace(rod_fit, check_residual=times * rod_fit.check_residual)
-    calls = []
-
-    def ask(fit, *_, adequate):
-        calls.append(adequate(worse))
-        return fit
-
-    monkeypatch.setattr("teleopdesign.diagnose.estimates.with_reading_error", ask)
-    search = LadderSearch(prepared.experiment, prepared, prepared, rod_fit.model)
-    floor = noise_floor(rod_fit.model, prepared, np.random.default_rng(0))
-    correct_fit(search, rod_fit, floor)
-    assert calls == [is_taken]
-
-
-@pytest.mark.parametrize("falls", [False, True])
-def test_the_final_fit_has_its_interchangeable_parts_in_order(rod, monkeypatch, falls):
-    """Slipping springs, softest first: a fit of all samples may have changed their order.
-
-    Where friction falls with the speed, the first of them falls, and they are not interchangeable.
-    """
-    rod_fit, prepared = rod
-    model = rod_fit.model if falls else rod_fit.model.without_effect("stribeck")
-    level = model.parameters["device.coulomb.level"].value
-    values = {f"stiffness_{i}": k for i, k in enumerate((4e4, 1e4, 2e4, 8e4), 1)}
-    values |= {f"level_{i}": part * level for i, part in ((2, 0.4), (3, 0.2), (4, 0.2))}
-    mixed = estimate(
-        model.with_effect("maxwell_slip", values=values), prepared, effort=EFFORTS.stay
-    )
-    unread = "teleopdesign.diagnose.estimates.with_reading_error"
-    monkeypatch.setattr(unread, lambda fit, *_, **__: fit)
-    search = LadderSearch(prepared.experiment, prepared, prepared, mixed.model)
-    last = correct_fit(search, mixed, noise_floor(model, prepared, np.random.default_rng(0)))
-    names = [f"device.maxwell_slip.stiffness_{i}" for i in (1, 2, 3, 4)]
-    before, after = ([f.model.parameters[n] for n in names] for f in (mixed, last))
-    order = [0, 1, 2, 3] if falls else [1, 2, 0, 3]
-    assert [v.value for v in after] == pytest.approx([before[i].value for i in order])
-    # an element keeps its error; that of the first one depends on the others through the level
-    errors = [before[i].stderr for i in order]
-    assert [v.stderr for v in after] == pytest.approx(errors, rel=0.1)
-    assert last.fit_error == pytest.approx(mixed.fit_error, rel=1e-9)
-
-
 def test_a_right_model_leaves_only_its_sensors_errors_at_turns(rod):
     """Friction that balances is found where it counts: the simulated truth leaves no more."""
     rod_fit, prepared = rod
@@ -309,16 +205,3 @@ def test_a_right_model_leaves_only_its_sensors_errors_at_turns(rod):
     far = np.min(np.abs(read.keep[:, None] - turns[None, :]), axis=1) > 30
     # next to a turn less than twice of what is left far from one (4 with too few steps)
     assert np.std(left[moving & ~far]) < 2.0 * np.std(left[moving & far])
-
-
-@pytest.mark.slow
-def test_a_body_that_sticks_where_the_record_moved_says_nothing_of_its_readings(rod):
-    """Friction at rest above all forces, as a Stribeck fall far below the slowest motion has."""
-    fit, prepared = rod
-    body = fit.model.body("device").with_values({"coulomb.level": 1e3})
-    motion = prepared.of("fit")[0].motion
-    course = simulated_course(body, motion, deflection=0.1)
-    assert np.ptp(course.position) < 0.01 * np.ptp(motion.position)
-    assert not course.stays_near(motion)
-    stuck = replace(fit, model=fit.model.with_values({"device.coulomb.level": 1e3}))
-    assert reading_error(stuck, prepared, np.random.default_rng(0)) is None

@@ -9,11 +9,10 @@ import pytest
 import teleopdesign as td
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.error import force_error
-from teleopdesign.diagnose.error_at_command import refer_to_command
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.predictions import write_predictions
-from teleopdesign.diagnose.record_offsets import find_offsets, follow_records, offset_groups
-from teleopdesign.diagnose.residual import both_residuals, residuals
+from teleopdesign.diagnose.record_offsets import offset_groups
+from teleopdesign.diagnose.residual import residuals
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.show.diagnose.text import ladder_text
 
@@ -82,19 +81,6 @@ def test_a_zero_on_which_no_law_depends_changes_nothing(rod, model):
     assert "position_zero" in here.values
 
 
-def test_the_error_at_the_command_is_the_same_from_what_other_errors_computed(rod, model):
-    late = model.with_effect("actuator_lag", values={"time_constant": 5e-3})
-    check = prepare(changed(rod, {"bias"}, bias=BIAS)).of("check")
-    for one in (model, late):
-        along = follow_records(one, check)
-        known, anew = refer_to_command(one, check, along), refer_to_command(one, check)
-        assert known.error == anew.error > 0.0
-        np.testing.assert_array_equal(known.residual[0], anew.residual[0])
-        np.testing.assert_allclose(
-            both_residuals(one, check, along)[0][0], residuals(one, check)[0][0], rtol=1e-9
-        )
-
-
 def test_what_belongs_to_one_record_is_no_evidence_for_an_effect(rod, model):
     """The columns of a bias and of the level are zero on a record that has its own."""
     biased = model.with_effect("bias", values={"force": 0.01})
@@ -143,21 +129,3 @@ def test_experiment_files_declare_it(tmp_path):
     experiment = td.load_experiment(tmp_path)
     assert experiment.check_records[0].offset_names == {"bias", "friction_level"}
     assert experiment.fit_records[0].offset_names == frozenset()
-
-
-@pytest.mark.parametrize("beyond", ["from the start", "with the offset"])
-def test_a_motion_beyond_all_numbers_has_no_offset(rod, model, beyond):
-    """A candidate whose tip runs away left NaN; the least squares of its offset then failed."""
-    prepared = prepare(changed(rod, {"bias"}))
-    (stretch,) = prepared.of("check")
-    motion, rows = stretch.motion, len(stretch.keep)
-
-    def residual(body, there, k):
-        moved = not np.array_equal(there.interaction, motion.interaction)
-        return np.full(rows, np.nan if moved or beyond == "from the start" else 1.0)
-
-    offsets = find_offsets(model.body("device"), [motion], {"bias"}, residual)
-    assert offsets.values == {"bias": 0.0}
-    left = np.arange(float(rows))
-    ((cleared, tangent),) = offsets.cleared([(left, np.full((2, rows), np.inf))])
-    assert np.array_equal(cleared, left) and np.isinf(tangent).all()

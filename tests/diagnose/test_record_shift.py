@@ -13,13 +13,11 @@ from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.clock import with_late_starts, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.model_data import model_data, model_from
-from teleopdesign.diagnose.record_shift import RecordShift, shifts_of
+from teleopdesign.diagnose.record_shift import shifts_of
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
-from teleopdesign.fitted_checks import check_experiment
 from teleopdesign.measurement.prepare import prepare
-from teleopdesign.show.diagnose.text import ladder_text
 
 
 def shifted(experiment, rows):
@@ -219,7 +217,7 @@ def test_a_shift_that_raises_the_error_on_unseen_records_is_held_at_none(adequat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rows", [-1.36, -1.8])
+@pytest.mark.parametrize("rows", [-1.36])
 def test_a_shift_at_its_bound_that_a_dead_time_explains_better_is_no_clock(adequate, rows):
     """Part of it would leave little more than noise, and nothing would be looked for."""
     experiment = shifted(adequate, rows)
@@ -254,56 +252,6 @@ def test_a_delay_of_little_more_than_a_row_is_named(adequate):
     assert whole == pytest.approx(1.36 * late.records[0].sample_time, rel=0.02)
 
 
-def test_a_shift_that_was_held_is_estimated_again_where_it_pays(adequate):
-    experiment = shifted(adequate, 1.0)
-    free = fitted(experiment)
-    (place,) = free.model.bodies
-    none = free.model.with_record_shift({place: td.Value(0.0, fixed=True)})
-    held = estimate(none, prepare(experiment))
-    assert held.check_error > free.check_error
-    again = with_paying_shift(held, prepare(experiment))
-    assert again.check_error == pytest.approx(free.check_error, rel=1e-3)
-    assert rows_late(again, experiment)[0] == pytest.approx(1.0, abs=0.1)
-
-
-def beside(experiment, rows):
-    """Its records, beside joints whose logs are late by so many rows."""
-    return replace(prepare(experiment), late_beside=rows * experiment.records[0].sample_time)
-
-
-def test_a_held_shift_stays_where_it_is(adequate):
-    """The prior would move it to zero."""
-    free = fitted(adequate)
-    (place,) = free.model.bodies
-    row = adequate.records[0].sample_time
-    held = free.model.with_record_shift({place: td.Value(-0.4 * row, fixed=True)})
-    again = estimate(held, prepare(adequate))
-    assert rows_late(again, adequate)[0] == pytest.approx(-0.4, rel=1e-9)
-    assert rows_late(again, adequate)[1] > 0.0
-
-
-def test_a_log_has_the_shift_of_the_other_joints_where_less_is_left(adequate):
-    """The fit records say a row less than the check records."""
-    experiment = only_late(shifted(adequate, 0.5), -1.0, "fit")
-    free = fitted(experiment)
-    assert rows_late(free, experiment)[0] == pytest.approx(-0.5, abs=0.1)
-    held = with_paying_shift(free, beside(experiment, 0.5))
-    assert rows_late(held, experiment)[0] == pytest.approx(0.5, rel=1e-9)
-    assert held.check_error < free.check_error
-    (shift,) = shifts_of(held.model, prepare(experiment).stretches)
-    assert "0.5" in str(shift) and "rows late" in str(shift)
-    assert "as at the other joints" in str(shift)
-
-
-@pytest.mark.parametrize("others", [0.0, 0.5])
-def test_a_joint_whose_drive_is_late_keeps_the_shift_of_its_log(adequate, others):
-    experiment = shifted(adequate, -0.7)
-    kept = with_paying_shift(fitted(experiment), beside(experiment, others))
-    assert rows_late(kept, experiment)[0] == pytest.approx(-0.7, abs=0.1)
-    (shift,) = shifts_of(kept.model, prepare(experiment).stretches)
-    assert "as at the other joints" not in str(shift)
-
-
 def logged_late(experiment, rows):
     """The experiment whose log holds commands back by whole rows."""
     for _ in range(rows):
@@ -312,7 +260,7 @@ def logged_late(experiment, rows):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rows", [3, 9])
+@pytest.mark.parametrize("rows", [9])
 def test_a_log_that_is_many_rows_late_is_no_physics(adequate, plain, rows):
     """Nothing moves before its command: from a log in time the search ends in a poor fit."""
     experiment = logged_late(adequate, rows)
@@ -326,7 +274,7 @@ def test_a_log_that_is_many_rows_late_is_no_physics(adequate, plain, rows):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("effect", "rows"), [(None, 2), ("stribeck", 4)])
+@pytest.mark.parametrize(("effect", "rows"), [("stribeck", 4)])
 def test_what_is_missing_keeps_its_name_where_the_log_is_late(tmp_path, effect, rows):
     experiment = logged_late(td.load_experiment(write_simulated(tmp_path / "late", effect)), rows)
     diagnosis = td.find_missing(experiment, among=MISTAKEN)
@@ -377,53 +325,17 @@ def test_a_model_with_a_shift_is_written_and_read(plain):
 
 
 @pytest.mark.slow
-def test_the_answer_tells_the_shift_and_its_error(adequate):
-    late = shifted(adequate, 1.0)
-    diagnosis = td.find_missing(late, td.Model.from_experiment(late, FEW))
-    assert diagnosis.verdict == "model_adequate"
-    (shift,) = answer(diagnosis)["record_shift"].values()
-    row = late.records[0].sample_time
-    assert shift["value"] == pytest.approx(row, abs=0.05 * row)
-    assert shift["stderr"] < 0.05 * row
-    assert shift["unit"] == "s"
-    assert "rows late" in ladder_text(diagnosis)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("seed", "rows", "among"), [(11, -1.0, MISTAKEN), (12, 1.0, None), (13, 0.3, MISTAKEN)]
-)
+@pytest.mark.parametrize(("seed", "rows", "among"), [(12, 1.0, MISTAKEN), (13, 0.3, MISTAKEN)])
 def test_no_effect_is_named_for_a_logger_that_is_off(tmp_path, seed, rows, among):
     experiment = td.load_experiment(write_simulated(tmp_path / "null", None, seed=seed))
     assert not td.find_missing(shifted(experiment, rows), among=among).missing
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("effect", "rows"), [("stribeck", 1.0), ("cogging", -1.0), ("presliding", 1.0)]
-)
+@pytest.mark.parametrize(("effect", "rows"), [("cogging", -1.0), ("presliding", 1.0)])
 def test_an_effect_keeps_its_name_under_a_shift(tmp_path, effect, rows):
     folder = write_simulated(tmp_path / effect, effect)
     late = shifted(td.load_experiment(folder), rows)
     diagnosis = td.find_missing(late, among=(*FEW, *WAVES))
     named = [c.effect.name for c in diagnosis.missing]
     assert named == [e["effect"] for e in truth_of(folder)["effects"]]
-
-
-@pytest.mark.slow
-def test_a_check_of_the_recording_notes_what_a_diagnosis_estimates(adequate):
-    findings = check_experiment(shifted(adequate, 1.0))
-    (shift,) = [f for f in findings if f.topic == "time shift"]
-    assert shift.concern == "note"
-    assert "delay of the logger" in shift.sentence
-
-
-@pytest.mark.parametrize("measured", [False, True])
-@pytest.mark.parametrize(("late", "doubtful"), [(0.05, True), (0.02, False)])
-def test_a_log_that_is_late_by_the_most_that_is_searched_may_lack_an_effect(
-    late, doubtful, measured
-):
-    """A slip element, fitted by Dahl's law, seemed to be a log late by the whole 50 ms."""
-    shift = RecordShift("device", late, 1e-3, 1e-3, False, 0.05, measured)
-    assert ("an effect that the model lacks" in str(shift)) == doubtful
-    assert ("log is late" in str(shift)) == (not doubtful and not measured)

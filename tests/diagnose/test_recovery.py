@@ -8,7 +8,6 @@ from cases import make_case, write_case
 from diagnose.simulated_cases import FEW, truth_of, write_simulated
 
 from teleopdesign import Model, find_missing, load_experiment
-from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.effects import EFFECTS
 
@@ -34,7 +33,7 @@ def test_a_planted_effect_is_detected(diagnosis, stribeck_case):
     check_diagnosis(diagnosis, stribeck_case, "stribeck")
 
 
-@pytest.mark.parametrize("effect", ["coulomb", "presliding", "spring", "actuator_lag"])
+@pytest.mark.parametrize("effect", ["presliding", "actuator_lag"])
 def test_a_planted_effect_of_another_kind_is_detected(effect, tmp_path):
     folder = write_simulated(tmp_path / effect, effect)
     check_diagnosis(diagnosed(folder, FEW), folder, effect)
@@ -117,15 +116,6 @@ def test_starting_values_off_by_a_fifth_lead_to_the_same_fit(factor, experiment,
         assert off.parameters[name].value == pytest.approx(value.value, abs=0.1 * value.stderr)
 
 
-def test_an_effect_of_the_users_model_without_values_is_estimated(experiment, diagnosis):
-    """`stribeck = {}` in a model: the fit finds what a diagnosis finds that adds it."""
-    from teleopdesign import compare, fit
-
-    model = Model.from_experiment(experiment).with_effect("stribeck")
-    comparison = compare(fit(model, experiment), experiment)
-    assert comparison.check_error < 1.1 * diagnosis.rungs[1].check_error
-
-
 def test_a_fit_alone_gives_what_a_diagnosis_that_adds_nothing_gives(experiment):
     from teleopdesign import fit
 
@@ -137,22 +127,6 @@ def test_a_fit_alone_gives_what_a_diagnosis_that_adds_nothing_gives(experiment):
     # value and standard error of each, to the last digit: the same steps on the same draws
     assert alone.parameters == diagnosed.model.parameters
     assert alone.parameters != diagnosed.estimated.parameters
-
-
-def test_a_model_has_one_error_in_the_ladder_and_among_the_candidates(diagnosis):
-    document = answer(diagnosis)
-    candidates = {(c["effect"], c["at"]): c["check_error"] for c in document["candidates"]}
-    added = [row for row in document["ladder"] if row["added"]]
-    assert added
-    for row in added:
-        key = (row["added"]["effect"], row["added"]["at"])
-        assert candidates[key] == row["check_error"]
-
-
-@pytest.mark.slow  # a whole diagnosis again; golden/ holds its figures too
-def test_the_same_records_give_the_same_answer(experiment, diagnosis):
-    again = find_missing(experiment, Model.from_experiment(experiment, FEW))
-    assert answer(again) == answer(diagnosis)
 
 
 def test_parameters_carry_standard_errors_that_fit_their_distance_to_the_truth(
@@ -168,9 +142,3 @@ def test_parameters_carry_standard_errors_that_fit_their_distance_to_the_truth(
         assert math.isfinite(parameter.stderr) and parameter.stderr > 0
         # the stated error is that of noise; the method's own bias is within 3 % here
         assert abs(parameter.value - true) < 5 * parameter.stderr + 0.03 * abs(true)
-
-
-def test_errors_fall_along_the_ladder(diagnosis):
-    errors = [r.check_error for r in diagnosis.rungs]
-    assert np.all(np.diff(errors) < 0)
-    assert diagnosis.rungs[0].added is None

@@ -1,6 +1,5 @@
 """The residual where a motion is made again: noise differs from pass to pass, no missing force."""
 
-import json
 from dataclasses import replace
 
 import numpy as np
@@ -8,11 +7,8 @@ import pytest
 from diagnose.made_records import write_made
 
 from teleopdesign import Model, load_experiment
-from teleopdesign.base.codec import from_data, to_data
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.repeats import (
-    Repeatability,
-    _differences,
     repeatability,
 )
 from teleopdesign.measurement.prepare import prepare
@@ -94,25 +90,6 @@ def test_a_joint_beside_that_moves_otherwise_ends_the_comparison(tmp_path):
     assert repeatability(fit.model, prepared, beside=[[m] for m in others]) is None
 
 
-@pytest.mark.parametrize("way", [-1.0, 1e3])
-def test_axis_and_unit_do_not_matter(tmp_path, way):
-    fit, prepared, repeats = fitted(tmp_path, again)
-    motions = [s.motion for s in prepared.stretches]
-    turned = [replace(m, position=way * m.position, velocity=way * m.velocity) for m in motions]
-    assert repeatability(fit.model, prepared, beside=[[m] for m in turned]) == repeats
-
-
-def test_a_repeatability_returns_from_an_answer():
-    repeats = Repeatability(error=0.02, left=0.03, share=0.6, squares=0.7, chance=0.01)
-    content = json.loads(json.dumps(to_data(repeats, {})))
-    assert from_data(Repeatability, content, "repeats", {}) == repeats
-    assert str(repeats) == (
-        "2 % of the force differs from pass to pass over the same motion (60 % of the rows); "
-        "of 3 % left there, 2.2 % repeats"
-    )
-    assert str(replace(repeats, chance=0.025)).endswith("none surely repeats")
-
-
 def with_noise(prepared, size, seed):
     """The same records with other noise of this size (N m) in each command."""
     rng = np.random.default_rng(seed)
@@ -183,44 +160,3 @@ def test_another_force_of_the_hand_is_another_pass(tmp_path, gain, size):
     stretches = tuple(pushed(k, s) for k, s in enumerate(prepared.stretches))
     repeats = repeatability(fit.model, replace(prepared, stretches=stretches))
     assert (repeats is None) == (size > 0.0)
-
-
-@pytest.mark.parametrize("far", [0.0, 1e4, 1e7])
-def test_a_long_way_before_makes_no_other_place_the_same(far):
-    """Squares of a way of many turns are so large that rounding hid the small motion behind it."""
-    t = 0.02 * np.arange(6000)
-    begun = np.maximum(t - 40.0, 0.0)
-    w = 2 * np.pi / 2.4
-    small = 1e-3 * np.sin(w * begun) + 0.01 * begun  # never at the same place again
-    speed = np.where(t < 40.0, far, 1e-3 * w * np.cos(w * begun) + 0.01)
-    signals = np.array([small + far * np.minimum(t, 40.0), speed])
-    here = slice(4000, 4120)
-    apart = _differences(signals[:, here], signals, np.inf)
-    alike = np.flatnonzero(apart < 0.05**2)
-    assert 4000 in alike and np.all(np.abs(alike - 4000) < 5)
-
-
-@pytest.mark.parametrize("beyond", [np.inf, np.nan])
-def test_of_a_model_that_runs_away_nothing_is_stated(tmp_path, beyond, monkeypatch):
-    fit, prepared, repeats = fitted(tmp_path, again)
-    monkeypatch.setattr(
-        "teleopdesign.diagnose.repeats.residuals",
-        lambda _, stretches: [
-            (np.append(np.zeros(len(s.keep) - 1), beyond), None) for s in stretches
-        ],
-    )
-    assert repeats is not None and repeatability(fit.model, prepared) is None
-
-
-@pytest.mark.parametrize(("rise", "is_stated"), [(0.0, True), (0.02, True), (8.0, False)])
-def test_another_temperature_is_another_pass(tmp_path, rise, is_stated):
-    """rise: K/s, in the records one after the other"""
-    fit, prepared, repeats = fitted(tmp_path, again)
-
-    def warmed(k, s):
-        further = {"temperature": 20.0 + rise * (s.motion.time - s.motion.time[0] + k * LATER)}
-        return replace(s, motion=replace(s.motion, further=further))
-
-    stretches = tuple(warmed(k, s) for k, s in enumerate(prepared.stretches))
-    warm = repeatability(fit.model, replace(prepared, stretches=stretches))
-    assert warm == (repeats if is_stated else None)

@@ -44,11 +44,3 @@ def test_noise_that_is_stated_is_believed():
         assert sensor(one, readings(0.3)).noise == 0.01
         none = channel(quantity, noise=0.0, measured=measured)
         assert sensor(none, readings(0.3)).noise == 0.0, "none is a statement, too"
-
-
-def test_a_command_is_what_it_says_however_rough_it_is():
-    assert sensor(channel("actuator_force"), readings(0.3)).noise == 0.0
-
-
-def test_of_an_encoder_only_the_steps_are_stated():
-    assert sensor(channel("position", resolution=0.01), readings(0.3)).noise == 0.0

@@ -4,14 +4,10 @@ import json
 
 import pytest
 from shared_data import shared_folder
-from truth_effects import TEN
 
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.measurement.prepare import prepare
-
-#: with hidden states or many parameters, which imitate most of the ten
-IMITATORS = ("transmission_compliance", "maxwell_slip", "friction_memory", "torque_ripple")
 
 
 def one_body_cases():
@@ -38,55 +34,6 @@ def test_the_models_re_estimated_error_is_that_of_the_reference():
         if truth["level"] in ("clear", "weak") and not least < ratio < 1.05:
             far[truth["case"]] = ratio
     assert not far
-
-
-@pytest.mark.slow
-def test_nine_in_ten_single_effects_are_named_first():
-    right, wrong = 0, {}
-    for folder, truth in one_body_cases():
-        if truth["level"] not in ("clear", "weak") or truth["effects"][0]["effect"] not in TEN:
-            continue
-        true = truth["effects"][0]["effect"]
-        # what is weak is easily called something else: that is asked of the whole catalogue
-        among = None if truth["level"] == "weak" else (*TEN, *IMITATORS)
-        diagnosis = find_missing(load_experiment(folder), among=among)
-        group = {c.effect.name for g in diagnosis.groups[:1] for c in g}
-        first = {diagnosis.missing[0].effect.name} if diagnosis.missing else group
-        right += true in first
-        if true not in first:
-            wrong[truth["case"]] = (true, first)
-    assert right >= 0.9 * (right + len(wrong)), wrong
-
-
-@pytest.mark.slow
-def test_no_effect_is_named_where_nothing_is_missing():
-    nulls = [folder for folder, truth in one_body_cases() if truth["level"] == "null"]
-    assert nulls
-    assert {f.name: find_missing(load_experiment(f)).missing for f in nulls} == {
-        f.name: () for f in nulls
-    }
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "bound", "among"),
-    [
-        ("emps", 0.052, ("shear_thinning", "viscous_asymmetry", "coulomb_asymmetry", "bias")),
-        (
-            "psm_insertion",
-            0.225,
-            ("bias", "position_dependent_friction", "coulomb_asymmetry", "presliding", "stribeck"),
-        ),
-    ],
-    ids=["emps", "psm_insertion"],
-)
-def test_a_real_recording_is_explained_as_well_as_known(name, bound, among):
-    """Check errors that plain models of the same effects reach on these recordings.
-
-    Among a few effects that a drive may have: how well they explain is asked, not which they are.
-    """
-    diagnosis = find_missing(load_experiment(shared_folder("data") / name), among=among)
-    assert diagnosis.after.check_error <= bound
 
 
 #: of friction and of a drive: long records are searched for these alone

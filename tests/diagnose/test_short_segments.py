@@ -44,11 +44,3 @@ def test_a_refusal_says_that_pauses_cut_the_records():
     made = experiment(trials(0.5, 0.55), fit=[(0, 9)])
     with pytest.raises(ExperimentError, match="cut them into 2 segments, of which the longest las"):
         prepare(made, bandwidth=5.0)
-
-
-@pytest.mark.slow
-def test_a_check_record_of_short_segments_is_no_check():
-    """Its rows were listed as a check record, and the check error was that on other rows."""
-    made = experiment(trials(2.0, 0.5, 0.55), fit=[(0, 2.5)], check=[(2.5, 9)])
-    words = str(td.find_missing(made))
-    assert "2 of them" in words and "no check record counts: the check error is that" in words

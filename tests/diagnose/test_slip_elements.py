@@ -5,8 +5,6 @@ import pytest
 from diagnose.made_records import write_made
 
 from teleopdesign import Model, load_experiment
-from teleopdesign.blocks import Value
-from teleopdesign.diagnose.candidates import make_starts
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.search import base_of, estimate_from_starts
 from teleopdesign.measurement.prepare import prepare
@@ -62,22 +60,3 @@ def test_the_search_reaches_three_springs(fit):
     values = best.model.parameters
     for stiffness in STIFFNESS:
         assert min(abs(values[n].value / stiffness - 1.0) for n in NAMES) < 0.02
-
-
-def test_the_stiffnesses_start_in_proportion(fit):
-    base, prepared = fit
-    starts = make_starts(base.model.with_effect("maxwell_slip"), prepared.scales)
-    assert len(starts) == 10
-    for start in starts:
-        one, two, three, four = (start.parameters[n].value for n in NAMES)
-        assert two / one == pytest.approx(3.0) or two / one == pytest.approx(10.0)
-        assert (three / two, four / three) == pytest.approx((3.0, 3.0))
-
-
-def test_a_known_level_stays_as_it_is(fit):
-    base, prepared = fit
-    known = Value(0.4, fixed=True)
-    model = base.model.with_effect("maxwell_slip")
-    starts = make_starts(model.with_values({"device.maxwell_slip.level_2": known}), prepared.scales)
-    assert len(starts) == 10
-    assert {m.parameters["device.maxwell_slip.level_2"] for m in starts} == {known}

@@ -4,23 +4,19 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnose import stand_ins
 from diagnose.made_records import write_made
 
 import teleopdesign as td
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.noise_floor import NoiseFloor, noise_floor
+from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.rung import Rung
 from teleopdesign.diagnose.stand_in import (
-    acting_moments,
     estimable_on_all,
     stands_in_for_moments,
-    stands_in_for_readings,
     stands_in_for_values,
 )
 from teleopdesign.diagnose.stated_fit import estimate_stated
-from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model
 
@@ -88,51 +84,6 @@ def test_an_experiment_without_a_check_record_has_nothing_to_hold_an_effect_agai
     assert estimable_on_all(alone) is None
 
 
-@pytest.mark.parametrize("drag", [0.0, 0.3])
-def test_all_records_are_estimated_on_and_the_check_records_compared_on(tmp_path, drag):
-    prepared = prepare(experiment(tmp_path, drag=drag, speeds=(0.3, 2.5)))
-    together = estimable_on_all(prepared)
-    assert together is not None
-    files = [s.motion.file for s in together.of("fit")]
-    assert files == [s.motion.file for s in prepared.stretches]
-    assert together.of("check") == prepared.of("check")
-
-
-def sentence_on_readings(left, leaves, before=0.1, after=0.01, moments=40):
-    """moments: of 40, those at which the effect changes the residual"""
-    base, fit = (stand_ins.fit(x) for x in (left * before, leaves * after))
-    at_all = stand_ins.BLOCKS < moments
-    fit.check_residual = np.where(at_all, fit.check_residual, base.check_residual)
-    rung = SimpleNamespace(added=Candidate(EFFECTS["viscous"], "device"), fit=fit)
-    floors = [NoiseFloor(x, "made", x) for x in (before, after)]
-    return stands_in_for_readings(base, floors[0], rung, floors[1])
-
-
-def test_an_effect_that_weakens_readings_more_than_what_is_left_is_none():
-    """A tip behind a spring passes on a tenth of the noise, and a fifth of what was left."""
-    sentence = sentence_on_readings(1.5, 3.0)
-    assert "3 noise floors, 1.5 without it" in sentence.reason
-    assert sentence_on_readings(1.5, 1.1) is None, "less in noise floors, too"
-    assert sentence_on_readings(0.7, 1.5) is None, "noise only"
-    assert sentence_on_readings(1.5, 6.0, before=0.0) is None, "no noise is stated"
-    nothing = sentence_on_readings(1.5, 1e7, after=1e-9)
-    assert "leaves more than 1000 noise floors, 1.5 without it" in nothing.reason
-
-
-def test_where_more_than_noise_is_left_floors_say_nothing_of_an_effect():
-    """Friction of a cylinder took 42 to 10 % of the force, and its model had the smaller floor."""
-    assert sentence_on_readings(3.0, 6.0) is None
-    assert sentence_on_readings(27.0, 41.0) is None
-
-
-def test_where_the_readings_explain_what_is_left_an_effect_does_not_explain_it_by_weakening_them():
-    """A tip of 11 Hz passed on a quarter of a coarse encoder's noise, and was named."""
-    sentence = sentence_on_readings(1.15, 1.6, before=0.025, after=0.0065)
-    assert sentence is not None and sentence.of_readings
-    assert sentence_on_readings(1.5, 1.1, before=0.025, after=0.0065) is None, "surely fewer floors"
-    assert sentence_on_readings(1.15, 1.6, after=0.09) is None, "the readings count for as much"
-
-
 @pytest.mark.slow
 def test_an_adequate_model_gets_no_tip_for_the_steps_of_its_encoder(tmp_path):
     """Two sines at 500 Hz, steps of 0.1 mrad, next to no noise of the forces."""
@@ -165,13 +116,6 @@ def fits_of(falls):
     left = np.sqrt(np.repeat(np.asarray(falls, float), 5) / 5.0)
     base = SimpleNamespace(check_blocks=blocks, check_residual=left)
     return base, SimpleNamespace(check_residual=np.zeros(len(left)), check_error=0.1)
-
-
-@pytest.mark.parametrize(
-    "falls, moments", [([1] * 12, 12.0), ([1, 1, 0, 0, 1, 1], 4.0), ([3, 1], 1.6), ([0, 0], 0.0)]
-)
-def test_moments_at_which_an_effect_acts(falls, moments):
-    assert acting_moments(*fits_of(falls)) == pytest.approx(moments)
 
 
 @pytest.mark.parametrize("falls, is_few", [([1] * 6, True), ([1] * 7, False)])

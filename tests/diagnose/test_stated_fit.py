@@ -1,7 +1,5 @@
 """A fit of a model that is stated without values reaches the true values of its effects."""
 
-from dataclasses import replace
-
 import pytest
 from diagnose.simulated_cases import write_simulated
 
@@ -17,12 +15,6 @@ def anew(model, *names):
     for name in names:
         model = model.without_effect(name).with_effect(name)
     return model
-
-
-def first_second(record):
-    n = round(1.0 / record.sample_time)
-    signals = {name: y[:n] for name, y in record.signals.items()}
-    return replace(record, time=record.time[:n], signals=signals, segments=(slice(0, n),))
 
 
 @pytest.fixture(scope="module")
@@ -56,15 +48,3 @@ def test_values_and_what_is_held_stay_as_they_are_stated(lacking):
     held = td.Value(0.013, fixed=True)
     fit = estimate_stated(stated.with_values({name: held}), prepared)
     assert fit.model.parameters[name].value == 0.013 and name not in fit.free
-
-
-@pytest.mark.slow
-def test_what_an_effect_with_values_needs_stays_while_others_are_taken_out(lacking):
-    """Whatever the records say: the first second of each is enough."""
-    whole, model = lacking
-    records = tuple(map(first_second, whole.experiment.records))
-    prepared = prepare(replace(whole.experiment, records=records))
-    model = model.with_effect("presliding").with_effect("transmission_compliance")
-    model = model.with_effect("tip_friction", values={"level": 0.02})
-    fit = estimate_stated(model, prepared)
-    assert set(fit.model.effects) == set(model.effects)

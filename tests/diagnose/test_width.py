@@ -1,7 +1,5 @@
 """An essential parameter, as a width, counts as determined only if other values fit worse."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import sympy as sp
@@ -66,18 +64,6 @@ def test_a_width_is_determined_by_motion_beyond_it(tmp_path, speed, open_width):
         assert "rad/s fits as well as" in sentence and "do not determine it" in sentence
 
 
-def test_only_what_is_essential_and_free_is_asked(tmp_path):
-    fit, prepared = fit_at_truth(recorded(tmp_path, 0.1))
-    widths = OpenWidths(prepared)
-    parameters = {n: replace(p, search=FitSearch()) for n, p in EFFECT.parameters.items()}
-    plain = Candidate(replace(EFFECT, parameters=parameters), "device")
-    assert widths.explain(fit, plain) == ""
-    assert not widths.known  # nothing was fitted
-    held = replace(fit.model.parameters[OF_WIDTH], fixed=True)
-    fixed = estimate(fit.model.with_values({OF_WIDTH: held}), prepared)
-    assert widths.explain(fixed, Candidate(EFFECT, "device")) == ""
-
-
 def test_a_candidate_of_any_width_does_not_count(tmp_path):
     fit, prepared = fit_at_truth(recorded(tmp_path, 0.1))
     base = estimate(fit.model.without_effect(EFFECT.name, at="device"), prepared)
@@ -124,27 +110,3 @@ def test_a_width_is_held_at_a_quarter_and_at_four_times_its_value(ask_width):
         sentence, _ = ask_width(dict(zip((0.125, 2.0), scores, strict=True)))
         assert sentence.startswith(f"width = {other} rad/s fits as well as 0.5 rad/s")
     assert ask_width({0.125: 3.1, 2.0: 3.1})[0] == ""
-
-
-def test_a_width_beyond_its_bounds_is_not_asked(ask_width):
-    def within(lower, upper):
-        declared = replace(EFFECT.parameters["width"], lower=lower, upper=upper)
-        return replace(EFFECT, parameters={**EFFECT.parameters, "width": declared})
-
-    sentence, values = ask_width({2.0: 1.0}, within(0.2, 3.0))
-    assert sentence.startswith("width = 2 ") and [v.value for v in values] == [2.0]
-    sentence, values = ask_width({0.125: 9.0}, within(0.0, 1.0))
-    assert sentence == "" and [v.value for v in values] == [0.125]
-    assert ask_width({}, within(0.2, 1.0)) == ("", [])
-    assert ask_width({0.125: 1.0, 2.0: 1.0}, free=()) == ("", []), "it is fixed"
-
-
-def test_each_fit_is_asked_once(ask_width, monkeypatch):
-    monkeypatch.setattr(
-        module, "explain_open_width", lambda fit, *_, **__: calls.append(fit) or "open"
-    )
-    calls, widths = [], OpenWidths(None)
-    one, other = ScoredFit(None, ()), ScoredFit(None, ())
-    candidate = Candidate(EFFECT, "device")
-    assert [widths.explain(f, candidate) for f in (one, one, other, one)] == ["open"] * 4
-    assert calls == [one, other]

@@ -37,17 +37,6 @@ def test_a_planted_effect_is_distinguished_from_those_that_it_is_mistaken_for(ef
     assert named == {effect} or (not named and any(effect in group for group in alike))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("effect", MISTAKEN_FOR)
-def test_an_effect_is_not_named_where_one_that_it_is_mistaken_for_is_planted(effect, tmp_path):
-    other = MISTAKEN_FOR[effect][0]
-    diagnosis = diagnosed(write_simulated(tmp_path / other, other), effect)
-    assert effect not in {c.effect.name for c in diagnosis.missing}
-    assert other in {
-        c.effect.name for c in (*diagnosis.missing, *(g for gs in diagnosis.groups for g in gs))
-    }
-
-
 GEAR = {"has_tip": 1.0, "tip_inertia": 0.06, "tip_stiffness": 800.0, "tip_damping": 1.0}
 RUBBING = {"level": 0.2, "damping": 0.5}
 BELIEVED = "coulomb = { level = 0.3 }\nviscous = { damping = 0.5 }\ntransmission_compliance = {}"

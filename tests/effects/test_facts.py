@@ -1,10 +1,8 @@
 """What an effect holds its parameters against: records of one body, and elements that slip."""
 
 import numpy as np
-import pytest
 
 from teleopdesign.effects import RecordFacts
-from teleopdesign.effects._elements import softest_first
 from teleopdesign.effects._facts import speeds_vary_by_place
 
 TIME = np.linspace(0.0, 3.0, 3000)
@@ -34,13 +32,3 @@ def test_one_sine_tells_no_force_of_the_place_from_one_of_the_speed_two_sines_do
     both = {"places": np.tile(facts().places, 2)}
     both["speeds"] = np.r_[facts().speeds, 0.5 * facts().speeds]
     assert speeds_vary_by_place(np.cos, facts(**both)) is None
-
-
-def test_elements_are_ordered_by_stiffness_and_the_first_carries_the_rest():
-    parameters = {"stiffness_1": 9.0, "stiffness_2": 3.0, "stiffness_3": 27.0, "stiffness_4": 1.0}
-    parameters |= {"level_2": 0.2, "level_3": 0.3, "level_4": 1e-4}
-    values = softest_first(parameters, {"coulomb.level": 1.0})
-    # the first carries 1 - 0.2 - 0.3; the fourth carries next to nothing and comes last
-    assert [values[f"stiffness_{i}"] for i in (1, 2, 3, 4)] == [3.0, 9.0, 27.0, 1.0]
-    levels = [values[f"level_{i}"] for i in (2, 3, 4)]
-    assert levels == pytest.approx([0.4999, 0.3, 1e-4])

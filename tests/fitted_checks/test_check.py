@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from check.made_channels import ask
-from clock import takes_less_than
 from fitted_checks.asking import ask_fitted, disagreements
 from shared_data import shared_folder
 
@@ -202,21 +201,6 @@ def test_a_rich_record_shows_every_candidate_and_from_which_size(rod, few):
     assert findings["motion"].concern == "fine"
 
 
-def test_effects_that_can_be_shown_stand_in_rows_that_fit_the_terminal(rod, few, monkeypatch):
-    from teleopdesign.commands.check import text_of
-
-    finding = shows(rod, few)["what the record can show"]
-    count = len(finding.sentence.split("Can show\n")[1].split("\n")[0].split("), "))
-    for columns in ("100", "60", "40"):
-        monkeypatch.setenv("COLUMNS", columns)
-        lines = text_of([finding]).split("\n")
-        assert max(map(len, lines)) <= int(columns)
-        assert sum(f"{n} (" in " ".join(lines) for n in finding.numbers if n in few) > count
-    monkeypatch.setenv("COLUMNS", "100")
-    rows = [line for line in text_of([finding]).split("\n") if line.startswith(" " * 11)]
-    assert len(rows) > 1 and all(row.rstrip().endswith((",", ".")) for row in rows)
-
-
 def test_the_least_size_that_shows_is_where_the_error_reaches_the_bound(rod, few):
     """Planted at that size, an effect raises a fitted model's error to 1.8 noise floors."""
     from teleopdesign.diagnose.candidates import candidates
@@ -295,14 +279,6 @@ def test_an_effect_of_the_user_is_judged_like_any_other(rod, few, tmp_path):
     assert 0.0 < numbers["magnet"] < 0.1
 
 
-def test_a_limit_that_the_command_never_reaches_would_show_below_the_largest_command(rod):
-    known = {n: catalogue()[n] for n in ("coulomb", "viscous", "actuator_saturation")}
-    sentence = shows(rod, known)["what the record can show"].sentence
-    commands = np.abs(rod.records[0].signals["device.actuator_force"])
-    limit = float(sentence.split("actuator_saturation (limit below ")[1].split()[0])
-    assert 0.3 * commands.max() < limit < commands.max()
-
-
 # the whole, long records, the command
 
 
@@ -328,23 +304,6 @@ def test_a_long_record_is_judged_on_windows_of_itself(rod):
     assert excerpt(rod) is rod
 
 
-@pytest.mark.parametrize("length", [1000, 4500])
-def test_of_many_short_segments_every_nth_is_taken(rod, length):
-    (record, *_) = rod.records
-    rows = len(record.time) // length * length
-    repeated = {n: np.tile(v[:rows], 60) for n, v in record.signals.items()}
-    time = np.arange(60 * rows) * record.sample_time
-    pieces = tuple(slice(a, a + length) for a in range(0, 60 * rows, length))
-    long = replace(record, time=time, signals=repeated, segments=pieces)
-    short = excerpt(replace(rod, records=(long,)), most=60_000)
-    (selection,) = short.records
-    # a window of 4 s more or less
-    assert sum(s.stop - s.start for s in selection.segments) == pytest.approx(60_000, abs=4000)
-    starts = np.array([s.start for s in selection.segments])
-    assert starts[0] < 0.1 * len(time) and starts[-1] > 0.9 * len(time)
-    assert np.diff(starts).max() < 3 * np.diff(starts).min() + 2 * length
-
-
 def test_the_command_prints_findings_and_writes_them(tmp_path, capsys):
     path = tmp_path / "findings.json"
     assert main(["check", str(example("rod")), "--json", str(path)]) == 0
@@ -354,19 +313,6 @@ def test_the_command_prints_findings_and_writes_them(tmp_path, capsys):
     answer = json.loads(path.read_text())["findings"]
     assert {f["concern"] for f in answer} == {"note", "fine"}
     assert {f["topic"] for f in answer} >= {"sample clock", "signs and units", "motion"}
-
-
-def test_the_command_refuses_a_file_that_it_could_not_write(tmp_path, capsys):
-    assert main(["check", str(example("rod")), "--json", str(tmp_path / "no" / "f.json")]) == 2
-    assert "there is no folder" in capsys.readouterr().err
-
-
-@pytest.mark.benchmark
-@pytest.mark.slow
-def test_twenty_seconds_of_records_are_checked_within_two(rod):
-    check_experiment(rod)  # compiles
-    with takes_less_than(2.0):  # s; 0.8 were measured
-        check_experiment(rod)
 
 
 @pytest.mark.slow

@@ -30,8 +30,7 @@ def findings_with(experiment, quantity, moments):
     return [f for f in findings if f.topic in ("clock drift", "time shift")]
 
 
-@pytest.mark.parametrize("quantity", ["actuator_force", "position"])
-@pytest.mark.parametrize("rate", [-2e-3, 2e-3])
+@pytest.mark.parametrize(("quantity", "rate"), [("actuator_force", -2e-3), ("position", 2e-3)])
 def test_a_channel_with_another_clock_is_named_with_the_rate(rod, quantity, rate):
     (finding,) = findings_with(rod, quantity, lambda t: (1.0 + rate) * t)
     assert (finding.topic, finding.concern) == ("clock drift", "warning")

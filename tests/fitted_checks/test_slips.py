@@ -8,12 +8,9 @@ from check.made_channels import ask
 from fitted_checks.asking import disagreements
 
 import teleopdesign as td
-from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
-from teleopdesign.effects import EFFECTS, find_effect
 from teleopdesign.fitted_checks import check_experiment
 from teleopdesign.measurement.prepare import prepare
-from teleopdesign.measurement.repeated_rows import stuck_stretches
 from teleopdesign.model import Model
 
 
@@ -44,13 +41,6 @@ def test_position_and_force_that_are_swapped_are_named(rod):
     assert not ask("mixed_columns", rod)
     (finding,) = ask("mixed_columns", changed(rod, swapped))
     assert 'write column = "u" at channels.position' in finding.sentence
-
-
-def test_a_body_that_rests_at_a_reversal_is_not_stuck_but_a_sensor_that_leaps_is():
-    moving = np.cumsum(np.r_[np.full(50, 20.0), np.zeros(40), -np.linspace(0, 400, 60)[1:]])
-    assert stuck_stretches(moving, 1.0, "position") == []
-    leaping = np.cumsum(np.r_[np.full(50, 20.0), np.zeros(40), [800.0], np.full(30, 20.0)])
-    assert len(stuck_stretches(leaping, 1.0, "position")) == 1
 
 
 @pytest.mark.slow
@@ -107,19 +97,6 @@ def test_forces_of_another_scale_are_named_beside_first_values_that_are_guesses(
     rough = {"device.inertia": 1.2, "device.coulomb.level": 12.0, "device.viscous.damping": 0.02}
     (finding,) = disagreements(model.with_values(rough), prepared)
     assert finding.concern == "warning" and "a torque constant or a gear ratio" in finding.sentence
-
-
-@pytest.mark.parametrize(("word", "meant"), [("stiction", "stribeck"), ("LuGre", "presliding")])
-def test_other_names_of_the_field_suggest_the_effect(word, meant):
-    with pytest.raises(ModelError, match=f'did you mean "{meant}"'):
-        find_effect(word, EFFECTS)
-
-
-def test_a_file_of_the_folder_stands_for_it_and_a_lone_log_says_what_makes_one(tmp_path):
-    assert td.load_experiment(td.example("rod") / "fit.csv.gz").title
-    (tmp_path / "log.csv").write_text("t,x\n0,1\n")
-    with pytest.raises(td.ExperimentError, match="teleopdesign new .*log.csv"):
-        td.load_experiment(tmp_path / "log.csv")
 
 
 def test_columns_that_do_not_read_are_a_finding_where_the_log_tells_why(tmp_path, capsys, rod):

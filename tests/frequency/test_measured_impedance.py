@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 import pytest
-import xarray
 from devices import body
 
 from teleopdesign.controllers import controller
@@ -45,20 +44,6 @@ def test_phase_loss_over_a_decade_stays_below_its_bound(coulomb):
     spread = coulomb.spread()["phase"]
     assert float(spread.max()) < 54.9 + 0.3  # 0.3: the contact's give
     assert float(spread.max()) > 50
-
-
-def test_results_are_written_with_units(coulomb, tmp_path):
-    coulomb.to_netcdf(tmp_path / "map.nc")
-    with xarray.open_dataset(tmp_path / "map.nc") as read:
-        z = read["impedance_real"] + 1j * read["impedance_imaginary"]
-        np.testing.assert_array_equal(z.values, coulomb.data["impedance"].values)
-        assert read["impedance_real"].attrs["units"] == "N/m"
-    coulomb.to_json(tmp_path / "map.json")
-    read = json.loads((tmp_path / "map.json").read_text())
-    assert read["unit"] == "dB re 1 N/m"
-    np.testing.assert_allclose(
-        read["cases"]["haptic interface"]["size"], coulomb.decibel[0], rtol=1e-4
-    )
 
 
 def test_beyond_an_actuators_reach_there_is_no_number(coulomb, tmp_path):

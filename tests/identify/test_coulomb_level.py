@@ -1,6 +1,5 @@
 """The Coulomb level from runs at constant speed, on made records and on real ones."""
 
-import json
 import shutil
 
 import numpy as np
@@ -92,19 +91,6 @@ def test_runs_one_way_give_a_line_but_no_level(tmp_path):
 def test_a_record_without_steady_motion_says_so():
     with pytest.raises(ExperimentError, match="coulomb_level: no run of 2 s at a speed within 5 %"):
         coulomb_level(td.load_experiment(td.example("rod")), shortest=2.0)
-
-
-def test_results_are_written_with_units(levels, tmp_path):
-    levels.to_json(tmp_path / "level.json")
-    content = json.loads((tmp_path / "level.json").read_text())
-    assert content["coulomb_level"] == list(levels.level)
-    assert content["units"] == {"force": "N", "velocity": "m/s"}
-    assert len(content["runs"]) == len(levels.runs)
-    (axis,) = levels.plot().axes
-    assert (axis.get_xlabel(), axis.get_ylabel()) == (
-        "velocity (m/s)",
-        r"force that moves it (N)",
-    )
 
 
 @pytest.mark.slow

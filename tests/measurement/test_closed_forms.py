@@ -1,7 +1,6 @@
 """Numbers of the readers and their tools against closed formulas, and limits from both sides."""
 
 import datetime
-from math import pi
 
 import numpy as np
 import pytest
@@ -10,10 +9,7 @@ from hypothesis import strategies as st
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.measurement.conversion import Conversion
 from teleopdesign.measurement.files import content_digest, experiment_files
-from teleopdesign.measurement.filtering import spectrum
-from teleopdesign.measurement.first_guess import explain_force, explain_forces
 from teleopdesign.measurement.numbers_in_cells import numbers_of
 from teleopdesign.measurement.reversals import look_back_to_reversal, mark_reversals
 
@@ -49,105 +45,6 @@ def test_samples_near_a_reversal_are_those_within_so_many_of_it(signs, n):
 
 
 # columns
-
-
-def test_a_signal_is_the_sum_of_columns_times_scales_plus_offset_times_the_factor():
-    columns = {"a": np.array([1.0, 2.0]), "b": np.array([10.0, 30.0])}
-    both = Conversion(("a", "b"), (2.0, -0.5), offset=3.0, factor=4.0)
-    assert both.signal(columns).tolist() == [0.0, -32.0]
-    assert not both.is_plain and both.wraps(columns) == 0
-    plain = Conversion(("b",), (1.0,), factor=0.1)
-    assert plain.is_plain and plain.signal(columns).tolist() == [1.0, 3.0]
-    for other in ({"offset": 1.0}, {"period": 9.0}):
-        assert not Conversion(("b",), (1.0,), **other).is_plain
-    assert not Conversion(("b",), (2.0,)).is_plain
-
-
-def test_a_column_wraps_where_it_jumps_by_more_than_half_the_period():
-    x = np.array([0.0, 170.0, 350.0, 171.0, 350.0, 10.0, 200.0])
-    turned = Conversion(("x",), (1.0,), period=360.0)
-    # 180 is half a turn and no wrap; 340 and 190 are
-    assert turned.wraps({"x": x}) == 2
-    assert turned.signal({"x": x}).tolist() == [0.0, 170.0, 350.0, 171.0, 350.0, 370.0, 200.0]
-
-
-AXES = {"revolute": "N*m", "prismatic": "N"}
-CHANNELS = [
-    # axis, quantity, channel, what one unit of the column is in SI
-    ("revolute", "position", {"unit": "deg"}, pi / 180),
-    ("revolute", "position", {"unit": "deg", "gear_ratio": 50, "sign": -1}, -pi / 180 / 50),
-    ("revolute", "position", {"unit": "counts", "counts_per_turn": 4096}, 2 * pi / 4096),
-    ("prismatic", "position", {"unit": "counts", "count": {"value": 0.5, "unit": "um"}}, 5e-7),
-    ("prismatic", "position", {"unit": "mm", "scale": -3.0}, -3e-3),
-    (
-        "prismatic",
-        "position",
-        {"unit": "rad", "gear_ratio": {"value": 4.0, "unit": "rad/mm"}},
-        1e-3 / 4.0,
-    ),
-    (
-        "revolute",
-        "actuator_force",
-        {"unit": "A", "torque_constant": {"value": 37.0, "unit": "mN*m/A"}, "gear_ratio": 50},
-        0.037 * 50,
-    ),
-    (
-        "revolute",
-        "actuator_force",
-        {"unit": "mA", "torque_constant": {"value": -0.2, "unit": "N*m/A"}},
-        -2e-4,
-    ),
-]
-
-
-@pytest.mark.parametrize(("axis", "quantity", "channel", "unit"), CHANNELS)
-def test_one_unit_of_a_column_is_so_much_of_the_signal(axis, quantity, channel, unit):
-    t = np.arange(400) / 200.0
-    table = {"t": t, "x": np.sin(t), "y": np.cos(t)}
-    force = AXES[axis]
-    channels = {"position": {"column": "x", "unit": "m" if axis == "prismatic" else "rad"}}
-    channels["actuator_force"] = {"column": "y", "unit": force}
-    channels[quantity] = {"column": channels[quantity]["column"], **channel}
-    made = td.experiment(table, axis=axis, inertia=1.0, **channels)
-    signal = made.records[0].signals[f"device.{quantity}"]
-    assert signal == pytest.approx(unit * table[channels[quantity]["column"]], rel=1e-12)
-    if channel["unit"] == "counts":
-        assert made.channels[f"device.{quantity}"].resolution == pytest.approx(abs(unit))
-
-
-REFUSED = [
-    ({"unit": "counts"}, "what one count is"),
-    ({"unit": "counts", "counts_per_turn": 0}, "counts_per_turn"),
-    ({"unit": "rad", "counts_per_turn": 4096}, 'expected unit "counts"'),
-    ({"unit": "rad", "gear_ratio": 0}, "gear_ratio: found 0"),
-    ({"unit": "rad", "gear_ratio": -3}, "sign = -1"),
-    ({"unit": "rad", "sign": 2}, "expected 1 or -1"),
-    ({"unit": "rad", "scale": 0}, "other than 0"),
-    ({"unit": "rad", "scale": True}, "other than 0"),
-    ({"unit": "rad", "scale": [1.0, 2.0]}, "found 2 numbers, expected 1"),
-    ({"unit": "rad", "torque_constant": 0.1}, "expected on a force"),
-    ({"unit": "rad", "delay": {"value": 0.201, "unit": "s"}}, "at most 0.2 s"),
-    ({"unit": "rad", "delay": {"value": -201, "unit": "ms"}}, "at most 0.2 s"),
-    ({"unit": "counts", "counts_per_turn": 9, "unwrap": -1}, "unwrap"),
-    ({"unit": "counts", "count": {"value": 1, "unit": "rad"}, "unwrap": True}, "counter wraps"),
-    ({"column": ["x", "x"], "unit": "rad"}, "a column twice"),
-    ({"column": [], "unit": "rad"}, "names of columns"),
-    ({"column": ["x", " "], "unit": "rad"}, "names of columns"),
-]
-
-
-@pytest.mark.parametrize(("channel", "words"), REFUSED)
-def test_keys_that_do_not_suit_each_other_are_refused_in_words(channel, words):
-    t = np.arange(400) / 200.0
-    table = {"t": t, "x": np.sin(t), "y": np.cos(t)}
-    with pytest.raises(ExperimentError, match=words):
-        td.experiment(
-            table,
-            axis="revolute",
-            inertia=1.0,
-            position={"column": "x", **channel},
-            actuator_force={"column": "y", "unit": "N*m"},
-        )
 
 
 @pytest.mark.parametrize("delay", [0.2, -0.2])
@@ -240,80 +137,7 @@ def test_the_files_of_a_bag_count_one_by_one(tmp_path):
 # filters of a spectrum, at a sine that they know
 
 
-H = 0.002
-TIME = H * np.arange(4000)
-INNER = slice(1000, -1000)
-
-
-@pytest.mark.parametrize("f", [3.0, 20.0])
-def test_filters_do_to_a_sine_what_their_formulas_say(f):
-    s, w = spectrum(len(TIME), H), 2 * pi * f
-    y = np.sin(w * TIME)
-    assert s.multiply(y, s.derivative(1))[INNER] == pytest.approx(
-        w * np.cos(w * TIME)[INNER], abs=1e-3 * w
-    )
-    assert s.multiply(y, s.derivative(2))[INNER] == pytest.approx(
-        -(w**2) * y[INNER], abs=1e-3 * w**2
-    )
-    ahead = s.multiply(y, s.ahead(0.007))
-    assert ahead[INNER] == pytest.approx(np.sin(w * (TIME + 0.007))[INNER], abs=1e-3)
-    assert s.ahead(0.0) == 1.0
-    # forward and backward, of order 4: the square of a Butterworth gain on warped frequencies
-    ratio = np.tan(pi * f * H) / np.tan(pi * 20.0 * H)
-    low = s.multiply(y, s.lowpass(20.0))
-    assert low[INNER] == pytest.approx(y[INNER] / (1 + ratio**8), abs=1e-3)
-    slow = s.multiply(y, s.lowpass(20.0, order=2))
-    assert slow[INNER] == pytest.approx(y[INNER] / (1 + ratio**4), abs=1e-3)
-
-
-@pytest.mark.parametrize(("parts", "which"), [(1, 0), (2, 0), (2, 1), (4, 3)])
-def test_a_held_sine_is_late_and_weaker_by_the_part_of_the_row_in_which_it_is_held(parts, which):
-    f = 20.0
-    s, w = spectrum(len(TIME), H), 2 * pi * f
-    held = s.multiply(np.sin(w * TIME), s.hold(parts, which))
-    part = H / parts
-    gain = np.sin(w * part / 2) / (w * part / 2) / parts
-    late = part * (which + 0.5)
-    assert held[INNER] == pytest.approx(gain * np.sin(w * (TIME - late))[INNER], abs=1e-3)
-
-
 # first values
-
-
-def swing():
-    x = np.sin(2 * pi * 0.7 * TIME) + 0.3 * np.sin(2 * pi * 1.9 * TIME)
-    s = spectrum(len(TIME), H)
-    v, a = (s.multiply(x, s.derivative(n)) for n in (1, 2))
-    return x, v, a
-
-
-def test_inertia_level_and_damping_are_read_off_a_force_that_they_make():
-    x, v, a = swing()
-    force = 0.2 * a + 0.7 * np.sign(v) + 0.05 * v + 3.0
-    guess = explain_force(force, x, H)
-    assert (guess.inertia, guess.level) == (
-        pytest.approx(0.2, rel=0.01),
-        pytest.approx(0.7, rel=0.02),
-    )
-    assert guess.damping == pytest.approx(0.05, abs=0.01)
-    assert guess.explained > 0.999 and guess.left < 0.02
-    noise = 0.5 * np.random.default_rng(1).standard_normal(len(force))
-    more = explain_force(force + noise, x, H)
-    off = np.array([more.inertia - 0.2, more.level - 0.7, more.damping - 0.05])
-    assert np.all(np.abs(off) < 4 * np.array(more.errors)) and more.left > 2 * guess.left
-    twice = explain_forces([(force, x), (force, x)], H)
-    assert twice.inertia == pytest.approx(guess.inertia) and twice.left == pytest.approx(guess.left)
-    assert np.array(twice.errors) == pytest.approx(np.array(guess.errors) / 2**0.5)
-
-
-def test_of_too_short_or_endless_readings_no_first_value_is_read():
-    x, _, a = swing()
-    trim = round(0.25 / H)
-    for force, position in ((a[: 4 * trim - 1], x[: 4 * trim - 1]), (1e200 * a, x)):
-        guess = explain_force(force, position, H)
-        values = (guess.inertia, guess.level, guess.damping, guess.explained, guess.left)
-        assert values == (0.0,) * 5 and np.isinf(guess.errors).all()
-    assert explain_force(a[: 4 * trim], x[: 4 * trim], H).inertia == pytest.approx(1.0, rel=0.2)
 
 
 # how short a record may be, and how uneven
@@ -340,17 +164,3 @@ def test_five_lost_rows_are_filled_and_six_are_a_pause(lost, stretches):
     record = read(t)
     assert len(record.segments) == stretches
     assert len(record.time) == (300 if stretches == 1 else 300 - lost)
-
-
-@pytest.mark.parametrize(("force", "position"), [("s", "rad"), ("N*m", "A"), ("A", "rad")])
-def test_a_constant_of_a_motor_is_asked_for_beside_a_current_that_is_a_force(force, position):
-    t = np.arange(400) / 200.0
-    with pytest.raises(ExperimentError) as refused:
-        td.experiment(
-            {"t": t, "x": np.sin(t), "y": np.cos(t)},
-            axis="revolute",
-            inertia=1.0,
-            position={"column": "x", "unit": position},
-            actuator_force={"column": "y", "unit": force},
-        )
-    assert ("torque_constant" in str(refused.value)) == (force == "A")

@@ -1,6 +1,5 @@
 """Published files become tables: which column, with which factor and digits; no network is used."""
 
-import gzip
 import hashlib
 from dataclasses import replace
 
@@ -9,92 +8,6 @@ import pytest
 
 from teleopdesign.measurement import load_experiment, recordings
 from teleopdesign.measurement.recordings import RECORDINGS, fetch
-
-ROWS = 5
-
-
-def written(folder):
-    """Each table in a folder: header, rows, digits after the points of its cells."""
-    tables = {}
-    for path in sorted(folder.glob("*.csv.gz")):
-        with gzip.open(path, "rt") as file:
-            cells = [line.strip().split(",") for line in file]
-        digits = [len(c.partition(".")[2]) for c in cells[1]]
-        tables[path.name] = (cells[0], np.array(cells[1:], dtype=float).T, digits)
-    return tables
-
-
-def test_emps_has_the_force_of_voltage_and_gain_at_a_kilohertz(tmp_path):
-    from scipy.io import savemat
-
-    volt, place = np.linspace(-1, 2, ROWS), np.linspace(0.1, 0.2, ROWS)
-    content = {"qm": place[:, None], "qg": place[:, None] + 0.01, "vir": volt[:, None]}
-    raw = [tmp_path / "a.mat", tmp_path / "b.mat"]
-    savemat(raw[0], content | {"gtau": 35.15})
-    savemat(raw[1], content | {"gtau": 35.15, "pulses_N": 9.0 * np.arange(ROWS)[:, None]})
-    RECORDINGS["emps"].convert(raw, tmp_path)
-    tables = written(tmp_path)
-    assert list(tables) == ["emps_estimation.csv.gz", "emps_pulses.csv.gz"]
-    header, columns, digits = tables["emps_estimation.csv.gz"]
-    assert header == ["time_s", "position_m", "force_N", "reference_m"]
-    assert digits == [3, 8, 6, 8]
-    expected = [0.001 * np.arange(ROWS), place, 35.15 * volt, place + 0.01]
-    assert columns == pytest.approx(np.array(expected), abs=1e-6)
-    header, columns, digits = tables["emps_pulses.csv.gz"]
-    assert header[-1] == "pulse_flag" and digits == [3, 8, 6, 8, 0]
-    assert columns[-1].tolist() == (9.0 * np.arange(ROWS)).tolist()
-    assert columns[:-1] == pytest.approx(np.array(expected), abs=1e-6)
-
-
-def test_hsm150_has_the_columns_that_its_authors_list(tmp_path):
-    from scipy.io import savemat
-
-    data = np.arange(ROWS)[:, None] + 0.1 * np.arange(6)
-    savemat(tmp_path / "idf_pos_0.065_1.mat", {"data": data})
-    RECORDINGS["hsm150"].convert([tmp_path / "idf_pos_0.065_1.mat"], tmp_path)
-    ((name, (header, columns, digits)),) = written(tmp_path).items()
-    assert name == "hsm150_pos_0p065_1.csv.gz"
-    assert header == [
-        *("time_s", "position_rad", "velocity_rad_per_s", "torque_Nm", "torque_measured_Nm")
-    ]
-    assert columns == pytest.approx(data[:, [0, 2, 3, 4, 5]].T)
-    assert digits == [3, 6, 6, 6, 5]
-
-
-def test_mtm_wrist_has_rows_at_200_hz(tmp_path):
-    data = np.arange(ROWS)[:, None] + 0.1 * np.arange(4)
-    np.savetxt(tmp_path / "raw.csv", data, delimiter=",")
-    RECORDINGS["mtm_wrist"].convert([tmp_path / "raw.csv"], tmp_path)
-    ((name, (header, columns, digits)),) = written(tmp_path).items()
-    assert name == "mtm_joint4_sweep.csv.gz"
-    assert header == ["time_s", "position_rad", "velocity_rad_per_s", "torque_Nm"]
-    assert columns == pytest.approx(np.vstack([np.arange(ROWS) / 200.0, data[:, :3].T]))
-    assert digits == [3, 7, 6, 6]
-
-
-def test_psm_insertion_is_joint_three_from_its_second_second_on(tmp_path):
-    raw, expected = [], {}
-    for kind in ("result", "command"):
-        for k in range(3):
-            rows = np.arange(100 + ROWS)[:, None] + 0.1 * np.arange(9) + 1000.0 * k
-            # a command has a row for each joint, and goes on longer than the measurement
-            table = rows if kind == "result" else -np.vstack([rows, rows]).T[:4]
-            path = tmp_path / f"{kind}{k}.csv"
-            np.savetxt(path, table, delimiter=",")
-            raw.append(path)
-            expected[k] = expected.get(k, []) + [table]
-    RECORDINGS["psm_insertion"].convert(raw, tmp_path)
-    tables = written(tmp_path)
-    assert list(tables) == [f"psm1_fourier{k}.csv.gz" for k in (1, 2, 3)]
-    for k, (header, columns, digits) in enumerate(tables.values()):
-        measured, command = expected[k]
-        assert header == [
-            *("time_s", "position_m", "velocity_m_per_s", "force_N", "position_command_m")
-        ]
-        assert columns[0] == pytest.approx(0.01 * np.arange(ROWS))
-        assert columns[1:4] == pytest.approx(measured[100:, [2, 5, 8]].T)
-        assert columns[4] == pytest.approx(command[2, 100 : 100 + ROWS])
-        assert digits == [3, 7, 6, 6, 6]
 
 
 @pytest.fixture

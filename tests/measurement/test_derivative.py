@@ -7,9 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.measurement.first_guess import (
-    motion_columns,
-)
 from teleopdesign.measurement.survey.derivative import (
     derivative_factor,
     follows_direction,
@@ -80,18 +77,6 @@ def test_a_column_that_swings_steps_or_rests_does_not_wrap():
         assert unwrap_column(x, None) is x
 
 
-def test_jumps_of_two_lengths_are_no_wrap():
-    x = np.mod(360.0 * 0.4 * T, 360.0)
-    x[2000:] *= 0.8
-    assert wrap_of(x) is None
-
-
-def test_what_goes_further_than_its_jumps_does_not_wrap():
-    x = np.mod(360.0 * 0.4 * T, 360.0)
-    assert wrap_of(x) == 360.0
-    assert wrap_of(x + 7.0 * T) is None
-
-
 @given(factor=st.floats(0.01, 100.0), sign=st.sampled_from([1, -1]), offset=st.floats(-5, 5))
 @settings(max_examples=20)
 def test_a_velocity_in_any_unit_is_a_factor_times_the_derivative(factor, sign, offset):
@@ -99,22 +84,6 @@ def test_a_velocity_in_any_unit_is_a_factor_times_the_derivative(factor, sign, o
     estimate, alike = derivative_factor(3.0 + SWING, v, H)
     assert estimate == pytest.approx(sign * factor, rel=1e-3)
     assert alike == pytest.approx(sign, abs=1e-4)
-
-
-def test_how_much_a_column_is_the_derivative_is_its_correlation():
-    rate = rate_of(SWING)
-    other = np.cos(2 * np.pi * 0.97 * T)
-    other -= (other @ rate) / (rate @ rate) * rate
-    other *= np.linalg.norm(rate) / np.linalg.norm(other)
-    factor, alike = derivative_factor(SWING, rate + other, H)
-    assert factor == pytest.approx(1.0, abs=0.02) and alike == pytest.approx(2**-0.5, abs=0.02)
-    assert abs(derivative_factor(SWING, other, H)[1]) < 0.03
-    assert abs(derivative_factor(SWING, SWING, H)[1]) < 0.1, "a place is not its own rate"
-    # of what stands still nothing is the rate
-    assert abs(derivative_factor(np.ones(4000), rate, H)[1]) < 0.1
-    assert abs(derivative_factor(SWING, np.ones(4000), H)[1]) < 0.1
-    assert derivative_factor(np.zeros(4000), rate, H) == (0.0, 0.0)
-    assert derivative_factor(SWING, np.zeros(4000), H) == (0.0, 0.0)
 
 
 def test_noise_above_the_motion_does_not_hide_a_derivative():
@@ -131,18 +100,6 @@ def test_friction_follows_the_direction_and_a_tachometer_the_speed(sign, size):
     assert not follows_direction(SWING, size * rate, H)
     mixed = [follows_direction(SWING, size * (np.sign(rate) + k * rate), H) for k in (0.05, 5.0)]
     assert mixed == [True, False]
-
-
-def test_the_columns_of_a_motion_are_its_rates_and_its_direction():
-    v, a, direction = motion_columns(SWING, H)
-    inner = slice(300, -300)
-    assert v[inner] == pytest.approx(rate_of(SWING)[inner], abs=0.02)
-    assert a[inner] == pytest.approx(rate_of(SWING, 2)[inner], abs=0.5)
-    # low-passed at 4 Hz, a fiftieth of the rows: the direction is whole away from its turns
-    away = np.abs(v[inner]) > 0.5 * np.abs(v).max()
-    assert direction[inner][away] == pytest.approx(np.sign(v[inner])[away], abs=0.3)
-    for none in motion_columns(np.ones(400), H):
-        assert np.abs(none).max() < 1e-9
 
 
 def test_dry_friction_beside_a_large_force_is_no_velocity():

@@ -15,8 +15,8 @@ from scipy.io import savemat
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.column_names import bare_name, unit_in_name
 from teleopdesign.measurement.doors import _stray_lines, text
-from teleopdesign.measurement.doors._cells import is_number, stamps_in_texts, stamps_of
-from teleopdesign.measurement.doors._log import LONGEST_NAME, join_names, part, parts_of
+from teleopdesign.measurement.doors._cells import is_number
+from teleopdesign.measurement.doors._log import LONGEST_NAME
 from teleopdesign.measurement.doors.text import open_text
 from teleopdesign.measurement.tables import open_log, read_columns
 
@@ -87,21 +87,6 @@ def test_every_dialect_gives_the_same_numbers(tmp_path, separator, comma, encodi
     path.write_text(text.replace(".", ",") if comma else text, encoding=encoding)
     columns = read_columns(path, "log.csv", {"t": "", "Weg": "", "Kraft": ""}).values
     assert np.array_equal(np.column_stack(list(columns.values())), table)
-
-
-@pytest.mark.parametrize(
-    "cells",
-    [
-        ["2026-11-22T18:00:00.5", "2026-11-22T18:00:01.0"],
-        ["2026-11-22 18:00:00.5Z", "2026-11-22 18:00:01Z"],
-        ["22.11.2026 18:00:00,5", "22.11.2026 18:00:01,0"],
-        ["18:00:00.5", "18:00:01.0"],
-    ],
-)
-def test_dates_and_times_of_day_are_seconds(cells):
-    stamps = stamps_of(cells)
-    assert stamps is not None
-    assert np.diff(stamps) == pytest.approx([0.5])
 
 
 @given(content=st.binary(max_size=300))
@@ -234,76 +219,3 @@ def test_a_matrix_of_no_known_class_or_size_is_refused_before_it_is_read(tmp_pat
             assert str(problem)
     path.write_bytes(content.replace(b"\x06\0\0\0\x08\0\0\0\x06", b"\x06\0\0\0\x08\0\0\0\xfe", 1))
     assert "a matrix of class 254" in refused(path, "x")
-
-
-@pytest.mark.parametrize(
-    ("shape", "columns"),
-    [
-        ((50,), {"x": ("x", None)}),
-        ((50, 1), {"x": ("x", None)}),
-        ((1, 50), {"x": ("x", None)}),
-        ((50, 2), {"x(:,1)": ("x", 0), "x(:,2)": ("x", 1)}),
-        ((2, 50), {}),  # rows beside each other: which way they lie is open
-        ((3, 3), {}),
-        ((2000, 1001), {}),
-        ((50, 2, 2), {}),
-        ((1, 1), {}),
-        ((), {}),
-    ],
-)
-def test_vectors_and_tall_matrices_are_columns_and_nothing_else(shape, columns):
-    assert parts_of("x", shape) == columns
-    values = np.arange(np.prod(shape, dtype=int)).reshape(shape)
-    for which, (_, column) in enumerate(columns.values()):
-        read = part(values, column)
-        assert read.shape == (max(shape),) and read[1] == len(columns) + which
-
-
-def test_of_many_names_the_first_twenty_are_reported():
-    for many in (0, 1, 19, 20, 21, 50):
-        names = [f"n{k}" for k in range(many)]
-        parts = join_names(iter(names)).split(", ")
-        assert parts == ([*names[:20], "..."] if many > 20 else names if names else [""])
-
-
-@pytest.mark.parametrize(
-    ("cells", "seconds"),
-    [
-        (["12:00:00"], [0.0]),
-        (["", None, "12:00:01", "12:00:03.5"], [np.nan, np.nan, 0.0, 2.5]),
-        (["12:00:00", 5.0], None),  # one of them is none
-        ([5.0, "12:00:00"], None),
-        (["", None], None),
-        ([], None),
-        (["late", "12:00:00"], None),
-        (["12:00:00", "late"], None),
-    ],
-)
-def test_cells_are_stamps_where_each_that_is_filled_is_one(cells, seconds):
-    read = stamps_in_texts(cells)
-    if seconds is None:
-        assert read is None
-    else:
-        read = read - np.nanmin(read)
-        np.testing.assert_allclose(read, seconds)
-
-
-@pytest.mark.parametrize("width", [2, 3, 5])
-@pytest.mark.parametrize("more", [0, 1, 2])
-def test_names_of_columns_that_are_never_filled_are_left_off(tmp_path, width, more):
-    names = ["t", "x", "u", "f", "g"][:width]
-    path = tmp_path / "log.csv"
-    head = ",".join([*names, *["Comment", "Remark"][:more]])
-    rows = "".join(",".join(f"{k + 0.5 * j}" for j in range(width)) + "\n" for k in range(100))
-    path.write_text(f"{head}\n{rows}")
-    assert open_text(path, "log.csv").names == tuple(names)
-
-
-@pytest.mark.parametrize(("length", "fits"), [(1000, True), (1001, False)])
-def test_a_name_has_a_thousand_characters_at_most(tmp_path, length, fits):
-    path, name = tmp_path / "log.csv", "x" * length
-    path.write_text(f"t,{name}\n" + "".join(f"{k},{k * k}\n" for k in range(200)))
-    if fits:
-        assert open_log(path, "log.csv").names == ("t", name)
-    else:
-        assert "characters, expected at most 1000" in refused(path, "t")

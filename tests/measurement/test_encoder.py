@@ -103,22 +103,3 @@ def test_of_readings_that_are_held_one_each_counts():
     jitter = sampling_jitter(read, 0.0, 5 * H)
     assert jitter == pytest.approx(2e-4, rel=0.3)
     assert sampling_jitter(np.repeat(read, 5), 0.0, H) == pytest.approx(jitter, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("changes", "odd", "period"), [(51, 0, 4), (50, 0, 1), (60, 2, 4), (60, 3, 1)]
-)
-def test_a_period_is_shown_by_fifty_steps_between_changes_of_which_nine_tenths_fit(
-    changes, odd, period
-):
-    rows = 4 * np.arange(1, changes + 1)
-    rows[3 : 3 + 2 * odd : 2] += 1  # each spoils the step before and behind
-    x = np.cumsum(np.isin(np.arange(4 * changes + 8), rows))
-    assert update_period(x.astype(float)) == period
-
-
-@pytest.mark.parametrize(("rows", "tells"), [(8 * 64 - 1, False), (8 * 64, True)])
-def test_eight_pieces_of_64_rows_tell_a_jitter(rows, tells):
-    rng = np.random.default_rng(2)
-    read = np.sin(2 * np.pi * 0.7 * (T + 1e-4 * rng.standard_normal(len(T)))[:rows])
-    assert (sampling_jitter(read, 0.0, H) > 0.0) == tells

@@ -50,13 +50,6 @@ def test_an_experiment_knows_its_records_and_model(rod):
         experiment.axis("slave")
 
 
-def test_a_reader_sees_what_an_experiment_holds(rod):
-    text = repr(load_experiment(rod))
-    for part in ("Vertical rod", "prismatic", "position in m", "150 samples, 1.5 s at 100 Hz"):
-        assert part in text
-    assert "None" not in text, "what is not there is not printed"
-
-
 def test_one_column_is_scaled_and_moved_as_its_channel_says(rod, edit):
     before = load_experiment(rod).records[0].signals["device.position"]
     edit(rod / "experiment.toml", 'unit = "mm", ', 'unit = "mm", scale = -2, offset = 3, ')

@@ -14,7 +14,6 @@ from teleopdesign.measurement.resample import (
     filling_error,
     interpolate_by_rule,
 )
-from teleopdesign.measurement.signals_of_log import _restore_steps, rule_of
 from teleopdesign.measurement.tables import LogColumns
 
 H = 0.01
@@ -63,15 +62,6 @@ def test_steps_of_an_encoder_are_filled_by_steps(step):
     assert error == pytest.approx(step * 4 / 3, rel=1e-9)
 
 
-def test_what_lies_beside_a_gap_or_an_end_tells_no_error():
-    assert np.isnan(filling_error(np.arange(4.0), clock_of(np.arange(4)), "line", step=0.0))
-    assert np.isnan(filling_error(np.arange(6.0), clock_of([0, 1, 2, 4, 5, 6]), "line", step=0.0))
-    # the leap between two stretches is in neither
-    x = np.r_[np.zeros(20), np.full(20, 50.0)]
-    halves = (slice(0, 20), slice(20, 40))
-    assert filling_error(x, clock_of(np.arange(40), halves), "line", step=0.0) == 0.0
-
-
 @given(
     gaps=st.lists(st.integers(1, 8), min_size=2, max_size=20),
     begin=st.integers(-6, 6),
@@ -117,26 +107,6 @@ def test_a_record_fills_each_signal_by_its_rule_and_says_by_how_much_that_errs(s
     assert f"adds at most {100 * note.size:.2g} % of the force" in note.effect
 
 
-@pytest.mark.parametrize(
-    ("quantity", "values", "rule"),
-    [
-        ("position", [0.0, 1.0, 2.0], "position"),
-        ("actuator_force", [0.1, 0.25, 0.7], "held"),
-        ("interaction_force", [0.0, 1.0, 2.0], "line"),
-        ("velocity", [0.0, 1.0, 2.0], "line"),
-        ("other_position", [0.0, 1.0, 2.0], "held"),
-        ("temperature", [20.0, 21.0, 22.0], "held"),
-        ("temperature", [20.1, 20.2, 20.3], "line"),
-        ("temperature", np.arange(200.0), "line"),
-    ],
-)
-def test_between_rows_states_are_held_and_what_is_measured_goes_along_a_line(
-    quantity, values, rule
-):
-    channel = Channel(quantity, "device", "x", "1", None, None)
-    assert rule_of(channel, np.resize(np.asarray(values, dtype=float), 6000)) == rule
-
-
 @pytest.mark.parametrize("delay", [0.0, 0.05, -0.02])
 @pytest.mark.parametrize("rate", [250.0, 62.5])
 def test_a_topic_with_stamps_beside_the_record_is_put_at_its_time_less_its_delay(delay, rate):
@@ -163,31 +133,3 @@ def test_a_topic_with_stamps_beside_the_record_is_put_at_its_time_less_its_delay
     assert np.abs(off[inner]).max() < (2 * np.pi * 0.7 / rate) ** 2 / 8 * 1.01
     (note,) = (s.observed for s in record.reading if "stamps of its own" in s.observed)
     assert note.endswith(f", {rate:g} Hz")
-
-
-def test_rows_two_of_which_are_five_steps_apart_are_still_filled_by_steps():
-    """Counts 0, 2, 5, 7, 10 ...: a line of whole steps makes errors of 0 and 1, by turns."""
-    counts = np.arange(80) * 5 // 2 * 1.0
-    error = filling_error(counts, clock_of(np.arange(80)), "position", step=1.0)
-    assert error == pytest.approx(np.sqrt(0.5), rel=0.02)
-    # a curve of four readings is 2/3 off each time
-    assert filling_error(counts, clock_of(np.arange(80)), "position", step=0.9) == pytest.approx(
-        2 / 3
-    )
-
-
-@pytest.mark.parametrize("resolution", [None, 0.5])
-@pytest.mark.parametrize("quantity", ["position", "interaction_force"])
-def test_filled_readings_lie_on_steps_where_no_resolution_is_stated(resolution, quantity):
-    """A position in steps of one; a stated resolution is one that the user knows."""
-    values = np.round(20.0 * np.sin(0.1 * np.arange(200)))
-    between = values + 0.3
-    channel = Channel(quantity, "device", "x", "m", resolution, None)
-    out = _restore_steps(between, values, channel, 1.0)
-    if quantity == "position" and resolution is None:
-        assert np.array_equal(out, values)
-    else:
-        assert out is between
-    assert _restore_steps(between, values, channel, 0.0) is between
-    off_grid = np.random.default_rng(0).normal(size=200)
-    assert _restore_steps(between, off_grid, channel, 1.0) is between

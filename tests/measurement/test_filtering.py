@@ -12,10 +12,6 @@ T = H * np.arange(4000)
 SWING = np.sin(2 * np.pi * 0.6 * T) + 0.4 * np.sin(2 * np.pi * 1.7 * T + 1.0)
 
 
-def rate_of(x, order=1):
-    return np.gradient(x, H) if order == 1 else rate_of(np.gradient(x, H))
-
-
 @given(
     n=st.integers(2, 500),
     level=st.floats(-10, 10),
@@ -37,27 +33,6 @@ def test_a_line_is_a_line_behind_the_low_pass_inside_and_one_of_less_at_no_end(
         inner = slice(n // 3, -n // 3)
         # what closes the circle far away leaves a little of itself
         assert np.abs(low - line)[inner].max() < 0.02 * (abs(slope) * H * n + 1e-9) + 1e-9
-
-
-def test_a_record_is_continued_oddly_for_six_tenths_of_a_second():
-    rng = np.random.default_rng(0)
-    for n, margin in [(1000, 120), (100, 99), (121, 120), (2, 1)]:
-        y = rng.standard_normal(n)
-        grid = spectrum(n, H)
-        assert grid.margin == margin
-        whole = np.fft.irfft(grid.transform(y), grid.length)
-        m = margin
-        assert whole[m : m + n] == pytest.approx(y)
-        for k in range(1, m + 1):
-            assert whole[m - k] == pytest.approx(2 * y[0] - y[k])
-            assert whole[m + n - 1 + k] == pytest.approx(2 * y[-1] - y[-1 - k])
-        # beyond, a bridge leads back without a step: monotonously from one end to the other
-        bridge = np.r_[whole[m + n + m - 1 :], whole[0]]
-        steps = np.diff(bridge) * np.sign(bridge[-1] - bridge[0])
-        assert (steps >= -1e-9).all()
-        assert len(bridge) >= 2 * m
-        if m > 50:
-            assert max(steps[0], steps[-1]) < 0.1 * steps.max(), "it sets off and ends level"
 
 
 @pytest.mark.parametrize("cutoff", [5.0, 40.0, 99.0])

@@ -6,7 +6,6 @@ from scipy.signal import butter, sosfiltfilt
 
 from teleopdesign.measurement.filtering import spectrum
 from teleopdesign.measurement.zero_phase import margin, zero_phase
-from teleopdesign.measurement.zero_phase_spans import windows
 
 
 @pytest.mark.parametrize("signals", [1, 3])
@@ -26,11 +25,3 @@ def test_a_held_value_acts_as_its_mean_over_the_part_of_a_row(parts, which):
     expected = (np.exp(-1j * w * begin) - np.exp(-1j * w * end)) / (1j * w * 1e-2)
     assert grid.hold(parts, which)[1:] == pytest.approx(expected, rel=1e-9, abs=1e-12)
     assert grid.hold(parts, which)[0] == pytest.approx(1 / parts)
-
-
-def test_windows_hold_the_rows_that_continue_a_record_at_its_ends():
-    n, m, reach = 10_000, 600, 50
-    (first, last) = windows(np.array([0, n - 1]), n, m, reach)
-    assert first == (0, m + 1) and last == (n - 1 - m, n)
-    ((begin, end),) = windows(np.array([5000]), n, m, reach)
-    assert (begin, end) == (5000 - reach, 5001 + reach), "the ends are far"

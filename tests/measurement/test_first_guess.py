@@ -5,10 +5,8 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.measurement.first_guess import (
-    FirstGuess,
     balance_factor,
     explain_force,
-    explain_forces,
     is_turned,
     motion_columns,
 )
@@ -87,33 +85,6 @@ def test_the_force_that_balances_is_detected_whatever_the_body_is(factor):
     assert balance_factor(held, hand, still, H)[0] == pytest.approx(factor, abs=0.1)
 
 
-def test_the_explained_part_is_that_of_the_squares_about_the_mean():
-    v, a = rate_of(SWING), rate_of(SWING, 2)
-    made = 0.1 * a + 0.5 * v
-    apart = np.cos(2 * np.pi * 1.13 * T)
-    apart *= np.std(made) / np.std(apart)
-    guess = explain_force(made + apart + 100.0, SWING, H)
-    assert guess.explained == pytest.approx(0.5, abs=0.03)
-    assert guess.left == pytest.approx(np.std(apart), rel=0.05)
-    assert explain_force(np.full(len(T), 3.0), SWING, H).explained == pytest.approx(0.0, abs=1e-6)
-    nothing = explain_forces([], H)
-    assert nothing.explained == 0.0 and np.isinf(nothing.errors).all()
-
-
-def test_errors_of_first_values_count_each_second_as_one_reading():
-    """Over draws of noise of a second's correlation the values scatter by them."""
-    rng, off = np.random.default_rng(1), []
-    v, a = rate_of(SWING), rate_of(SWING, 2)
-    made = 0.1 * a + 0.5 * np.sign(v) + 0.2 * v
-    for _ in range(12):
-        noise = np.repeat(rng.standard_normal(20), 200)
-        guess = explain_force(made + noise, SWING, H)
-        wrong = np.array([guess.inertia - 0.1, guess.level - 0.5, guess.damping - 0.2])
-        off.append(wrong / np.array(guess.errors))
-    spread = np.sqrt(np.mean(np.square(off), axis=0))
-    assert np.all((0.1 < spread) & (spread < 3.0))
-
-
 @pytest.mark.parametrize("rate", [0.3, 0.9, 1.8])
 @pytest.mark.parametrize("level", [0.2, 0.4])
 @pytest.mark.parametrize("seed", [0, 1, 2])
@@ -147,38 +118,6 @@ def test_a_pendulum_below_its_natural_frequency_is_no_turned_inertia(rate, stiff
         assert explain_force(force, x, 0.01).inertia == pytest.approx(0.05, rel=0.3)
 
 
-def test_of_a_body_that_rests_nothing_is_read_and_nothing_fails():
-    force = np.random.default_rng(0).standard_normal(len(T))
-    for still in (np.zeros(len(T)), np.full(len(T), 2.5)):
-        guess = explain_force(force, still, H)
-        assert (guess.inertia, guess.level, guess.damping) == (0.0, 0.0, 0.0)
-        assert guess.explained == pytest.approx(0.0, abs=1e-9)
-        assert not is_turned(force, still, H)
-        assert balance_factor(force, force, still, H) == (0.0, np.inf)
-
-
-@pytest.mark.parametrize(
-    ("rate", "band"), [(50.0, 2.0), (100.0, 2.0), (400.0, 8.0), (1500.0, 30.0), (5000.0, 40.0)]
-)
-def test_motions_are_low_passed_at_a_fiftieth_of_the_rate_between_2_and_40_hz(rate, band):
-    """At the edge of the low-pass, half of the velocity is left; far below all, far above none."""
-    t = np.arange(round((8 if rate < 1000 else 2) * rate)) / rate
-    middle = slice(len(t) // 4, -len(t) // 4)
-    for part, left in [(0.3, 1.0), (1.0, 0.5), (2.5, 0.0)]:
-        w = 2 * np.pi * part * band
-        v, a, _ = motion_columns(np.sin(w * t), 1 / rate)
-        assert v[middle] == pytest.approx(left * w * np.cos(w * t[middle]), abs=0.02 * w)
-        assert a[middle] == pytest.approx(-left * w**2 * np.sin(w * t[middle]), abs=0.02 * w**2)
-
-
-def test_a_body_counts_as_moving_from_a_fiftieth_of_its_largest_speed():
-    v = np.where(T < 10, 1.0, np.where(T < 15, 0.03, 0.01))
-    direction = motion_columns(H * np.cumsum(v), H)[2]
-    for when, way in [((2, 9), 1.0), ((11, 14), 1.0), ((16, 19), 0.0)]:
-        rows = (when[0] < T) & (when[1] > T)
-        assert direction[rows] == pytest.approx(way, abs=0.05)
-
-
 def test_each_value_has_the_error_by_which_it_scatters():
     """Over records with other noise; each second counts as one reading, so the error is wide."""
     v, a = rate_of(SWING), rate_of(SWING, 2)
@@ -201,23 +140,6 @@ def test_each_value_has_the_error_by_which_it_scatters():
     wide = np.array(explain_force(clean + noise, 2 * SWING, H).errors)
     assert twice / one == pytest.approx([2.0] * 3, rel=0.1)
     assert wide / one == pytest.approx([0.5, 1.0, 0.5], rel=0.01)
-
-
-@pytest.mark.parametrize(
-    ("inertia", "error", "start"),
-    [
-        (0.2, 0.5, 0.2),
-        (-0.1, 0.04, 0.04),
-        (-0.1, 0.03, 0.0),
-        (0.0, np.inf, 0.0),
-        (-1.0, np.inf, 0.0),
-    ],
-)
-def test_a_search_begins_at_the_error_of_an_inertia_that_is_not_surely_negative(
-    inertia, error, start
-):
-    guess = FirstGuess(inertia, 1.0, 1.0, 0.9, (error, 0.1, 0.1))
-    assert guess.start_of_inertia == start
 
 
 def test_a_slow_motor_with_much_friction_gets_a_start_of_its_inertia():

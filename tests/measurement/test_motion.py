@@ -1,6 +1,5 @@
 """Smoothing and directions of a motion, against what their definitions say."""
 
-import struct
 from dataclasses import replace
 
 import numpy as np
@@ -8,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from teleopdesign.measurement.doors._mat_elements import _elements
-from teleopdesign.measurement.motion import TRAVEL, direction_of, mark_neighbours, motion_of, play
+from teleopdesign.measurement.motion import TRAVEL, direction_of, motion_of, play
 
 
 def by_definition(position, patience):
@@ -39,12 +37,6 @@ def test_a_direction_shows_over_enough_steps_the_same_way_without_a_rest(changes
     position = np.cumsum(np.array(changes, dtype=float))
     direction = direction_of(position, 1.0, 1.0, patience)
     assert direction.tolist() == by_definition(position.tolist(), patience)
-
-
-@given(marked=st.lists(st.booleans(), min_size=1, max_size=30))
-def test_beside_are_the_marked_samples_and_their_neighbours(marked):
-    near = [any(marked[max(0, k - 1) : k + 2]) for k in range(len(marked))]
-    assert mark_neighbours(np.array(marked)).tolist() == near
 
 
 @given(x=st.lists(st.floats(-5, 5), min_size=1, max_size=30), width=st.floats(0.0, 3.0))
@@ -91,28 +83,6 @@ def test_position_other_position_and_their_rates_are_those_of_the_sine_that_was_
     assert not motion.interaction.any()
     turns = np.abs(np.cos(w * there)) < 0.05
     assert np.array_equal(motion.direction[inner][~turns], np.sign(np.cos(w * there))[~turns])
-
-
-def element(kind, content):
-    """An element of a MAT file: kind, size, content, filled up to eight bytes."""
-    return struct.pack("<II", kind, len(content)) + content + b"\0" * (-len(content) % 8)
-
-
-def test_elements_of_a_mat_file_are_read_one_after_another_to_the_last():
-    small = struct.pack("<HH", 5, 4) + b"abcd"  # type and size share a word
-    data = element(9, b"12345678") + small + element(1, b"xyz") + element(14, b"")
-    read = [(kind, bytes(inner)) for kind, inner in _elements(memoryview(data), "<")]
-    assert read == [(9, b"12345678"), (5, b"abcd"), (1, b"xyz"), (14, b"")]
-
-
-@pytest.mark.parametrize(
-    "data",
-    [element(9, b"12345678")[:-1], struct.pack("<HH", 5, 5) + b"abcdefgh", element(9, b"")[:7] * 2],
-    ids=["cut", "too large for its word", "head of another"],
-)
-def test_an_element_that_ends_behind_what_holds_it_is_refused(data):
-    with pytest.raises(ValueError, match="ends behind what holds it"):
-        list(_elements(memoryview(data), "<"))
 
 
 @settings(max_examples=20)

@@ -7,8 +7,7 @@ import pytest
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
-from teleopdesign.measurement.first_guess import FirstGuess
-from teleopdesign.measurement.new_folder import experiment_text, make_folder
+from teleopdesign.measurement.new_folder import make_folder
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.tables import open_log
 
@@ -151,35 +150,6 @@ def test_signs_that_make_no_inertia_ask_to_be_looked_at(log, tmp_path):
     assert content["model"]["device"]["inertia"]["value"] == 1.0
     # neither friction nor damping starts below zero
     assert content["model"]["device"]["effects"] == {"coulomb": {}, "viscous": {}}
-
-
-def test_a_joint_is_written_in_units_of_turning(tmp_path):
-    survey = survey_of(write_log(tmp_path / "run.csv"))
-    survey.axis = "revolute"
-    guess = FirstGuess(0.012345, 0.23456, 0.0, 0.9, (0.0, 0.0, 0.0))
-    survey.guesses = {"channels.time.unit": "by name", "channels.timer": "no", "other": 'a "b"'}
-    text = experiment_text(
-        survey, [], title="t", inertia=None, first=guess, effects=("viscous", "coulomb", "bias")
-    )
-    content = tomllib.loads(text)
-    assert content["model"]["device"]["inertia"] == {"value": 0.0123, "unit": "kg*m^2"}
-    assert content["model"]["device"]["effects"] == {
-        "viscous": {},
-        "coulomb": {"level": {"value": 0.235, "unit": "N*m"}},
-        "bias": {},
-    }
-    assert "# forces in N*m, positions in rad" in text
-    assert text.count("# guessed: by name") == 1 and "# guessed: no" not in text
-    assert content["guessed"] == survey.guesses
-    damped = FirstGuess(0.0, 0.0, 0.5, 0.9, (0.0, 0.0, 0.0))
-    text = experiment_text(survey, [], title="t", inertia=None, first=damped, effects=("viscous",))
-    device = tomllib.loads(text)["model"]["device"]
-    assert device["effects"]["viscous"]["damping"] == {"value": 0.5, "unit": "N*m*s/rad"}
-    assert device["inertia"]["value"] == 1.0
-    survey.guesses, survey.unused = {}, {}
-    text = experiment_text(survey, [], title="t", inertia=None, first=None, effects=())
-    assert "[guessed]" not in text.split("\n", 2)[2] and "in no channel" not in text
-    assert "inertia" not in tomllib.loads(text)["model"]["device"]
 
 
 @pytest.mark.parametrize(("rows", "cut"), [(2400, 0.6), (150, 0.5), (127, None)])

@@ -9,10 +9,8 @@ import teleopdesign as td
 from teleopdesign.measurement.repeated_rows import (
     LASTING,
     repeated_rows,
-    repeats,
     rows_between_readings,
     runs_of,
-    stuck_stretches,
 )
 
 ROWS = 2000
@@ -158,40 +156,6 @@ def test_a_body_that_rests_a_good_part_of_the_time_is_no_slow_source(rest):
     assert not rows_between_readings([x, 3 * x], [x], stamps).any()
 
 
-@pytest.mark.parametrize(("at", "rows"), [(0, []), (1, [2]), (200, [201]), (397, [398]), (398, [])])
-def test_a_sample_that_repeats_is_detected_where_the_motion_before_and_behind_it_is(at, rows):
-    """At the ends of a record nothing says that the body went on."""
-    x = 10.0 * np.arange(400.0)
-    x[at + 1] = x[at]
-    assert repeats(x, 1.0).tolist() == rows
-
-
-def halted(before, leap, after, rows=(100, 100)):
-    """A motion by so much a row that stands for 12 rows, leaps, and goes on by so much a row."""
-    changes = [[before] * rows[0], [0.0] * 12, [leap], [after] * rows[1]]
-    return np.concatenate([[0.0], np.cumsum(np.concatenate(changes))])
-
-
-@pytest.mark.parametrize(
-    ("before", "leap", "after", "is_lost"),
-    [(1, 6, 1, True), (1, -6, 1, True), (2, 6, 1, False), (1, 6, 2, False), (1, 4, 1, False)],
-)
-def test_a_stand_is_lost_rows_where_the_leap_after_it_is_large_beside_both_sides(
-    before, leap, after, is_lost
-):
-    x = halted(before, leap, after)
-    rows = np.flatnonzero(repeated_rows([x, 2 * x], [x]))
-    assert rows.tolist() == (list(range(101, 113)) if is_lost else [])
-
-
-@pytest.mark.parametrize(
-    ("rows", "is_lost"), [((5, 100), True), ((4, 100), False), ((100, 5), True), ((100, 4), False)]
-)
-def test_a_stand_at_an_end_of_a_record_tells_nothing(rows, is_lost):
-    x = halted(1, 6, 1, rows)
-    assert repeated_rows([x, 2 * x], [x]).any() == is_lost
-
-
 @pytest.mark.parametrize(("times", "is_lost"), [(1, False), (2, True), (20, True)])
 def test_rows_that_agree_by_chance_are_lost_only_where_there_are_more_than_chance_makes(
     times, is_lost
@@ -204,87 +168,3 @@ def test_rows_that_agree_by_chance_are_lost_only_where_there_are_more_than_chanc
         y[at] = y[at - 1]
     lost = np.flatnonzero(repeated_rows([x, one, two], [x], [one, two]))
     assert lost.tolist() == (at.tolist() if is_lost else [])
-
-
-@pytest.mark.parametrize(("readings", "is_slow"), [(49, False), (50, True)])
-def test_fifty_changes_show_a_slower_source(readings, is_slow):
-    """Each reading stands in five rows; the first row is none of a change."""
-    k = np.arange(readings + 1)
-    x, force = np.round(np.sin(0.37 * k), 3), np.sin(0.3 * k)
-    rows = np.repeat(k, 5)
-    between = rows_between_readings([x[rows], force[rows]], [x[rows]], 1e-3 * np.arange(len(rows)))
-    assert between.any() == is_slow
-    if is_slow:
-        assert not between[5::5].any() and between[6::5].all()
-
-
-MOVES = [10.0] * 30
-
-
-@pytest.mark.parametrize(
-    ("changes", "stuck"),
-    [
-        ([*MOVES, *[0] * 10, 110, *MOVES], (30, 41)),
-        ([*MOVES, *[0] * 9, 100, *MOVES], None),  # nine rows are repeats, and no hold
-        ([*MOVES[:5], *[0] * 10, 110, *MOVES], (5, 16)),
-        ([*MOVES[:4], *[0] * 10, 110, *MOVES], None),  # too little is known of the motion before
-        ([*MOVES, *[0] * 10, 51, *MOVES], (30, 41)),
-        ([*MOVES, *[0] * 10, 49, *MOVES], None),  # five usual steps are no leap
-        ([*MOVES, *[0] * 10, 100, 49, 60, 60, *MOVES], (30, 41)),
-        ([*MOVES, *[0] * 10, 100, 51, 10, *MOVES], None),  # goes on in such steps: a body
-        ([*MOVES, *[0] * 10, -110, -10, -10], (30, 41)),
-        ([*MOVES, *[0] * 10, 110], (30, 41)),  # ends with the leap
-        ([*MOVES, *[0] * 10], (30, 41)),  # never moves again
-        ([*MOVES, 8, 5, 3, 2, *[0] * 10, 110, *MOVES], None),  # came to rest
-        ([*MOVES, 10.0, 12.0, 14.0, *[0] * 10, 130, *MOVES], (33, 44)),
-        ([2.9] * 30 + [0] * 10 + [40] + [2.9] * 9, None),  # below three steps a row
-        ([3.1] * 30 + [0] * 10 + [40] + [3.1] * 9, (30, 41)),
-    ],
-)
-def test_a_position_is_stuck_where_it_stops_dead_and_leaps_or_moves_no_more(changes, stuck):
-    """In steps of one; rows of the hold, from its first to one past its last."""
-    x = np.concatenate([[0.0], np.cumsum(changes)])
-    for size in (1e-6, 1.0, 1e4):
-        assert stuck_stretches(size * x, size, "position") == ([stuck] if stuck else [])
-        assert stuck_stretches(-size * x, size, "position") == ([stuck] if stuck else [])
-    assert stuck_stretches(x, 1.0, "actuator_force") == []
-
-
-@pytest.mark.parametrize(("lasts", "is_stuck"), [(9, False), (10, True), (40, True)])
-def test_a_noisy_force_is_stuck_where_its_noise_vanishes(lasts, is_stuck):
-    """Noise of thirty steps repeats by chance once in a hundred rows: ten times, never."""
-    rng = np.random.default_rng(0)
-    x = np.round(30.0 * rng.standard_normal(400))
-    x[200 : 200 + lasts + 1] = x[200]
-    x[200 + lasts + 1] = x[200] + 40.0
-    x[199] = x[200] - 40.0
-    expected = [(200, 200 + lasts + 1)] if is_stuck else []
-    for size in (1e-6, 1.0, 1e4):
-        assert stuck_stretches(size * x, size, "interaction_force") == expected
-
-
-@pytest.mark.parametrize(
-    ("changes", "rows"),
-    [
-        ([*MOVES, 0, *MOVES], [31]),
-        ([*MOVES, 0, 0, 0, *MOVES], [31, 32, 33]),
-        ([*MOVES, *[0] * 9, *MOVES], list(range(31, 40))),
-        ([*MOVES, *[0] * 10, *MOVES], []),  # lasts: a rest, or stuck
-        ([*MOVES, 0, *[-10.0] * 30], []),  # turns round
-        ([*MOVES, 0, 10, *MOVES], [31]),
-        ([*MOVES, 4, 0, *MOVES], []),  # slowed down before
-        ([*MOVES, 6, 0, *MOVES], [32]),
-        ([*MOVES, 0, 4, *MOVES], []),
-        ([*MOVES, 0, 6, *MOVES], [31]),
-        ([0, *MOVES], []),  # nothing is known before
-        ([*MOVES, 0], []),  # or after
-        ([3.4] * 40 + [0] + [3.4] * 40, [41]),
-        ([2.9] * 40 + [0] + [2.9] * 40, []),  # in steps of one, a slow motion repeats by itself
-        ([10, 0, *MOVES, 0, 10], [2, 33]),
-        ([-10.0] * 30 + [0] + [-10.0] * 30, [31]),
-    ],
-)
-def test_a_position_repeats_where_it_moves_as_before_on_both_sides(changes, rows):
-    x = np.concatenate([[0.0], np.cumsum(changes)])
-    for size in (1e-6, 1.0, -1e4):
-        assert repeats(size * x, abs(size)).tolist() == rows

@@ -7,7 +7,6 @@ import pytest
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
-from teleopdesign.measurement.reading import ReadingStep, log_name, reading_data, reading_table
 
 
 def same(one, other):
@@ -99,54 +98,7 @@ def test_segments_and_a_measured_force_are_kept(rod, tmp_path):
     assert again.channels["device.actuator_force"].measured
 
 
-def test_a_record_says_its_length_and_rate_and_no_segments_where_there_is_one(rod):
-    record = load_experiment(rod).records[0]
-    n, h = len(record.time), record.sample_time
-    assert repr(record) == (
-        f"Record {record.file} (fit): {n} samples, {n * h:.6g} s at {1 / h:.6g} Hz"
-    )
-    x = record.signals["device.position"]
-    page = record._repr_html_()
-    assert f"{x.min():.4g} to {x.max():.4g}" in page and f"{np.std(x):.4g}" in page
-
-
 def test_a_folder_that_cannot_be_made_is_named(rod, tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(ExperimentError, match="^s: cannot be written: Not a directory"):
         load_experiment(rod).save(tmp_path / "file" / "s")
-
-
-def step(file="a.csv", observed="x", rule="y", effect="none", **more):
-    return ReadingStep(file, observed, rule, effect, **more)
-
-
-def test_steps_of_reading_stand_in_a_table_no_wider_than_a_page():
-    assert reading_table([]) == []
-    words = "word " * 40
-    lines = reading_table([step(observed=words, rule=words, effect=words)])
-    assert max(map(len, lines)) <= 100
-    columns = ("record", "in the log", "how it was read")
-    starts = [lines[0].index(c) for c in columns]
-    assert starts == [2, 2 + 6 + 2, 2 + 6 + 2 + 34 + 2]
-    text = " ".join(" ".join(line[s:e].strip() for line in lines) for s, e in [(46, 100)])
-    assert text.split().count("word") == 80  # the rule and the effect
-
-
-def test_records_with_the_same_step_share_a_line_and_spans_name_those_of_one_log():
-    spans = [step("run.csv 0-20 s"), step("run.csv 20-30.5 s"), step("run.csv 0-20 s", "z")]
-    lines = reading_table(spans)
-    assert lines[1] == "  0-20 s, 20-30.5 s  x           y" and lines[2].split() == [
-        *("0-20", "s", "z", "y")
-    ]
-    two = reading_table([step("a.csv 0-2 s"), step("b.csv")])
-    assert two[1].strip().startswith("a.csv 0-2 s, b.csv")
-    assert log_name("run.csv 0-20 s") == "run.csv" and log_name("run.csv") == "run.csv"
-    assert reading_table([step(effect="errs by 1 %")])[1].endswith("y; errs by 1 %")
-
-
-def test_steps_as_plain_data_have_no_number_where_the_error_is_not_known():
-    known, unknown = reading_data([step(size=0.02), step()])
-    assert known == {
-        "record": "a.csv", "observed": "x", "rule": "y", "effect": "none", "force_error": 0.02,
-    }  # fmt: skip
-    assert unknown["force_error"] is None

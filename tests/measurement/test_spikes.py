@@ -6,8 +6,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
-from teleopdesign.measurement.channel import Channel
-from teleopdesign.measurement.signals_of_log import _fill_spikes
 from teleopdesign.measurement.spikes import are_contacts, fill_spikes, find_spikes
 
 T = np.arange(3000) / 500.0
@@ -64,13 +62,6 @@ def test_more_than_one_in_twenty_is_not_lone():
     x = motion()
     x[::15] += 1.0
     assert not find_spikes(x, 1e-5).any()
-
-
-def test_a_short_record_shows_nothing():
-    x = np.zeros(63)
-    x[30] = 1.0
-    assert not find_spikes(x, 1e-5).any()
-    assert find_spikes(np.append(x, 0.0), 1e-5).sum() == 1
 
 
 def hits(rows, *, move):
@@ -161,26 +152,3 @@ def test_hits_that_move_the_body_stay_in_the_log():
     assert counts(read(columns)) == {}
     columns["x"] = hits(np.array([400]), move=False)[1]
     assert counts(read(columns)) == {"interaction_force": 4}
-
-
-def test_of_many_spikes_the_search_marks_three_in_a_row_and_the_first_and_last():
-    rng = np.random.default_rng(5)
-    rows = np.unique([0, 1, 500, 501, 502, 2999, *rng.choice(np.arange(9, 2990), 80, False)])
-    x = motion()
-    x[rows] += 0.5
-    assert np.array_equal(np.flatnonzero(find_spikes(x, 1e-5)), rows)
-    few = motion()
-    few[[500, 501, 502]] += 0.5
-    assert not find_spikes(few, 1e-5).any()
-    first = motion()
-    first[0] += 0.5  # alone it may be a step
-    assert not find_spikes(first, 1e-5).any()
-
-
-def test_a_force_without_a_position_in_its_rows_stays(spoilt):
-    """A hit of one row cannot be told from a spike there."""
-    _, bad, rows = spoilt
-    force = Channel("interaction_force", "device", "f", "N", None, None)
-    for position, count in ((None, 0), (motion(), len(rows["f"]))):
-        filled, steps = _fill_spikes(bad["f"], "device.f", force, [slice(None)], position, "a")
-        assert (filled != bad["f"]).sum() == count and len(steps) == (count > 0)

@@ -8,12 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.measurement.column_names import is_wanted, likeness, unit_in_name
+from teleopdesign.measurement.column_names import likeness, unit_in_name
 from teleopdesign.measurement.doors._cells import NO_READING
 from teleopdesign.measurement.numbers_in_cells import numbers_of
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.survey.content import SURE_NAME
-from teleopdesign.measurement.survey.derivative import wrap_of
 from teleopdesign.measurement.survey.position import _step_of_readings
 from teleopdesign.measurement.tables import open_log, read_columns
 
@@ -47,11 +46,6 @@ def test_a_word_for_no_reading_is_an_empty_cell(tmp_path, ending, word):
 def test_numbers_that_a_frame_holds_as_text_are_numbers():
     column = pandas.Series(["0.5", "n/a", "-1e-3", None], dtype=object)
     assert np.array_equal(numbers_of(column, "x", "frame"), [0.5, np.nan, -1e-3, np.nan], True)
-
-
-def test_another_text_is_still_refused_with_its_row():
-    with pytest.raises(ExperimentError, match='row 2: found "left", expected a number'):
-        numbers_of(np.array(["1", "left", "2"], dtype=object), "x", "frame")
 
 
 @pytest.mark.parametrize("ending", [".csv", ".xlsx"])
@@ -94,12 +88,6 @@ def test_an_encoder_is_recognised_through_the_digits_that_were_printed(step, dig
     assert _step_of_readings(readings) == pytest.approx(step, rel=1e-3)
 
 
-@pytest.mark.parametrize("period", [360.0, 180.0, 2 * np.pi, np.pi, 1.0, 4096.0])
-def test_a_position_that_wraps_shows_its_period(period):
-    angle = 2.3 * period * np.sin(1.5 * T) + 0.1 * period
-    assert wrap_of(angle % period) == period
-
-
 @pytest.mark.parametrize(
     ("name", "quantity"),
     [
@@ -114,28 +102,6 @@ def test_a_position_that_wraps_shows_its_period(period):
 )  # fmt: skip
 def test_names_in_other_languages_are_understood(name, quantity):
     assert likeness(name, quantity) >= SURE_NAME
-
-
-@pytest.mark.parametrize("name", ["Stromsensor", "temperature", "Status", "triangle"])
-def test_a_part_of_another_word_is_no_hand_and_no_time(name):
-    for quantity in ("interaction_force", "time"):
-        assert likeness(name, quantity) < SURE_NAME
-
-
-@pytest.mark.parametrize("name", ["Sollposition", "x_ref", "targetPosition", "目標位置"])
-def test_what_was_wanted_is_no_reading_in_any_language(name):
-    assert is_wanted(name)
-
-
-@pytest.mark.parametrize(
-    ("name", "unit"),
-    [
-        ("v_mm_s", "mm/s"), ("joint_velocity_rad_s", "rad/s"), ("qd_rad_per_s", "rad/s"),
-        ("tau_N_m", "N*m"), ("tau_mN_m", "mN*m"), ("x_mm", "mm"), ("items", None), ("q", None),
-    ],
-)  # fmt: skip
-def test_units_of_two_parts_are_read_at_the_end_of_a_name(name, unit):
-    assert unit_in_name(name) == unit
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,7 @@ from measurement.rod_example import rod_columns, rows
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
-from teleopdesign.measurement.record_clock import RecordClock, clock_of
-from teleopdesign.measurement.true_stamps import effect_of_even_stamps
+from teleopdesign.measurement.record_clock import clock_of
 
 
 def with_segments(folder, labels, stamps=None):
@@ -93,19 +92,3 @@ def test_rows_that_a_logger_writes_in_reversed_blocks_are_sorted_and_not_refused
     backwards = 0.01 * np.arange(n)[::-1]
     with pytest.raises(ExperimentError, match="time that does not increase"):
         clock_of(backwards, (slice(0, n),), np.zeros(n, dtype=bool), "log")
-
-
-@pytest.mark.parametrize("size", [1e-6, 1e-2, 1.0, 1e4])
-def test_what_even_stamps_would_cost_is_a_part_of_the_travel_in_any_unit(size):
-    """Off by 2 ms rms at 1/s: 0.2 % of a travel of one, if the position is a ramp."""
-    n, h = 1001, 1e-3
-    off = 2e-3 * np.tile([1.0, -1.0], n)[:n]
-    time = h * np.arange(n)
-    whole = (slice(0, n),)
-    stamps = time + 0.1 * off
-    clock = RecordClock(np.arange(n), stamps, np.arange(n), time, h, whole, whole)
-    text = effect_of_even_stamps(clock, [size * stamps])
-    assert text == "read as even, positions would err by 0.02 % of the travel"
-    slower = effect_of_even_stamps(clock, [size * stamps, size * np.round(stamps)])
-    assert float(slower.split()[7]) >= 0.02, "the position that would err most counts"
-    assert effect_of_even_stamps(clock, []) == "none"

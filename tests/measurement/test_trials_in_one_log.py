@@ -88,14 +88,6 @@ def test_no_gap_is_reported_where_trials_follow_at_once():
     assert finding.numbers["longest_gap"] == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("rows", [450, 700])
-def test_the_longest_trial_tells_enough_by_itself(rows):
-    t = H * np.arange(rows + 60)
-    trial = np.where(np.arange(len(t)) < rows, 1.0, 2.0)
-    columns = {"t_s": t, "trial": trial, "angle_rad": Q[: len(t)], "tau_Nm": U[: len(t)]}
-    assert len(longest_trial(look(columns))["angle_rad"].values) == rows
-
-
 @pytest.mark.parametrize(("leap", "rows"), [(150.0, 300), (0.0, 300)])
 def test_short_trials_count_alone_for_a_position_may_leap_between_them(leap, rows):
     """The velocity was "not that of" its position, whose derivative held the leap."""

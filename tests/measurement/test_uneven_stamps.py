@@ -108,14 +108,6 @@ def test_stamps_of_no_clock_get_a_grid_of_as_many_samples():
     assert near.max() <= 0.5 * clock.sample_time + 1e-9
 
 
-def test_a_row_out_of_order_among_stamps_that_rows_share_begins_no_new_clock():
-    stamps = np.repeat(0.01 * np.arange(200), 3)
-    stamps[300] -= 0.03
-    parts, dropped, _, restarts = rows_in_order(stamps, (slice(0, 600),), np.zeros(600, dtype=bool))
-    assert restarts == 0 and dropped == 400
-    assert stamps[parts[0]] == pytest.approx(0.01 * np.arange(200))
-
-
 @pytest.mark.parametrize("change", [1, 40, 149])
 def test_rows_with_two_stamps_alone_are_counted_from_the_first_to_the_last(change):
     """Whole seconds of a log of 1.5 s: no stretch lies between two changes."""
@@ -123,21 +115,3 @@ def test_rows_with_two_stamps_alone_are_counted_from_the_first_to_the_last(chang
     clock = clock_by(stamps)
     assert clock.counted and clock.sample_time == pytest.approx(1 / 149)
     assert clock.time == pytest.approx(7.0 + np.arange(150) / 149)
-
-
-def test_a_row_is_a_repeat_only_of_one_that_its_clock_counted_just_before():
-    """The first row after a clock was set back may say the same; a row too early is a repeat."""
-    h = 0.01
-    stamps = np.r_[h * np.arange(300), h * np.arange(300)]
-    stamps[0] += 1e-3 * h  # uneven by a hair
-    same = np.zeros(600, dtype=bool)
-    same[[0, 300, 450]] = True
-    clock = clock_by(stamps, same=same)
-    assert clock.dropped == 0 and clock.restarts == 1 and len(clock.rows) == 600
-    for early, dropped in [(0.24, 1), (0.26, 0)]:
-        stamps[450] = stamps[449] + early * h
-        clock = clock_by(stamps, same=same)
-        assert clock.dropped == dropped and (450 in clock.rows) == (not dropped)
-    same[450] = False
-    stamps[450] = stamps[449] + 0.1 * h
-    assert clock_by(stamps, same=same).dropped == 0, "another reading, however early"

@@ -3,32 +3,25 @@
 The proof runs on a simulator that shares nothing with the package: it runs the proposed reference.
 """
 
-import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 from next_experiment.next_cases import KNOWN, POOR, RATE, Rod
 
 from teleopdesign import Model, find_missing
 from teleopdesign.base.errors import ModelError
-from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import load_answer, write_answer
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.statements import OpenQuestion, OpenRival
 from teleopdesign.effects import EFFECTS
 from teleopdesign.next_experiment import (
-    Limits,
     proposal_data,
     propose,
     show_in_simulation,
     shown_limits,
     write_reference,
 )
-from teleopdesign.next_experiment.family import Setting, family
-from teleopdesign.next_experiment.path import Move, Servo, follow_path, travel, window_length
 from teleopdesign.next_experiment.prediction import refit, with_records
 from teleopdesign.next_experiment.synthesis import command_along, exact_motion
 
@@ -73,50 +66,6 @@ def test_the_motion_keeps_within_the_limits_that_the_records_have_shown(one_spee
     assert signals[0].min() >= limits.low - 1e-9 and signals[0].max() <= limits.high + 1e-9
     for signal, name in zip(signals[1:], ("speed", "acceleration", "jerk"), strict=True):
         assert np.abs(signal).max() <= 1.001 * getattr(limits, name)
-
-
-@given(
-    time=st.floats(0.05, 3.0),
-    speed=st.floats(1e-3, 1.0),
-    acceleration=st.floats(0.1, 50.0),
-    jerk=st.floats(1.0, 5e3),
-)
-@settings(max_examples=25)
-def test_a_rounded_line_never_exceeds_its_limits(time, speed, acceleration, jerk):
-    limits, reach, step = Limits(-3.0, 3.0, 1.0, acceleration, jerk, 1.0), speed * time, 2e-3
-    assume(20 * step < window_length(2 * speed, limits) < 4.0)
-    legs = [Move(reach, speed), Move(-reach, speed), Move(0.0, speed)]
-    y = travel(legs, limits, sample_time=step)
-    assert y[0] == 0.0 and abs(y[-1]) < 1e-9 * reach
-    first, second, third = (np.diff(y, k) / step**k for k in (1, 2, 3))
-    assert np.abs(y).max() <= reach * (1 + 1e-9)
-    assert np.abs(first).max() <= speed * (1 + 1e-6)
-    # the window is made of 20 whole samples or more: its length is off by one, squared in jerk
-    assert np.abs(second).max() <= 1.06 * acceleration
-    assert np.abs(third).max() <= 1.12 * jerk
-
-
-def test_every_part_of_the_family_starts_and_ends_at_rest_in_the_middle():
-    limits = Limits(-0.05, 0.05, 0.2, 5.0, 500.0, 2.0)
-    setting = Setting(limits, 1e-5, 50.0, 1e-3, lambda v, q: f"{v:.3g} {q}", repeated=30.0)
-    parts = family(setting)
-    assert len(parts) > 20
-    for part in parts:
-        assert abs(part.path[0]) < 1e-9 and abs(part.path[-1]) < 1e-9
-        assert np.abs(np.diff(part.path[:5])).max() < 1e-9
-        assert np.abs(part.path).max() <= limits.high * (1 + 1e-9)
-
-
-def test_a_body_lies_behind_its_servo_by_the_play_and_catches_up_smoothly():
-    t = np.arange(0.0, 3.0, 1e-3)
-    path = 0.02 * np.sin(2 * np.pi * t)
-    servo = Servo(turn=0.02, play=2e-3)
-    behind = follow_path(path, servo, sample_time=1e-3)
-    # half of the play, and the catching up: no more than another play at this acceleration
-    assert np.abs(behind.path - path).max() <= 1.5 * servo.play
-    assert len(behind.stuck) == 6 + 1  # each turn and the start
-    for first, last in behind.stuck:
-        assert np.ptp(behind.path[first:last]) == 0.0
 
 
 def test_the_command_moves_the_model_as_asked(one_speed):
@@ -196,24 +145,6 @@ def test_where_the_records_decide_nothing_is_proposed(diagnosis):
     assert "decide" in proposal.sentence
 
 
-def test_findings_carry_the_numbers_of_their_sentences(one_speed):
-    _, _, proposal = one_speed
-    findings = proposal.findings()
-    assert [f.topic for f in findings][:2] == ["next experiment", "separation of rivals"]
-    assert findings[0].graph is not None and findings[0].graph.y_label == "position reference (mm)"
-    assert findings[1].numbers["predicted 0"] == proposal.separations[0].predicted
-    json.dumps(proposal_data(proposal), allow_nan=False)
-
-
-def test_the_figure_draws_motion_residual_and_separations(one_speed):
-    _, _, proposal = one_speed
-    figure = proposal.plot()
-    assert [ax.get_ylabel() for ax in figure.axes][:2] == [
-        "position reference (mm)",
-        "force left (N)",
-    ]
-
-
 # what the user says
 
 
@@ -231,25 +162,6 @@ def test_limits_of_the_user_are_kept_and_wrong_ones_refused(one_speed):
         propose(proposal.diagnosis, limits={"devise": shown})
     with pytest.raises(ModelError, match="speed is -1, expected more than 0"):
         shown.with_values(speed=-1.0)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--output", "next.txt"], "next.txt: found '.txt', expected .csv"),
-        (["--limit", "sped=1"], '--limit sped=1: no limit "sped"'),
-        (["--limit", "slave.speed=1"], '--limit slave.speed=1: no body "slave", has device'),
-        (["--limit", "speed=fast"], "--limit speed=fast: found 'fast', expected a number"),
-        (["--limit", "speed=1N"], '--limit speed=1N: found "N", expected a velocity'),
-        (["--limit", "speed=-1"], "limits: speed is -1, expected more than 0"),
-        (["--duration", "0"], "--duration: found 0, expected more than 0 s"),
-    ],
-)
-def test_the_command_says_in_one_line_what_is_wrong(one_speed, capsys, arguments, message):
-    _, experiment, _ = one_speed
-    assert main(["next", str(experiment.folder), *arguments]) == 2
-    lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 1 and message in lines[0]
 
 
 # the proof: every kind of poor records, the whole diagnosis

@@ -72,12 +72,6 @@ def test_the_error_falls_with_the_step(hybrid, radau):
     assert errors[1] < errors[0] / 5
 
 
-def test_values_are_arguments_of_one_kernel(hybrid):
-    made = prepare(hybrid, duration=0.1)
-    other = prepare(hybrid.with_values({"H.velocity_schedule.gain": 2.0}), duration=0.1)
-    assert made.program.loop is other.program.loop
-
-
 def test_compiled_and_plain_code_give_the_same_numbers(hybrid):
     arguments = dict(duration=0.02, inputs={"L_D": REFERENCE.position}, computer="continuous")
     fast, plain = (simulate(hybrid, jit=jit, **arguments).data for jit in (True, False))
@@ -150,18 +144,6 @@ def test_fast_sliding_does_not_overflow_the_stribeck_level():
         haptic_interface(body(**LUGRE)), duration=0.1, motion={"L": moved}, jit=False
     )
     assert np.abs(simulation["Z_M_friction"]).max() < 0.56
-
-
-def test_results_are_labelled_and_can_be_kept(hybrid, tmp_path):
-    simulation = simulate(hybrid, duration=0.05, inputs={"L_D": REFERENCE.position}, jit=False)
-    assert simulation["L"].attrs["units"] == "m" and simulation["R_M"].attrs["units"] == "N"
-    assert (
-        simulation["L_E"].attrs["units"] == "m" and simulation["L_velocity"].attrs["units"] == "m/s"
-    )
-    assert "haptic interface" in repr(simulation) and "R_MBC" in repr(simulation)
-    simulation.to_netcdf(tmp_path / "run.nc")
-    assert (tmp_path / "run.nc").stat().st_size > 1000
-    assert len(simulation.plot("L", "R_M").axes) == 2
 
 
 def test_dahl_cancellation_is_sampled_exactly_in_a_closed_loop():

@@ -1,8 +1,5 @@
 """Names are the user's: numbers do not depend on them, and no word is taken."""
 
-import builtins
-import keyword
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -25,8 +22,6 @@ from teleopdesign.diagrams import (
     haptic_interface,
     position_symbol,
 )
-from teleopdesign.realise._codegen import ANALOG, DIGITAL
-from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.simulate import prepare, simulate
 
 #: words that generated code, Python, sympy or the package might want for itself
@@ -183,38 +178,6 @@ def test_diagrams_that_differ_by_names_alone_share_one_kernel():
     assert other.program.layout.states[0] in {f"other_{n}" for n in one.program.layout.states}
 
 
-@pytest.mark.parametrize("words", [WORDS[:20], WORDS[20:40], WORDS[40:60], WORDS[60:80]])
-def test_the_python_control_form_takes_any_word_too(words):
-    diagram = DIAGRAMS["hybrid"]
-    old = [*diagram.signals, *(b.name for b in diagram.blocks)]
-    names = dict(zip(old, [*words, *(f"more_{i}" for i in range(len(old)))], strict=False))
-    one, other = to_iosystem(diagram), to_iosystem(renamed(diagram, names))
-
-    def at(system, names):
-        """Rates and outputs where each state and input has a value by its name."""
-        states = [s.split("_", 1)[1] for s in system.state_labels]
-        back = {new: old for old, new in names.items()}
-        plain = [_old_label(s, back) for s in states]
-        x = np.array([1e-3 * (1 + len(s)) for s in plain])
-        u = np.array([0.1 * len(back.get(s, s)) for s in system.input_labels])
-        outputs = [_old_label(s, back) for s in system.output_labels]
-        rates = dict(zip(plain, system.dynamics(0.0, x, u), strict=True))
-        return rates, dict(zip(outputs, system.output(0.0, x, u), strict=True))
-
-    for mine, yours in zip(at(one, {}), at(other, names), strict=True):
-        assert mine.keys() == yours.keys()
-        for key, value in mine.items():
-            assert value == yours[key], key
-
-
-def _old_label(label, back):
-    """A label made from one of the new names, with the old one in its place."""
-    for new in sorted(back, key=len, reverse=True):
-        if label == new or label.startswith(f"{new}_"):
-            return back[new] + label.removeprefix(new)
-    return label
-
-
 @pytest.mark.parametrize(
     ("name", "words"),
     [
@@ -231,10 +194,3 @@ def test_a_name_that_the_package_makes_itself_is_refused_in_one_line(name, words
     with pytest.raises(ModelError) as caught:
         run(renamed(diagram, names))
     assert words in str(caught.value)
-
-
-#: what the source of the laws holds itself, and the beginnings of private names
-RESERVED = {*dir(math), *keyword.kwlist, *dir(builtins), *ANALOG, *DIGITAL, "jitted", "lane", "phi"}
-RESERVED |= set("rates slopes signals late_values motions record held_commands".split())
-RESERVED |= set("computer_before computer_signals computer_after e f _".split())
-RESERVED |= set("to to_states to_bristles to_positions to_velocities table column".split())

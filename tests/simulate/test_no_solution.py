@@ -156,52 +156,12 @@ def scheme(delay=0.0, *, actuator=0.0, computer=None):
     return made.data.attrs["scheme"], repr(made)
 
 
-@pytest.mark.parametrize("delay", [0.0, 1e-4, 2.1e-3, 0.0300000000001])
-def test_a_whole_number_of_steps_needs_no_word(delay):
-    assert all("whole steps" not in text for text in scheme(delay))
-
-
-@pytest.mark.parametrize(
-    ("delay", "words"),
-    [(2.0738e-3, "2.1 ms for 2.0738 ms"), (5.04e-3, "5 ms for 5.04 ms")],
-)
-def test_a_rounded_delay_of_the_computer_is_stated(delay, words):
-    assert all(f"delays in whole steps: {words}" in text for text in scheme(delay))
-
-
-@pytest.mark.parametrize("computer", ["continuous", td.Sampling()])
-def test_a_rounded_delay_of_an_actuator_is_stated(computer):
-    text, _ = scheme(actuator=5.04e-3, computer=computer)
-    assert text.endswith("delays in whole steps: 5 ms for 5.04 ms")
-
-
 def test_a_delay_far_from_whole_steps_is_refused():
     with pytest.raises(ModelError, match="is no whole number of steps"):
         scheme(1.5e-4)
 
 
 PERIOD = 1e-3
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"period": 0.0}, "period > 0 s"),
-        ({"period": float("inf")}, "period > 0 s"),
-        ({"delay": -1e-3}, "delay and encoder_step >= 0"),
-        ({"encoder_step": -1e-6}, "delay and encoder_step >= 0"),
-        ({"velocity": "difference", "velocity_bandwidth": 50.0}, "has no bandwidth"),
-        ({"velocity": "observer"}, "needs a velocity_bandwidth"),
-    ],
-)
-def test_a_computer_that_cannot_be_is_refused(options, message):
-    with pytest.raises(ModelError, match=message):
-        Sampling(**options)
-
-
-def test_an_observer_has_its_order_and_other_estimates_have_none():
-    assert Sampling(velocity="observer", velocity_bandwidth=50.0, observer_order=2).observer == 2
-    assert Sampling(velocity_bandwidth=50.0).observer == 0
 
 
 def test_a_command_is_held_for_a_period():

@@ -1,13 +1,11 @@
 """Bad input of a study is one line before its first point, and no finished point is lost."""
 
-from pathlib import Path
-
 import pytest
 import study_models as models
 import xarray
 
 import teleopdesign as td
-from teleopdesign.base.errors import ExperimentError, ModelError
+from teleopdesign.base.errors import ModelError
 from teleopdesign.cli import main
 
 AXIS = "C.dahl.level"
@@ -50,13 +48,6 @@ def test_what_is_wrong_at_every_point_is_refused(changes, text):
         on_interface(**changes)
 
 
-def test_a_number_out_of_bounds_fails_its_point_alone():
-    assert on_interface({AXIS: [-1.0, 1.0]})["force_error"].notnull().values.tolist() == [
-        False,
-        True,
-    ]
-
-
 @pytest.mark.parametrize(
     ("result", "text"),
     [
@@ -88,31 +79,6 @@ def test_a_point_that_ends_python_fails_alone(workers):
     assert got.failures == {"SystemExit: 3": 1}
 
 
-def test_a_misspelt_label_loses_no_point_and_other_labels_are_no_other_study(tmp_path):
-    out = tmp_path / "a.nc"
-
-    def counted(result):
-        (tmp_path / f"called-{result}-{len(list(tmp_path.iterdir()))}").touch()
-        return result
-
-    def study(labels):
-        axes = {"x": [1.0, 2.0]}
-        measures = {"m": counted}
-        return td.study(lambda x: x, axes, measures=measures, labels=labels, out=out, workers=1)
-
-    with pytest.raises(ModelError, match='no measure or parameter "n"'):
-        study({"n": "a size"})
-    for label in ("a size", "another size"):
-        assert study({"m": label})["m"].attrs["long_name"] == label
-    assert len(list(tmp_path.glob("called-*"))) == 2
-
-
-@pytest.mark.parametrize("name", ["a.csv", "a.zarr", "a", "."])
-def test_a_file_that_is_no_netcdf_is_refused(name, tmp_path):
-    with pytest.raises(ExperimentError, match="expected a netCDF file"):
-        on_interface(out=Path(tmp_path / name))
-
-
 def test_a_study_whose_points_all_fail_has_status_two(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     code = "STUDY = dict(model=lambda x: 1 / (x - x), axes={'x': [1, 2]}, measures={'m': abs})"
@@ -135,15 +101,3 @@ def test_a_measure_without_a_return_says_so():
     assert "2 of 2 points failed, most: measure peak: returned nothing (None)" in repr(result)
     with pytest.raises(ModelError, match=r"measure peak: returned nothing \(None\)"):
         result["peak"]
-
-
-def test_a_measure_may_have_no_number_at_a_point():
-    def part(value):
-        return value if value > 3.0 else None
-
-    result = td.study(doubled, {"a": [1.0, 2.0]}, measures=part)
-    assert result["part"].values[1] == 4.0
-    (reason,) = result.failures
-    assert "returned nothing" in reason
-    whole = td.study(doubled, {"a": [1.0]}, measures=lambda value: float("nan"))
-    assert not whole.failures

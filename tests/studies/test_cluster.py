@@ -1,7 +1,5 @@
 """A study on a cluster gives the numbers of one process, also where a worker is killed."""
 
-import time
-
 import numpy as np
 import pytest
 import study_models as models
@@ -10,7 +8,6 @@ from study_processes import AXES
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError, ModelError
-from teleopdesign.studies.processes import run_on_cluster
 
 
 @pytest.fixture(scope="module")
@@ -50,57 +47,6 @@ def test_a_worker_of_a_cluster_that_is_killed_costs_no_point(cluster, tmp_path):
     np.testing.assert_array_equal(
         dataset["value"].values, [models.product(x, 0.5) for x in axes["x"]]
     )
-
-
-@pytest.mark.slow
-def test_a_result_that_its_killed_worker_held_is_computed_again(cluster, tmp_path, monkeypatch):
-    with cluster.get_client() as client:  # one that another test killed may not be back yet
-        client.wait_for_workers(2, timeout=20)
-    killed = tmp_path / "killed"
-
-    def run_and_wait(task, units, sink, address):
-        def slow_sink(outcome):
-            if not killed.exists():
-                (tmp_path / "read").write_text("")
-                models.wait_for(killed)
-                time.sleep(0.5)  # the scheduler notices the end of the process
-            sink(outcome)
-
-        run_on_cluster(task, units, slow_sink, address)
-
-    monkeypatch.setattr("teleopdesign.studies.run.run_on_cluster", run_and_wait)
-    axes = {"x": np.arange(40.0), "y": 0.5, "folder": str(tmp_path)}
-    arguments = {"measures": models.value, "scheduler": cluster.scheduler_address}
-    dataset = td.study(models.lost_product, axes, **arguments)
-    assert killed.exists()
-    assert not dataset.failures
-    np.testing.assert_array_equal(
-        dataset["value"].values, [models.product(x, 0.5) for x in axes["x"]]
-    )
-
-
-@pytest.mark.slow
-def test_a_scheduler_that_ends_is_one_line_and_keeps_what_is_computed(
-    cluster, tmp_path, monkeypatch
-):
-    calls = iter([{"worker": 1}] * 3)
-
-    def threads(client):
-        try:
-            return next(calls)
-        except StopIteration:
-            raise OSError("Timed out trying to connect") from None
-
-    arguments = {"measures": models.value, "scheduler": cluster.scheduler_address}
-    arguments["out"] = tmp_path / "s.nc"
-    with monkeypatch.context() as patch:
-        patch.setattr("distributed.Client.nthreads", threads)
-        with pytest.raises(ExperimentError, match="answers no more; with out=, the same call"):
-            td.study(models.product, AXES, **arguments)
-    first = []
-    dataset = td.study(models.product, AXES, progress=first.append, **arguments)
-    assert first[0].kept >= 2
-    assert not dataset.failures
 
 
 @pytest.mark.slow

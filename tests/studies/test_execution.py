@@ -1,21 +1,18 @@
 """Where and how often a study is stopped, killed or spread changes its time, never its numbers."""
 
-import os
 import random
 import signal
 import subprocess
-import threading
 import time
 
 import numpy as np
 import pytest
 import study_models as models
 import xarray
-from joblib.externals.loky.backend.process import LokyProcess
 from study_processes import AXES, EXPECTED, in_a_process, study_code, wait_for_points
 
 import teleopdesign as td
-from teleopdesign.base.errors import ExperimentError, ModelError
+from teleopdesign.base.errors import ExperimentError
 
 
 @pytest.mark.slow
@@ -29,13 +26,6 @@ def test_two_processes_give_the_data_set_of_one(no_process_is_left):
 
 
 @pytest.mark.slow
-def test_functions_without_a_name_go_to_other_processes_too():
-    offset = 3.0
-    dataset = td.study(lambda x: x + offset, {"x": [1.0, 2.0]}, measures=lambda r: r, workers=2)
-    assert list(dataset["measure"].values) == [4.0, 5.0]
-
-
-@pytest.mark.slow
 def test_simulations_in_processes_give_the_data_set_of_one(no_process_is_left):
     """Of 512 points side by side; the measure of a user needs each simulation by itself."""
     side_by_side = {"C.dahl.level": np.linspace(0.2, 1.2, 600), "C.dahl.stiffness": [1e4, 2e4]}
@@ -43,32 +33,6 @@ def test_simulations_in_processes_give_the_data_set_of_one(no_process_is_left):
     one = td.study(models.interface(), side_by_side, workers=1, **arguments)
     two = td.study(models.interface(), side_by_side, workers=2, **arguments)
     xarray.testing.assert_identical(one.data, two.data)
-
-
-def locked_model():
-    lock = threading.Lock()  # which no other process can get
-
-    def locked(x):
-        with lock:
-            time.sleep(0.3)
-            return x
-
-    return locked
-
-
-@pytest.mark.slow
-def test_a_model_that_cannot_be_sent_is_computed_in_this_process():
-    axes = {"x": np.arange(30.0)}
-    dataset = td.study(locked_model(), axes, measures=models.value)
-    assert list(dataset["value"].values) == list(axes["x"])
-    with pytest.raises(ModelError, match="cannot be sent to another process"):
-        td.study(locked_model(), axes, measures=models.value, workers=2)
-
-
-@pytest.mark.slow
-def test_a_worker_of_a_study_is_not_copied():
-    dataset = td.study(models.can_be_copied, {"x": [1, 2]}, measures=models.value, workers=2)
-    assert list(dataset["value"].values) == [0.0, 0.0]
 
 
 @pytest.mark.slow
@@ -94,51 +58,6 @@ def test_workers_end_with_a_process_that_is_killed(tmp_path):
         begin = time.monotonic()
         process.stderr.read()  # until the last process that may write has ended
         assert time.monotonic() - begin < 30
-
-
-def then(function):
-    """Let each process that loky starts go through `function` before its first line of Python."""
-    start = LokyProcess.start
-
-    def start_and(process):
-        start(process)
-        function(process)
-
-    return start_and
-
-
-@pytest.mark.slow
-def test_ctrl_c_while_a_process_still_starts_costs_no_point_and_prints_nothing(monkeypatch, capfd):
-    interrupt = then(lambda process: os.kill(process.pid, signal.SIGINT))
-    monkeypatch.setattr(LokyProcess, "start", interrupt)
-    dataset = td.study(models.product, AXES, measures=models.value, workers=2)
-    np.testing.assert_allclose(dataset["value"].values, EXPECTED, rtol=1e-15)
-    assert capfd.readouterr().err == ""
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", [0, 1])
-def test_a_process_that_is_killed_before_its_first_point_is_replaced(monkeypatch, number):
-    processes = []
-
-    def kill_one(process):
-        processes.append(process)
-        if len(processes) == number + 1:
-            os.kill(process.pid, signal.SIGKILL)
-
-    monkeypatch.setattr(LokyProcess, "start", then(kill_one))
-    dataset = td.study(models.product, AXES, measures=models.value, workers=2)
-    assert len(processes) > 2 and not dataset.failures
-    np.testing.assert_allclose(dataset["value"].values, EXPECTED, rtol=1e-15)
-
-
-@pytest.mark.slow
-def test_processes_that_all_end_before_their_first_point_are_one_line(monkeypatch):
-    monkeypatch.setattr(
-        LokyProcess, "start", then(lambda process: os.kill(process.pid, signal.SIGKILL))
-    )
-    with pytest.raises(ModelError, match="ended before its first point, by signal 9"):
-        td.study(models.product, AXES, measures=models.value, workers=2)
 
 
 @pytest.mark.slow

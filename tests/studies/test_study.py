@@ -9,10 +9,9 @@ import study_models as models
 import xarray
 
 import teleopdesign as td
-from teleopdesign.base.errors import ExperimentError, ModelError
+from teleopdesign.base.errors import ExperimentError
 from teleopdesign.passivity import dahl_compensation, observe_simulation
 from teleopdesign.studies import SimulatedCase, read_study
-from teleopdesign.studies.journal import Journal
 
 
 @pytest.fixture(scope="module")
@@ -97,23 +96,6 @@ def test_a_file_gives_the_same_study_again(made, tmp_path):
     assert pickle.loads(pickle.dumps(made)) == made
 
 
-def test_a_journal_that_a_kill_left_beside_the_whole_study_goes(tmp_path):
-    def double(a):
-        return 2.0 * a
-
-    def ask(**axes):
-        return td.study(double, axes, measures={"x2": float}, workers=1, out=tmp_path / "s.nc")
-
-    first, part = ask(a=[1.0, 2.0]), tmp_path / "s.nc.part"
-    assert not part.exists()
-    Journal(part, first.data.attrs["study"], 2).close()
-    ask(a=[1.0, 2.0])
-    assert not part.exists()
-    Journal(part, "another", 2).close()
-    ask(a=[1.0, 2.0])
-    assert part.exists(), "another study's points stay"
-
-
 def test_a_model_may_be_a_function_of_the_parameters():
     def with_level(level, ratio):
         law = {"C.dahl.level": level, "C.dahl.stiffness": ratio * level}
@@ -161,31 +143,6 @@ def test_whatever_a_function_raises_is_the_reason_of_that_point_alone():
     dataset = td.study(lambda x: 1 / x, {"x": [0.0, 2.0]}, measures=models.value)
     assert dataset.failures == {"ZeroDivisionError: float division by zero": 1}
     assert float(dataset["value"][1]) == 0.5
-
-
-def test_points_that_give_other_names_than_the_first_have_failed():
-    dataset = td.study(lambda x: {"a" if x < 2 else "b": x}, {"x": [1.0, 2.0]}, measures=dict)
-    assert dataset.measures == ("a",)
-    assert dataset.failures == {
-        "the measures give other names or dimensions than at the first point": 1
-    }
-
-
-def test_nothing_is_simulated_for_a_measure_that_needs_no_motion():
-    def level(diagram):
-        return diagram.values["C.dahl.level"]
-
-    dataset = td.study(models.interface(), {"C.dahl.level": [0.1, 0.2]}, measures=level)
-    assert list(dataset["level"].values) == [0.1, 0.2]
-
-
-def test_a_motion_that_is_no_sine_has_no_amplitude():
-    time = np.linspace(0, 1, 20)
-    case = SimulatedCase(
-        models.interface(), motion={"L": td.simulate.sampled_motion(time, 0.01 * time**2)}
-    )
-    with pytest.raises(ModelError, match="is none of `sine`"):
-        case.with_values({"motion.L.amplitude": 0.1})
 
 
 def test_a_case_that_every_name_is_changed_in_has_these_values():

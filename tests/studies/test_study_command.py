@@ -131,26 +131,6 @@ seed = 7
     assert set(np.round(dataset["computer.delay"].values / 5e-4)) <= {0, 1, 2}
 
 
-@pytest.mark.slow
-def test_a_python_file_is_run_and_gives_the_arguments(folder, capsys):
-    (folder / "s.py").write_text(
-        "import math\nSCALE = 2.0\n"
-        "def model(x):\n    return SCALE * math.sqrt(x)\n"
-        "STUDY = dict(model=model, axes={'x': [1.0, 4.0, -1.0]}, measures={'root': lambda r: r})\n"
-    )
-    assert main(["study", "s.py", "--workers", "2", "--out", "s.nc"]) == 0
-    output = capsys.readouterr().out
-    assert "1 failed: ValueError" in output
-    np.testing.assert_array_equal(read_study("s.nc")["root"].values, [2.0, 4.0, np.nan])
-
-
-def test_recordings_are_diagnosed_as_a_study(folder, capsys):
-    (folder / "d.toml").write_text(f'[study]\nexperiments = ["{td.example("rod")}"]\n')
-    settings = read_study_file("d.toml")
-    assert settings["axes"] == [{"experiment": [str(td.example("rod"))]}]
-    assert settings["measures"] == ["verdict"]
-
-
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
@@ -181,31 +161,6 @@ def test_a_bad_toml_study_is_one_line_and_status_two(folder, capsys, old, new, m
         assert status == 2 and error.count("\n") == 1
         assert error.startswith("teleopdesign: ")
     assert re.search(message, error), error
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["absent.toml"], "absent.toml: cannot be read"),
-        (["s.toml", "--out", "s.csv"], "expected .nc"),
-        (["s.toml", "--out", "none/s.nc"], "there is no folder 'none'"),
-        (["s.toml", "--workers", "2", "--scheduler", "tcp://a:1"], "a cluster has its own workers"),
-        (["no_study.py"], "sets no STUDY"),
-        (["not_python.py"], "line 1: "),
-        (["wrong.py"], "unknown 'axis'.*did you mean \"axes\""),
-        (["lacking.py"], "measures is missing"),
-    ],
-)
-def test_bad_arguments_are_one_line_and_status_two(folder, capsys, arguments, message):
-    import re
-
-    (folder / "no_study.py").write_text("study = 1\n")
-    (folder / "not_python.py").write_text("a b\n")
-    (folder / "wrong.py").write_text("STUDY = dict(model=len, axis={}, measures=len)\n")
-    (folder / "lacking.py").write_text("STUDY = dict(model=len, axes={})\n")
-    assert main(["study", *arguments]) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1 and re.search(message, error), error
 
 
 @pytest.mark.slow

@@ -50,14 +50,6 @@ def test_sobol_indices_are_those_of_the_formula(drawn):
     assert (indices["first_interval"] < 0.15).all()
 
 
-def test_indices_need_points_that_were_drawn_for_them(gridded):
-    with pytest.raises(ModelError, match="need points of sensitivity_samples"):
-        gridded.sensitivity()
-    flat = td.study(plane, td.sensitivity_samples({"x": (0, 1), "y": (0, 1)}, 4), measures=len)
-    with pytest.raises(ModelError, match="every point failed"):
-        flat.sensitivity("len")
-
-
 def test_indices_are_refused_where_points_failed_or_nothing_varies():
     samples = td.sensitivity_samples({"x": (0, 1), "y": (0, 1)}, 8)
     some = td.study(lambda x, y: {"a": x / (x > 0.5)}, samples, measures={"a": dict})
@@ -94,31 +86,6 @@ def test_a_map_shows_the_measure_with_proved_region_and_onset(gridded):
     np.testing.assert_allclose(np.asarray(mesh.get_array()).reshape(expected.shape), expected)
     legend = [t.get_text() for t in figure.legends[0].get_texts()]
     assert legend == ["proved", "onset, simulated"]
-
-
-def test_each_point_lies_in_the_middle_of_its_cell_on_even_and_on_logarithmic_axes(gridded):
-    mesh = gridded.plot.map(at={"z": 0.0}, x="x", y="y").axes[0].collections[0]
-    corners = mesh.get_coordinates()
-    x, y = corners[0, :, 0], corners[:, 0, 1]
-    np.testing.assert_allclose(np.sqrt(x[1:] * x[:-1]), gridded["x"].values)
-    np.testing.assert_allclose(0.5 * (y[1:] + y[:-1]), gridded["y"].values, atol=1e-12)
-
-
-def test_points_that_failed_stay_empty_in_a_map():
-    dataset = td.study(lambda x, y: x / (y > 0), {"x": [1.0, 2.0], "y": [0.0, 1.0]}, measures=value)
-    shown = dataset.plot.map(x="x", y="y").axes[0].collections[0].get_array()
-    assert np.ma.getmaskarray(shown).sum() == 2
-
-
-def test_a_region_that_a_measure_calls_proved_is_hatched_there_alone():
-    def claim(x, y):
-        return {"margin": y - x, "status": "proved" if x < y else "unknown"}
-
-    axes = {"x": [1.0, 2.0, 3.0], "y": [1.5, 2.5]}
-    dataset = td.study(claim, axes, measures={"m": dict})
-    hatched = dataset.plot.map("margin", x="x", y="y", proved="status").axes[0].collections[1]
-    shown = ~np.ma.getmaskarray(hatched.get_array())
-    assert shown.reshape(2, 3).tolist() == [[True, False, False], [True, True, False]]
 
 
 def study(function, axes):
@@ -168,15 +135,6 @@ def test_infinite_values_have_the_colour_of_the_end_and_are_no_failures():
     assert figure.axes[1]._colorbar.extend == "both"
     corner = figure.axes[0].collections[1].get_paths()[0].vertices.sum(axis=1)
     assert corner.min() > 2.9, "no line beside -inf"
-
-
-def test_an_array_hatches_the_region_at_its_coordinates():
-    result = study(product, {"x": [2.0, 1.0], "y": [1.0, 3.0]})
-    hatched = result.plot.map(x="x", y="y", proved=result["value"] > 5).axes[0].collections[1]
-    shown = ~np.ma.getmaskarray(hatched.get_array()).reshape(2, 2)
-    assert shown.tolist() == [[False, False], [False, True]]
-    with pytest.raises(ModelError, match="proved: found an array over x of shape"):
-        result.plot.map(proved=result["value"].isel(y=0))
 
 
 def fails(x):

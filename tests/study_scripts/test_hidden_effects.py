@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import json
-
 import hidden_effects
 import numpy as np
 import pytest
 from _campaign import plan
 from _defects import log_as_loggers_do
-from _recovery_tables import collect
 from _scoring import (
     Answer,
     Truth,
@@ -133,90 +130,6 @@ def test_a_plan_hides_every_effect_of_the_catalogue_on_both_kinds_of_machine():
     for name in ("level", "excitation", "rate"):  # each together with each kind
         pairs = {(getattr(c, name), c.kind) for c in cases}
         assert len(pairs) == 2 * len({getattr(c, name) for c in cases})
-
-
-def finished(folder, case, response):
-    """A case whose truth and answer are there already."""
-    for part in ("truth", "answers", f"cases/{case.name}"):
-        (folder / part).mkdir(parents=True, exist_ok=True)
-    content = {
-        "level": "null", "axis": "prismatic", "effects": [], "indistinguishable": [],
-        "check_error_true": 0.02, "noise_floor": 0.019,
-    }  # fmt: skip
-    (folder / "truth" / f"{case.name}.json").write_text(json.dumps(content))
-    (folder / "cases" / case.name / "experiment.toml").write_text("[channels]\n")
-    (folder / "answers" / f"{case.name}.json").write_text(json.dumps(response))
-
-
-def test_a_case_that_failed_counts_and_one_that_was_not_run_does_not(tmp_path):
-    first, second = plan(2, seed=1, levels=("null",))
-    for case in (first, second):
-        finished(tmp_path, case, {})
-        (tmp_path / "answers" / f"{case.name}.json").unlink()
-    (tmp_path / "failed").mkdir()
-    (tmp_path / "failed" / f"{first.name}.answers.txt").write_text("why\n")
-    campaign = collect(tmp_path, [first, second], ["answers"])
-    assert [(r.case, r.outcome) for r in campaign.rows] == [(first.name, "no answer")]
-
-
-def made_library():
-    """One body whose force lacks a spring, among terms that are near-copies or nothing."""
-    from _terms import Library
-
-    rng = np.random.default_rng(3)
-    effects = ("viscous", "spring", "hardening_spring", "cogging", "cogging", "bias")
-    columns = rng.standard_normal((2, 900, len(effects)))
-    columns[:, :, 2] = 0.8 * columns[:, :, 1] + 0.6 * columns[:, :, 2]  # a cube looks like a line
-    target = 0.4 * columns[:, :, 1] + 0.1 * rng.standard_normal((2, 900))
-    return Library(
-        body="slave",
-        effect=effects,
-        size=np.ones(len(effects)),
-        fit=columns[0],
-        check=columns[1],
-        fit_target=target[0],
-        check_target=target[1],
-    )
-
-
-@pytest.mark.parametrize("method", ["pysindy", "sysidentpy"])
-def test_a_baseline_names_the_term_that_is_missing_and_where(method):
-    pytest.importorskip(method, reason="the extra `bench` is not installed")
-    import _baselines
-
-    choose = getattr(_baselines, f"{method}_columns")
-    library = made_library()
-    named = _baselines.name_effects(library, choose(library))
-    assert (named[0].effect, named[0].at) == ("spring", "slave")
-
-
-def test_a_choice_that_the_check_record_does_not_support_names_nothing():
-    from _baselines import name_effects
-
-    library = made_library()
-    assert name_effects(library, np.array([0, 3])) == []
-    assert [n.effect for n in name_effects(library, np.array([1]))] == ["spring"]
-
-
-def test_a_delay_and_a_lag_are_distinguished_by_their_second_coefficient():
-    from _baselines import name_effects
-    from _terms import Library
-
-    rng = np.random.default_rng(1)
-    columns = rng.standard_normal((2, 600, 2))
-    for share, effect in ((0.5, "actuation_delay"), (1.0, "actuator_lag")):
-        tau = 0.3
-        target = columns @ np.array([tau, -share * tau**2])
-        library = Library(
-            body="device",
-            effect=("actuation_delay", "actuation_delay"),
-            size=np.ones(2),
-            fit=columns[0],
-            check=columns[1],
-            fit_target=target[0],
-            check_target=target[1],
-        )
-        assert [n.effect for n in name_effects(library, np.array([0]))] == [effect]
 
 
 @pytest.mark.slow

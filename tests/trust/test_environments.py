@@ -134,14 +134,6 @@ def test_laws_are_compiled_wherever_nothing_can_be_written(place, run_kernel, tm
     assert (out.split()[:2], errors) == (["42", "1.0"], "")
 
 
-@pytest.mark.slow
-@posix
-def test_a_process_starts_where_nothing_can_be_written():
-    """From its very start, imports included."""
-    done = python(KERNEL, env=UNWRITABLE["nothing"])
-    assert (done.stdout.split()[:2], done.stderr) == (["42", "1.0"], "")
-
-
 @posix
 @pytest.mark.slow
 def test_laws_are_compiled_from_a_package_that_cannot_be_written(tmp_path):
@@ -206,27 +198,6 @@ def test_a_cache_folder_that_others_may_write_to_is_not_used(whose, run_kernel, 
     assert list(folder.iterdir()) == []
 
 
-@pytest.mark.slow
-@posix
-def test_processes_share_a_cold_cache(tmp_path):
-    env = environment(XDG_CACHE_HOME=str(tmp_path))
-    started = [
-        subprocess.Popen(
-            [sys.executable, "-c", KERNEL],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            env=env,
-        )
-        for _ in range(2)
-    ]
-    for process in started:
-        out, errors = process.communicate(timeout=600)
-        assert (out.split()[:2], errors) == (["42", "1.0"], "")
-    folder = tmp_path / "teleopdesign" / "machine_code"
-    assert [p.suffix for p in folder.iterdir() if p.is_file()] == [".py"]
-
-
 # terminals
 
 
@@ -261,16 +232,6 @@ def test_a_full_standard_output_is_one_line():
 def test_a_closed_standard_output_is_no_error():
     code = f"exec {sys.executable} -m teleopdesign.cli effects >&-"
     done = subprocess.run(["sh", "-c", code], capture_output=True, text=True, env=environment())
-    assert (done.returncode, done.stderr) == (0, "")
-
-
-@pytest.mark.slow
-@posix
-def test_a_reader_that_never_reads_is_no_error():
-    reading, writing = os.pipe()
-    os.close(reading)
-    done = command("effects", stdout=writing)
-    os.close(writing)
     assert (done.returncode, done.stderr) == (0, "")
 
 
