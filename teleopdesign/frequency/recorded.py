@@ -11,6 +11,7 @@ sqrt((1 - c) / (2 n c)); Bendat and Piersol, Random Data, 2010, table 9.6.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,7 +104,12 @@ def _spectra(
             f"{WINDOWS} of 16"
         )
     half = rows - rows // 2
-    how = {"fs": 1 / sample_time, "nperseg": rows, "noverlap": half, "detrend": "linear"}
+    how: dict[str, Any] = {
+        "fs": 1 / sample_time,
+        "nperseg": rows,
+        "noverlap": half,
+        "detrend": "linear",
+    }
     made = [[csd(*both, **how) for both in ((x, x), (y, y), (x, y))] for x, y in pairs]
     spectra = np.array([[s for _, s in row] for row in made], dtype=complex)
     lines = np.asarray(made[0][0][0], dtype=float)
