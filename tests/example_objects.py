@@ -152,6 +152,7 @@ QUICK: Mapping[str, Callable[[], Any]] = {
     "felt friction": lambda: diagrams.felt_friction(np.eye(2), [0.4, 0.5]),
     "diagram experiment": lambda: _diagram_experiment(),
     "cuts": lambda: _diagram_experiment().cuts,
+    "channel proposal": lambda: _channel_proposal(),
     "logging plan": lambda: block_cuts.what_to_log(diagram()),
 }
 SLOW: Mapping[str, Callable[[], Any]] = {
@@ -183,6 +184,11 @@ def _diagram_experiment() -> td.DiagramExperiment:
     return td.diagram_experiment(
         diagram(), data, channels=channels, outside=["R_V"], sample_period=1e-3, bandwidth=60
     )
+
+
+def _channel_proposal() -> block_cuts.ChannelProposal:
+    columns = _diagram_experiment().logs[0].columns.values
+    return block_cuts.propose_channels(diagram(), dict(columns))
 
 
 def _link() -> arms.Link:

@@ -9,18 +9,21 @@ app = marimo.App(width="medium", app_title="teleopdesign")
 def _():
     import marimo as mo
 
-    from teleopdesign.app import export, files, logs, pages, settings, views
+    from teleopdesign.app import blocks, export, files, logs, pages, settings, views
     from teleopdesign.app.task import BackgroundTask, stop_running
     from teleopdesign.app.workbench import Workbench
     from teleopdesign.base.errors import TeleopDesignError
+    from teleopdesign.block_cuts import BlockDiagnosis
 
     folder = settings.folder(mo.cli_args().to_dict())
     among = settings.effects(mo.cli_args().to_dict())
     return (
         BackgroundTask,
+        BlockDiagnosis,
         TeleopDesignError,
         Workbench,
         among,
+        blocks,
         export,
         files,
         folder,
@@ -67,7 +70,7 @@ def _(files, folder, get_names, mo):
 
 
 @app.cell
-def _(BackgroundTask, Workbench, among, choice, files, folder, mo, set_note, set_task):
+def _(BackgroundTask, among, blocks, choice, files, folder, mo, set_note, set_task):
     def start_opening(_):
         if choice.value is None:
             set_note("choose an experiment first")
@@ -77,7 +80,7 @@ def _(BackgroundTask, Workbench, among, choice, files, folder, mo, set_note, set
         set_task(
             BackgroundTask(
                 f"opening {choice.value}",
-                lambda say: Workbench.of_folder(path, among=among, progress=say),
+                lambda say: blocks.open_experiment(path, among=among, progress=say),
             )
         )
 
@@ -163,7 +166,7 @@ def _(choice, folder, mo, names, open_button, views):
     mo.vstack(
         [
             mo.md(
-                "# teleopdesign\n\nFind what the model of a device lacks, in a recording of it. "
+                "# teleopdesign\n\nFind what a model or a diagram lacks, in a recording of it. "
                 f"Folder: `{folder.name}`"
             ),
             views.place_side_by_side(choice, open_button)
@@ -223,9 +226,36 @@ def _(get_bench, mo, names):
 
 
 @app.cell
-def _(get_bench, mo, pages, views):
+def _(BlockDiagnosis, blocks, get_bench, mo, views):
+    whole = get_bench()
+    mo.stop(not isinstance(whole, BlockDiagnosis))
+    views.begin_anew()
+    block = mo.ui.dropdown(options=blocks.places(whole), value=blocks.EVERY, label="Block")
+    return block, whole
+
+
+@app.cell
+def _(BackgroundTask, blocks, folder, mo, set_note, set_task, whole):
+    def write_whole(_):
+        set_note("")
+        set_task(BackgroundTask("writing", lambda say: blocks.write_all(whole, folder, say)))
+
+    whole_button = mo.ui.button(
+        label="Write report, answer and picture", on_click=write_whole, kind="success"
+    )
+    return (whole_button,)
+
+
+@app.cell
+def _(block, views, whole, whole_button):
+    views.block_view(whole, block, whole_button)
+    return
+
+
+@app.cell
+def _(Workbench, get_bench, mo, pages, views):
     bench = get_bench()
-    mo.stop(bench is None)
+    mo.stop(not isinstance(bench, Workbench))
     views.begin_anew()
     bodies = tuple(bench.model.bodies)
     body = mo.ui.dropdown(options=bodies, value=bodies[0], label="Body")

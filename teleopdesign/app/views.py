@@ -13,7 +13,8 @@ from typing import Any
 import marimo as mo
 
 from ..base.errors import TeleopDesignError
-from . import charts, export, logs, pages
+from ..block_cuts import BlockDiagnosis
+from . import blocks, charts, export, logs, pages
 from .workbench import Workbench
 
 #: what marimo shows: an element of the page
@@ -225,3 +226,18 @@ def export_view(bench: Workbench, write: PageElement) -> PageElement:
     )
     script = mo.md(f"```python\n{export.script(bench)}\n```")
     return mo.vstack([mo.md(sentence), write, mo.accordion({"The script": script})])
+
+
+def block_view(diagnosis: BlockDiagnosis, block: PageElement, write: PageElement) -> PageElement:
+    """A whole diagram: each block in the colour of its error, its candidates, what is left."""
+    return mo.vstack(
+        [
+            mo.md(blocks.verdict(diagnosis)),
+            diagnosis.plot(),
+            block,
+            mo.ui.table(blocks.candidate_rows(diagnosis, block.value), selection=None, page_size=8),
+            mo.accordion({"Ladder, cuts and groups": mo.plain_text(repr(diagnosis))}),
+            mo.ui.tabs(blocks.residual_figures(diagnosis)),
+            write,
+        ]
+    )

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 from ..base.errors import ModelError, did_you_mean
 from ..diagnose.climb import make_next_move
@@ -19,7 +18,7 @@ from ..diagnose.ranking import Ranked
 from ..diagnose.result import diagnosis_of
 from ..diagnose.rung import Rung
 from ..effects import EFFECTS, Effect
-from ..measurement.experiment import Experiment, load_experiment
+from ..measurement.experiment import Experiment
 from ..model import Model
 
 
@@ -54,17 +53,6 @@ class Workbench:
             model = replace(model, known={n: e for n, e in known.items() if n in among})
         search = search_for(experiment, model, progress=progress)
         return cls(search, (begin(search),))
-
-    @classmethod
-    def of_folder(
-        cls,
-        folder: str | Path,
-        *,
-        among: Collection[str] | None = None,
-        progress: Callable[[str], None] | None = None,
-    ) -> Workbench:
-        """As `of`, for the experiment in a folder."""
-        return cls.of(load_experiment(folder), among=among, progress=progress)
 
     @property
     def experiment(self) -> Experiment:

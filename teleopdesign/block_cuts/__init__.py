@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
+    from .channel_proposal import ChannelProposal as ChannelProposal
+    from .channel_proposal import propose_channels as propose_channels
     from .cuts import Cut as Cut
     from .cuts import Cuts as Cuts
     from .cuts import cuts_of as cuts_of

@@ -34,6 +34,8 @@ def share_of_step(experiment: DiagramExperiment, signal: str) -> tuple[Moving, f
         moving = [b for b in diagram.blocks if isinstance(b, Moving) and b.motion == held.motion]
         whole = sum(_inertia(b) for b in diagram.blocks if b in moving or _is_at(b, held.motion))
         if len(moving) == 1 and whole > 0.0 and _inertia(held) > 0.0:
+            if not _has_command(experiment, moving[0]):
+                return None
             return moving[0], float(terms[held.force]) * held.sign * _inertia(held) / whole
     return None
 
@@ -64,6 +66,13 @@ def command_of(experiment: DiagramExperiment, moving: Moving, log: RecordedLog) 
     part = ComputerPart(experiment.diagram, (cut,), experiment.zero, experiment.computer)
     values, count = part.signal(cut, passes_of(experiment, log)), len(experiment.seconds(log))
     return np.repeat(values, -(-count // len(values)))[:count]
+
+
+def _has_command(experiment: DiagramExperiment, moving: Moving) -> bool:
+    """Whether the command of a body and its motion are recorded, or a cut predicts the command."""
+    cuts = [cut.name for cut in experiment.cuts.tested]
+    recorded = experiment.channels
+    return moving.motion in recorded and (moving.command in recorded or moving.name in cuts)
 
 
 def _is_at(block: object, motion: str) -> bool:

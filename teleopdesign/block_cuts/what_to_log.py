@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from ..base.arguments import check_types
@@ -85,15 +85,25 @@ def what_to_log(diagram: Diagram) -> LoggingPlan:
     needed = [*(s for s in diagram.outside if s in read and s not in at_bodies), *at_bodies]
     apart = [s for b in controls for s in b.outputs]
     names = tuple(dict.fromkeys((*needed, *apart)))
-    zero = tuple(s for s in diagram.outside if s not in names)
-    for name in zero:  # a force that no block needs may have any value
-        fewer = tuple(s for s in zero if s != name)
-        if len(cuts_of(diagram, names, fewer).untested) == len(
-            cuts_of(diagram, names, zero).untested
-        ):
-            zero = fewer
+    zero = zero_signals(diagram, names, names)
     signals = tuple(LoggedSignal(n, diagram.texts.get(n, n), n in needed) for n in names)
     return LoggingPlan(diagram, signals, zero, cuts_of(diagram, names, zero))
+
+
+def zero_signals(
+    diagram: Diagram, recorded: Collection[str], sensed: Collection[str]
+) -> tuple[str, ...]:
+    """Signals from outside that must be zero so that the recorded ones test what they can.
+
+    sensed: signals that a sensor or the computer could give, which are not taken to be zero
+    """
+    zero = tuple(s for s in diagram.outside if s not in sensed)
+    for name in zero:  # a force that no block needs may have any value
+        fewer = tuple(s for s in zero if s != name)
+        untested = [len(cuts_of(diagram, recorded, some).untested) for some in (fewer, zero)]
+        if untested[0] == untested[1]:
+            zero = fewer
+    return zero
 
 
 def _sources(diagram: Diagram, signals: Sequence[str]) -> set[str]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError
 from ._new_curve import is_curve, make_curve
+from ._new_diagram import add_diagram_options, make_diagram
 from ._paths import shell_word
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ EXAMPLES = """
   teleopdesign new a.mat b.mat --output arm         fits on a.mat, checks on b.mat
   teleopdesign new log.csv --fit-span 5 40 --check-span 45 60
   teleopdesign new log.csv --torque-constant "0.037 N*m/A" --gear-ratio 50
+  teleopdesign new log.csv --diagram interface.toml     the signals of a whole diagram
 """
 
 
@@ -43,6 +45,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--yes", action="store_true", help="accept every guess without a question")
     parser.add_argument("--title", help="title of the experiment (default: the name of the log)")
     parser.add_argument("--kind", choices=("friction curve",), help="a table of points, no time")
+    add_diagram_options(parser)
     parser.add_argument("--axis", choices=("prismatic", "revolute"), help="kind of motion")
     for name, text in (
         ("time", "time"),
@@ -95,9 +98,8 @@ def run(options: argparse.Namespace) -> int:
     from ..measurement.survey import require_same_columns, survey_logs
     from ..measurement.tables import open_log
 
-    for path in options.logs:
-        if not path.exists():
-            raise ExperimentError(f"{path}: no such file")
+    if missing := [path for path in options.logs if not path.exists()]:
+        raise ExperimentError(f"{missing[0]}: no such file")
     choices, spans = _choices(options), _spans(options)
     stem = options.logs[0].name.split(".")[0] or "experiment"
     folder = options.output or Path(f"{stem}_experiment")
@@ -106,6 +108,8 @@ def run(options: argparse.Namespace) -> int:
     logs = [open_log(path, path.name) for path in options.logs]
     files = [path.name for path in options.logs]
     require_same_columns(logs, files)
+    if options.diagram or options.signal:
+        return make_diagram(options, choices, logs[0], folder, spans)
     if is_curve(options, logs[0]):
         return make_curve(options, choices, logs[0], folder, options.title or stem)
     survey = survey_logs(logs, files, choices)

@@ -240,21 +240,27 @@ def experiment_text(
     lines += ["", "[channels]"]
     for key, entry in survey.channels.items():
         comments = [w for k, w in survey.guesses.items() if k.startswith(f"channels.{key}.")]
-        line = f"{key} = {_table(entry)}"
+        line = f"{key} = {toml_table(entry)}"
         lines += [comment_text(f"guessed: {c}") for c in comments] + [line]
     if survey.unused:
         lines += ["", "# columns of the log that are in no channel:"]
         lines += [
             comment_text(f"  {string_text(name)}: {why}") for name, why in survey.unused.items()
         ]
-    lines.append("")
-    for record in records:
-        lines.append("[[records]]")
-        lines += [f"{k} = {_toml_text(v)}" for k, v in record.items()]
+    lines += ["", *records_text(records)]
     if survey.guesses:
         lines += ["", "[guessed]"]
         lines += [f"{string_text(key)} = {string_text(why)}" for key, why in survey.guesses.items()]
     return "\n".join(lines) + "\n"
+
+
+def records_text(records: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Lines of the tables [[records]]."""
+    lines = []
+    for record in records:
+        lines.append("[[records]]")
+        lines += [f"{k} = {_toml_text(v)}" for k, v in record.items()]
+    return lines
 
 
 def _first_of(name: str, first: FirstGuess | None, force: str, length: str) -> str:
@@ -272,13 +278,14 @@ def _round(value: float) -> float:
     return float(f"{value:.{_DIGITS}g}")
 
 
-def _table(entries: Mapping[str, Any]) -> str:
+def toml_table(entries: Mapping[str, Any]) -> str:
+    """A table on one line."""
     return inline_text({name: _toml_text(value) for name, value in entries.items()})
 
 
 def _toml_text(value: Any) -> str:
     if isinstance(value, Mapping):
-        return _table(value)
+        return toml_table(value)
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -124,7 +124,13 @@ def available_storage(
     # two cells of the stiffest force's grid: shorter moves would only be blurred by interpolation
     travel = 4 * min(lengths) / (points - 1)
     moves = moves or int(24 * max(lengths) / travel) + 10 * points
-    _check_work(moves, points, len(stateful), ratio=max(lengths) / min(lengths))
+    nodes = points ** len(stateful)
+    if moves > _MOST_MOVES or moves * nodes > _MOST_WORK:
+        raise ModelError(
+            f"available_storage: {moves} moves on {nodes} nodes would take minutes: the longest of "
+            f"the forces' lengths is {max(lengths) / min(lengths):.3g} times the shortest; use "
+            "fewer points, or leave out what gives a thousand times less than the rest"
+        )
     fine, growth = _iterate(stateful, friction, points, travel, moves, load_coefficient)
     half = points // 2 + 1
     longer = travel * (points - 1) / (half - 1)
@@ -157,29 +163,11 @@ def _iterate(
     return v + held, float((v - half).max())
 
 
-def _check_work(moves: int, points: int, forces: int, *, ratio: float) -> None:
-    """Raise ModelError for an iteration that would take minutes.
-
-    ratio: longest over shortest length of the forces
-    """
-    work = moves * points**forces
-    if moves > _MOST_MOVES or work > _MOST_WORK:
-        raise ModelError(
-            f"available_storage: {moves} moves on {points**forces} nodes would take minutes: the "
-            f"longest of the forces' lengths is {ratio:.3g} times the shortest; use fewer points, "
-            "or leave out what gives a thousand times less than the rest"
-        )
-
-
 def _stored_energy(stateful: Sequence[AbstractElement], points: int) -> Array:
     """Energy in the springs of friction less that in the compensator's, at each node, J."""
-    total: Array = np.zeros((1,) * len(stateful))
-    for axis, element in enumerate(stateful):
-        forces = np.linspace(-element.level, element.level, points)
-        one = forces**2 * compliance(element) / 2
-        shape = [points if k == axis else 1 for k in range(len(stateful))]
-        total = total + (-one if axis == 0 else one).reshape(shape)
-    return total
+    halves = [compliance(e) / 2 * np.linspace(-e.level, e.level, points) ** 2 for e in stateful]
+    helped, *held = np.meshgrid(*halves, indexing="ij", sparse=True)
+    return np.asarray(sum(held, -helped))
 
 
 def _move(
@@ -199,8 +187,11 @@ def _move(
         shape = [points if k == axis else 1 for k in range(len(stateful))]
         lost = legs[:, 1] - (legs[:, 0] ** 2 - forces**2) * compliance(element) / 2
         gain = gain + (lost if axis == 0 else -lost).reshape(shape)
-        left, right_share = _cells(forces, legs[:, 0])
-        cells.append((left, right_share.reshape(shape)))
+        # the left neighbouring node, and the weight of the right one
+        place = (legs[:, 0] - forces[0]) / (forces[1] - forces[0])
+        place = np.clip(place, 0, points - 1)
+        left = np.minimum(place.astype(np.intp), points - 2)
+        cells.append((left, (place - left).reshape(shape)))
         if load and axis == len(stateful) - 1:
             pressed = load * np.abs(forces + legs[:, 0]) / 2 * abs(travel)
             gain = gain - pressed.reshape(shape)
@@ -214,13 +205,6 @@ def _move(
         return np.asarray(gain + moved)
 
     return before
-
-
-def _cells(nodes: Array, at: Array) -> tuple[NDArray[np.intp], Array]:
-    """For each point, (n,): index of the left neighbouring node, and weight of the right one."""
-    position = np.clip((at - nodes[0]) / (nodes[1] - nodes[0]), 0, len(nodes) - 1)
-    left = np.minimum(position.astype(np.intp), len(nodes) - 2)
-    return left, position - left
 
 
 #: range of the strokes: the shortest over the shortest length of a force, the longest over the

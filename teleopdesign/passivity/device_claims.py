@@ -8,14 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.errors import ModelError
 from ..base.sentences import round_down, round_near, round_up
 from ..controllers import CONTROLLERS, Controller, Stage, controller
 from ..diagrams import haptic_interface
 from ..simulate import Sampling
-from .claims.claim import Claim, Unknown
 from .identified import DIGITS, IdentifiedDevice
-from .search.by_simulation import search_counterexample
 from .theorems import Question, TopicClaim, settle
 
 #: N/m: a stiffness that gives ideal friction a length, for the strokes of a search
@@ -78,39 +75,25 @@ def compensation_claims(
     tries: number of these motions
     returns: claims by theorems, then one claim by the search
     """
-    rng = np.random.default_rng(rng)
-    question = Question(device, compensator.stage, computer=computer)
-    return [*settle(question), _search_claim(device, compensator, computer, rng, tries)]
-
-
-def _search_claim(
-    device: IdentifiedDevice,
-    compensator: Compensator,
-    computer: Sampling | None,
-    rng: np.random.Generator,
-    tries: int,
-) -> TopicClaim:
-    """A claim about the whole device with its compensator, from a search in simulation."""
-    topic, lengths = "search by simulation", [device.lowest.estimate / _RIGID]
+    lengths = [device.lowest.estimate / _RIGID]
     if device.presliding is not None:
         lengths = [device.lowest.estimate / device.presliding.estimate]
     if compensator.stage.value_of("bristle_stiffness") is not None:
         lengths.append(compensator.level / compensator.second)
     stroke = round_near(100 * max(lengths), digits=3)
-    try:
-        claim = search_counterexample(
-            haptic_interface(device.body, cancellation=compensator.controller),
-            stroke=stroke,
-            # a stroke takes a third of a second, or up to a hundred times that
-            speed=round_near(10 * stroke, digits=3),
-            rng=rng,
-            computer=computer or "continuous",
-            give=min(lengths) / 100,
-            tries=tries,
-        )
-    except ModelError as problem:  # a body that this simulation does not take
-        return TopicClaim(topic, Claim("the device as simulated is passive", Unknown(str(problem))))
-    return TopicClaim.from_search(topic, claim)
+    by_search = TopicClaim.from_search(
+        "search by simulation",
+        "the device as simulated is passive",
+        haptic_interface(device.body, cancellation=compensator.controller),
+        stroke=stroke,
+        # a stroke takes a third of a second, or up to a hundred times that
+        speed=round_near(10 * stroke, digits=3),
+        rng=rng,
+        computer=computer or "continuous",
+        give=min(lengths) / 100,
+        tries=tries,
+    )
+    return [*settle(Question(device, compensator.stage, computer=computer)), by_search]
 
 
 def margins(device: IdentifiedDevice, compensator: Compensator | None = None) -> Sequence[Margin]:
@@ -123,35 +106,31 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
         return []  # friction may be less than any model of the records says
     force, stiff = device.force_unit, device.stiffness_unit
     alone = f", for friction without {', '.join(device.set_aside)}" if device.set_aside else ""
-    limits = [
-        Margin(text + alone, level, force)
-        for text, level in (
-            (
-                "largest compensator level f_D for passivity at the estimates",
-                _round_limit(device.lowest.estimate),
-            ),
-            (
-                "largest compensator level f_D for passivity at every level in the interval",
-                _round_limit(device.lowest.low),
-            ),
-        )
-    ]
-    presliding = device.presliding
+
+    def level(text: str, limit: float) -> Margin:
+        """An upper limit of the level, rounded down to the digits of claims."""
+        text = f"largest compensator level f_D {text}{alone}"
+        return Margin(text, round_down(limit, digits=DIGITS), force)
+
+    lowest, presliding = device.lowest, device.presliding
     if device.basis is not None and not device.basis.is_adequate:
         # what is unexplained is in no estimate, nor in the damping
-        text = "largest compensator level f_D for passivity in the covered cells"
-        return [Margin(text + alone, _round_limit(device.lowest.low), force)]
+        return [level("for passivity in the covered cells", lowest.low)]
+    limits = [
+        level("for passivity at the estimates", lowest.estimate),
+        level("for passivity at every level in the interval", lowest.low),
+    ]
     if presliding is None:
-        text = "largest compensator level f_D that drives no motion, with viscous damping"
-        return [*limits, Margin(text + alone, _round_limit(device.least_resistance.low), force)]
-    recoil = device.bristle_damping.high * (device.highest.high - device.lowest.low)
-    if device.damping.low * device.lowest.low < recoil:
+        text = "that drives no motion, with viscous damping"
+        return [*limits, level(text, device.least_resistance.low)]
+    recoil = device.bristle_damping.high * (device.highest.high - lowest.low)
+    if device.damping.low * lowest.low < recoil:
         return []  # no limit is known where the bristle's damping may release energy
     if compensator is not None and compensator.stage.value_of("bristle_stiffness") is None:
         return []  # no limit is known for such a law on a contact that deflects
-    level = min(compensator.level if compensator else math.inf, device.lowest.low)
-    softest = _round_limit(presliding.low * math.sqrt(level / device.highest.high))
-    limits.append(Margin(f"largest sigma_D at f_D = {level:.4g} {force}{alone}", softest, stiff))
+    f_d = min(compensator.level if compensator else math.inf, lowest.low)
+    softest = round_down(presliding.low * math.sqrt(f_d / device.highest.high), digits=DIGITS)
+    limits.append(Margin(f"largest sigma_D at f_D = {f_d:.4g} {force}{alone}", softest, stiff))
     if compensator is not None:
         least = device.highest.high * (compensator.second / presliding.low) ** 2
         least = round_up(least, digits=DIGITS)
@@ -159,8 +138,3 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
             Margin(f"least f_D at sigma_D = {compensator.second:.4g} {stiff}{alone}", least, force)
         )
     return limits
-
-
-def _round_limit(limit: float) -> float:
-    """An upper limit, rounded down to the digits of claims."""
-    return round_down(limit, digits=DIGITS)

@@ -6,7 +6,7 @@ refuted claim is also refuted at four nearby sets of values, so that it does not
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import sympy as sp
@@ -54,8 +54,8 @@ def _judge(diagram: Diagram, all_ports: Sequence[Port]) -> list[TopicClaim]:
     judges |= {_HELD: stable_claim} if family.size == 2 else {}
     claims = [TopicClaim(topic, judge(family)) for topic, judge in judges.items()]
     if any(one.claim.status == "refuted" for one in claims):
-        for other in _nearby(diagram):
-            claims = _refuted_there_too(claims, other, all_ports, judges)
+        others = [_family_if_any(other, all_ports) for other in _nearby(diagram)]
+        claims = [replace(c, claim=_confirm(c.claim, others, judges[c.topic])) for c in claims]
     motions = {motion.removesuffix("_tip") for port in all_ports for motion in port.weights}
     axes = {getattr(b.body, "axis", "") for b in diagram.bodies if b.motion in motions}
     axis = axes.pop() if len(axes) == 1 else "prismatic"  # which all bodies at the ports share
@@ -66,28 +66,23 @@ def _open(diagram: Diagram, why: str) -> list[TopicClaim]:
     return [TopicClaim(WHOLE[0], Claim(f"{diagram.name}: its ports are passive", Unknown(why)))]
 
 
-def _refuted_there_too(
-    claims: list[TopicClaim],
-    other: Diagram,
-    all_ports: Sequence[Port],
-    judges: Mapping[str, Callable[[Family], Claim]],
-) -> list[TopicClaim]:
-    """The claims, with each refutation dropped that does not also hold at the values of `other`."""
-    if not any(one.claim.status == "refuted" for one in claims):
-        return claims
+def _family_if_any(diagram: Diagram, all_ports: Sequence[Port]) -> Family | None:
     try:
-        family = family_at(other, all_ports)
+        return family_at(diagram, all_ports)
     except ModelError:
-        family = None
-    made = []
-    for one in claims:
-        if one.claim.status == "refuted" and not (
-            family and (_moves(one.claim, family) or judges[one.topic](family).status == "refuted")
-        ):
-            why = f"it fails, but a relative change of its values by {NEARBY:.1g} decides: rounding"
-            one = replace(one, claim=Claim(one.claim.statement, Unknown(why)))
-        made.append(one)
-    return made
+        return None
+
+
+def _confirm(
+    claim: Claim, others: Sequence[Family | None], judge: Callable[[Family], Claim]
+) -> Claim:
+    """The claim; unknown where it is refuted, and not by all of the other forms."""
+    if claim.status != "refuted" or all(
+        other and (_moves(claim, other) or judge(other).status == "refuted") for other in others
+    ):
+        return claim
+    why = f"it fails, but a relative change of its values by {NEARBY:.1g} decides: rounding"
+    return Claim(claim.statement, Unknown(why))
 
 
 def _moves(claim: Claim, family: Family) -> bool:

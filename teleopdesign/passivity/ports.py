@@ -90,10 +90,8 @@ def ports(diagram: Diagram) -> tuple[Port, ...]:
     moving = [b for b in diagram.blocks if isinstance(b, Moving)]
     at_forces = []
     for force in dict.fromkeys(b.driver for b in moving if b.driver in diagram.outside):
-        shares = shares_of(diagram, force)
-        loads = {b.motion: total_share(b.loads, shares) for b in moving}
-        kept = {m: w for m, w in loads.items() if w != 0}
-        if weights := {m: w if w.free_symbols else float(w) for m, w in kept.items()}:
+        loads = _loads_of(diagram, force).items()
+        if weights := {m: w if w.free_symbols else float(w) for m, w in loads}:
             at_forces.append(Port(force, weights))
     if not at_forces:
         raise ModelError(f"{diagram.name}: no force from outside drives a body: it has no port")

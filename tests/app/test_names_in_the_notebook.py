@@ -7,19 +7,19 @@ from pathlib import Path
 import pytest
 
 import teleopdesign.app
-from teleopdesign.app import export, files, logs, pages, settings
+from teleopdesign.app import blocks, export, files, logs, pages, settings
 from teleopdesign.app.task import BackgroundTask
 from teleopdesign.app.workbench import Workbench
 
 SOURCE = Path(teleopdesign.app.__file__).with_name("notebook.py")
 #: what a cell calls by these names
 OWNERS = {
+    "blocks": blocks,
     "export": export,
     "files": files,
     "logs": logs,
     "pages": pages,
     "settings": settings,
-    "Workbench": Workbench,
     "bench": Workbench,
     "BackgroundTask": BackgroundTask,
     "task": BackgroundTask,

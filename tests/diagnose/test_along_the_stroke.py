@@ -67,7 +67,7 @@ def test_a_gain_that_falls_to_the_ends_of_the_stroke_is_named_and_not_a_hardenin
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("parts", [2, 3])
+@pytest.mark.parametrize("parts", [3])
 def test_a_second_wave_of_cogging_is_named_beside_the_first(parts, tmp_path):
     period = 2 * np.pi / 24
 

@@ -58,9 +58,9 @@ def test_a_true_model_leaves_what_its_sensors_leave(case):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [1, 108])  # a tip of 0.64 and of 0.15 times the body's inertia
-def test_a_search_finds_a_heavy_and_a_light_tip(number, tmp_path):
-    """It ended at 38 and 10 % of the fit record, where the true values leave 4 and 3 %."""
+@pytest.mark.parametrize("number", [108])  # a tip of 0.15 times the body's inertia
+def test_a_search_finds_a_light_tip(number, tmp_path):
+    """It ended at 10 % of the fit record, where the true values leave 3 %."""
     rng = np.random.default_rng([9911, number])
     write_case(make_case(rng, "clear", ["backlash"], "teleoperator", "normal", 1000), tmp_path)
     truth, experiment = truth_of(tmp_path), load_experiment(tmp_path)

@@ -72,7 +72,7 @@ def test_no_wave_beats_what_is_proved_and_each_refutation_is_one(size):
     kinds = set()
     for less in (0, sp.Rational(1, 50), 3):
         z = random_matrix(rng, size, less)
-        claim = passive_claim(family_of_matrix(z.tolist()))
+        claim = passive_claim(family_of_matrix(sp.ImmutableMatrix(z)))
         values = np.array(sp.lambdify(S, z.tolist(), "numpy")(points), dtype=object)
         values = np.array([[np.broadcast_to(e, points.shape) for e in row] for row in values])
         values = np.moveaxis(values.astype(complex), 2, 0)
@@ -90,7 +90,7 @@ def test_a_refutation_of_three_ports_states_the_frequency_of_its_wave(frequency)
     """A damper of 1 N s/m less twice a resonance at that many rad/s."""
     s = S / frequency
     dip = 1 - 2 * (s / 5) / (s**2 + s / 5 + 1)
-    claim = passive_claim(family_of_matrix(sp.diag(1, dip, 1).tolist()))
+    claim = passive_claim(family_of_matrix(sp.ImmutableMatrix(sp.diag(1, dip, 1))))
     assert claim.status == "refuted"
     stated = float(str(claim.verdict).partition("at ")[2].split()[0])
     assert stated == pytest.approx(frequency / (2 * np.pi), rel=0.15)

@@ -130,7 +130,7 @@ def test_terminations_between_which_the_motion_grows_are_detected_however_little
     transfer, grows = TRANSFERS[case]
     above, below = (9 * transfer, sp.S(1)) if not turned else (sp.S(1), 9 * transfer)
     z = sp.ImmutableMatrix([[3, above], [below, 3]])
-    mode = growing_mode(family_of_matrix(z.tolist()))
+    mode = growing_mode(family_of_matrix(sp.ImmutableMatrix(z)))
     assert (mode is not None) == grows
     for candidate in filter(None, [mode]):
         assert grows and candidate.is_confirmed() and candidate.rate > 0 and candidate.energy > 0

@@ -258,6 +258,13 @@ def _with_few_digits(step: float, reach: float) -> float:
     return next((r for r in rounded if abs(r / step - 1.0) * reach < OFF_GRID * step), step)
 
 
+def unit_of_reach(reach: float, axis: str) -> str:
+    """The usual unit of a position whose readings have this range."""
+    if axis == "revolute":
+        return "deg" if reach > 50 else "rad"
+    return "mm" if reach > 3 else "m"
+
+
 def _position_unit(
     survey: Survey, column: SurveyedColumn, velocity: str | None, axis: str
 ) -> tuple[str, str]:
@@ -281,10 +288,7 @@ def _position_unit(
         return "turns", f"turns: {' and '.join(drives)} drives report turns"
     if axis == "revolute" and (turn := turn_of(column.values)) is not None:
         return turn, f"{turn}: the readings wrap at a turn in {turn}"
-    if axis == "revolute":
-        unit = "deg" if reach > 50 else "rad"
-    else:
-        unit = "mm" if reach > 3 else "m"
+    unit = unit_of_reach(reach, axis)
     why = why_no_unit(column.name, column.unit, "position", axis)
     more = f", `scale` = {unit} per {column.unit} is missing" if column.unit in OF_SENSORS else ""
     return unit, f"{unit}: {why}, and the readings have a range of {reach:.3g}{more}"

@@ -49,33 +49,20 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from .algebra import Poly, expect_fields, read_matrix
+from .algebra import Poly
 from .effort import need
 from .over_a_box import PolyMatrix, SignsOverBox, degree, read_impedance, times_x
 from .polynomials import coefficient_list, derivative, greatest_common_divisor, is_hurwitz
-from .positive_real import with_damper, with_one_denominator
+from .positive_real import with_damper
 
 
 def state_absolute_stability(c: dict[str, Any]) -> str:
-    """The statement that a certificate at a point proves; raises Refused where Z is not so."""
-    expect_fields(c, "kind", "title", "digest", "impedance")
-    algebra, rows, text = read_matrix(c["impedance"], (2,))
-    n, d = with_one_denominator(algebra, rows)
-    _check(SignsOverBox({}, algebra), n, d)
-    return (
-        f"Z(s) = [{text}] is absolutely stable: no positive-real Z1 and Z2 for which the inverse "
-        "(Z + diag(Z1, Z2))^-1 exists give it a pole with Re s > 0"
-    )
-
-
-def state_over_a_box(c: dict[str, Any]) -> str:
-    """The statement that Z is absolutely stable over a box; raises Refused where not shown."""
-    box, n, d, text = read_impedance(c)
-    need(len(n) == 2, "numerators: not 2x2")
+    """The statement that Z is absolutely stable, as the certificate says; raises Refused if not."""
+    box, n, d, text, where = read_impedance(c, (2,))
     _check(box, n, d)
     return (
         f"{text} is absolutely stable: no positive-real Z1 and Z2 for which the inverse "
-        f"(Z + diag(Z1, Z2))^-1 exists give it a pole with Re s > 0, {box.where()}"
+        f"(Z + diag(Z1, Z2))^-1 exists give it a pole with Re s > 0{where}"
     )
 
 

@@ -11,7 +11,7 @@ from fractions import Fraction
 from operator import add, sub
 from typing import Any
 
-from .effort import DEGREE, DIGITS, EFFORT, NAMES, NESTING, Refused, longest, need, spend_from
+from .effort import DEGREE, DIGITS, NAMES, NESTING, Refused, longest, need, spend_from
 
 #: a polynomial: exponents of the names -> coefficient, not 0; {} is the zero polynomial
 Poly = dict[tuple[int, ...], Fraction]
@@ -250,17 +250,3 @@ def expect_fields(c: dict[str, Any], *names: str) -> None:
 def flat(text: str) -> str:
     """The text on one line."""
     return " ".join(text.split())
-
-
-def read_matrix(value: Any, sizes: tuple[int, ...]) -> tuple[Algebra, list[list[Quotient]], str]:
-    """Read a square matrix of texts: the algebra in s, the entries, and a text for a statement.
-
-    sizes: numbers of rows that are allowed;  raises Refused: another matrix
-    """
-    rows = [expect(list, row, "impedance") for row in expect(list, value, "impedance")]
-    shape = " or ".join(f"{n}x{n}" for n in sizes)
-    fits = len(rows) in sizes and all(len(row) == len(rows) for row in rows)
-    need(fits, f"impedance: not {shape}")
-    algebra = Algebra(["s"], [EFFORT], divides=True)
-    z = [[algebra.read(e) for e in row] for row in rows]
-    return algebra, z, ", ".join("[" + ", ".join(map(flat, row)) + "]" for row in rows)

@@ -10,11 +10,9 @@ from collections.abc import Callable
 from typing import Any
 
 from .absolute_stability import state_absolute_stability
-from .absolute_stability import state_over_a_box as stable_over_a_box
 from .algebra import expect
 from .effort import FILE, Refused, need
 from .over_a_box import state_stability
-from .positive_real import state_over_a_box as positive_real_over_a_box
 from .positive_real import state_positive_real
 from .storage import Storage
 
@@ -23,8 +21,8 @@ _DECIDED: dict[str, Callable[[dict[str, Any]], str]] = {
     "positive real": state_positive_real,
     "absolute stability": state_absolute_stability,
     "stable over a box": state_stability,
-    "positive real over a box": positive_real_over_a_box,
-    "absolute stability over a box": stable_over_a_box,
+    "positive real over a box": state_positive_real,
+    "absolute stability over a box": state_absolute_stability,
 }
 KINDS = ("storage", *_DECIDED)
 

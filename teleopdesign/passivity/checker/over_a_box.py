@@ -23,7 +23,7 @@ from fractions import Fraction
 from itertools import combinations
 from typing import Any
 
-from .algebra import Algebra, Poly, expect, expect_fields, flat, read_number, read_words
+from .algebra import Algebra, Poly, Quotient, expect, expect_fields, flat, read_number, read_words
 from .box_signs import Ends, are_apart_from_zero, are_non_negative
 from .effort import EFFORT, need
 from .polynomials import (
@@ -211,21 +211,46 @@ def state_stability(c: dict[str, Any]) -> str:
     return f"no root of {flat(c['polynomial'])} has Re s >= 0, {box.where()}"
 
 
-def read_impedance(c: dict[str, Any], *more: str) -> tuple[SignsOverBox, PolyMatrix, Poly, str]:
-    """The box, the numerators, the denominator, and the text of Z of a certificate over a box.
+def read_impedance(
+    c: dict[str, Any], sizes: Sequence[int], *more: str
+) -> tuple[SignsOverBox, PolyMatrix, Poly, str, str]:
+    """Z of a certificate: the box, numerators over one denominator, and its text.
 
-    more: fields of the kind besides those of every impedance
+    The last item says over which box, in words; "" for a matrix at a point.
+
+    sizes: numbers of rows that are allowed, over a box two at most
+    more: fields over a box besides those of every impedance
     """
-    fields = ("kind", "title", "digest", "box", "squares", "numerators", "denominator")
-    expect_fields(c, *fields, *more)
-    rows = [expect(list, r, "numerators") for r in expect(list, c["numerators"], "numerators")]
-    need(len(rows) in (1, 2) and all(len(r) == len(rows) for r in rows), "numerators: not 1x1, 2x2")
-    box = SignsOverBox(c)
-    n, d = [[box.read(e) for e in row] for row in rows], box.read(c["denominator"])
-    need(d, "denominator: zero")
-    need(box.is_nowhere_zero(d), "denominator: zero somewhere in the box")
-    above = ", ".join("[" + ", ".join(map(flat, row)) + "]" for row in rows)
-    return box, n, d, f"Z(s) = [{above}]/({flat(c['denominator'])})"
+    known = ("kind", "title", "digest")
+    if c["kind"].endswith("over a box"):
+        expect_fields(c, *known, "box", "squares", "numerators", "denominator", *more)
+        rows = _read_square(c["numerators"], "numerators", [k for k in sizes if k < 3])
+        box = SignsOverBox(c)
+        n, d = [[box.read(e) for e in row] for row in rows], box.read(c["denominator"])
+        need(d, "denominator: zero")
+        need(box.is_nowhere_zero(d), "denominator: zero somewhere in the box")
+        return box, n, d, f"{_text(rows)}/({flat(c['denominator'])})", f", {box.where()}"
+    expect_fields(c, *known, "impedance")
+    rows = _read_square(c["impedance"], "impedance", sizes)
+    algebra = Algebra(["s"], [EFFORT], divides=True)
+    z = [[algebra.read(e) for e in row] for row in rows]
+    below = {b: max(e.below.get(b, 0) for row in z for e in row) for b in algebra.bases}
+    n = [[algebra.over(e, below, e.below) for e in row] for row in z]
+    d = algebra.over(Quotient(algebra.number(1), {}), below, {})
+    return SignsOverBox({}, algebra), n, d, _text(rows), ""
+
+
+def _read_square(value: Any, field: str, sizes: Sequence[int]) -> list[list[Any]]:
+    """Rows of a square matrix of texts; raises Refused: another number of rows."""
+    rows = [expect(list, row, field) for row in expect(list, value, field)]
+    fits = len(rows) in sizes and all(len(row) == len(rows) for row in rows)
+    need(fits, f"{field}: not {' or '.join(f'{k}x{k}' for k in sizes)}")
+    return rows
+
+
+def _text(rows: Sequence[Sequence[Any]]) -> str:
+    """Z as its rows are written."""
+    return "Z(s) = [" + ", ".join("[" + ", ".join(map(flat, row)) + "]" for row in rows) + "]"
 
 
 def _interval(value: Any) -> tuple[Fraction, Fraction]:

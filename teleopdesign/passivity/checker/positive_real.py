@@ -24,7 +24,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from .algebra import Algebra, Poly, Quotient, expect_fields, read_matrix, read_number
+from .algebra import Poly, read_number
 from .effort import need
 from .over_a_box import PolyMatrix, SignsOverBox, halves, read_impedance
 
@@ -33,28 +33,12 @@ SIZES = (1, 2, 3, 4, 5, 6)
 
 
 def state_positive_real(c: dict[str, Any]) -> str:
-    """The statement that a certificate at a point proves; raises Refused where Z is not so."""
-    expect_fields(c, "kind", "title", "digest", "impedance")
-    algebra, rows, text = read_matrix(c["impedance"], SIZES)
-    n, d = with_one_denominator(algebra, rows)
-    _check(SignsOverBox({}, algebra), n, d, Fraction(1))
-    return f"Z(s) = [{text}] is positive real: analytic with Z + Z^H >= 0 for Re s > 0"
-
-
-def state_over_a_box(c: dict[str, Any]) -> str:
-    """The statement that Z is positive real over a box; raises Refused where it is not shown."""
-    box, n, d, text = read_impedance(c, "scale")
-    scale = read_number(c["scale"], "scale")
+    """The statement that Z is positive real, as the certificate says; raises Refused if not."""
+    box, n, d, text, where = read_impedance(c, SIZES, "scale")
+    scale = read_number(c["scale"], "scale") if where else Fraction(1)
     need(scale > 0, "scale: not > 0")
     _check(box, n, d, scale)
-    return f"{text} is positive real: analytic with Z + Z^H >= 0 for Re s > 0, {box.where()}"
-
-
-def with_one_denominator(algebra: Algebra, rows: list[list[Quotient]]) -> tuple[PolyMatrix, Poly]:
-    """The matrix as numerators over one denominator."""
-    below = {n: max(e.below.get(n, 0) for row in rows for e in row) for n in algebra.bases}
-    d = algebra.over(Quotient(algebra.number(1), {}), below, {})
-    return [[algebra.over(e, below, e.below) for e in row] for row in rows], d
+    return f"{text} is positive real: analytic with Z + Z^H >= 0 for Re s > 0{where}"
 
 
 def _check(box: SignsOverBox, n: PolyMatrix, d: Poly, scale: Fraction) -> None:

@@ -10,7 +10,6 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
 from typing import Any, Literal
 
@@ -21,9 +20,6 @@ from ...base.errors import ModelError
 from ...base.files import write_text
 from ...base.shown import Shown
 from ..checker import Refused, check, load
-
-#: one term of an identity, (weight, factor -> power, e): weight * product of factor^power * e^2
-Term = tuple[sp.Expr | int, Mapping[str, int], sp.Expr | int]
 
 
 @check_types
@@ -83,77 +79,6 @@ def matrix_certificate(
     """
     rows = [[checker_text(e) for e in row] for row in impedance]
     return seal({"kind": kind, "title": title, "impedance": rows})
-
-
-def storage_certificate(
-    title: str,
-    *,
-    supply: sp.Expr,
-    storage: sp.Expr | int = 0,
-    rates: Mapping[str, sp.Expr] | None = None,
-    constants: Sequence[str] = (),
-    positive: Mapping[str, sp.Expr] | None = None,
-    nonnegative: Mapping[str, sp.Expr] | None = None,
-    invariant: Mapping[str, tuple[sp.Expr, sp.Expr]] | None = None,
-    signs: Sequence[str] = (),
-    proofs: Mapping[str, Mapping[str, Sequence[Term]]],
-    example: Mapping[str, sp.Expr | int],
-) -> Certificate:
-    """Certificate that supply >= dV/dt with V >= 0 wherever the assumptions hold; not yet checked.
-
-    `checker/storage.py` contains the theorem and its proof.
-
-    supply: power that flows in;  storage: V
-    rates: state -> rate of change;  constants: names that do not change; other names are signals
-    positive, nonnegative: name -> expression that is assumed to be > 0, or >= 0
-    invariant: name -> (h, rate), with h' + rate h >= 0: h >= 0 at the start implies h >= 0 later
-    signs: signals and states x for which sign_x and abs_x are used
-    proofs: "supply", "storage" or name of an invariant -> signs -> terms of the identity (`Term`);
-        signs: one combination such as "1 -1", or "" for all combinations
-    example: values that meet all assumptions (for each x in `signs` its size)
-    raises ModelError: an expression is not rational with exact numbers
-    """
-    rates, invariant = rates or {}, invariant or {}
-    positive, nonnegative = positive or {}, nonnegative or {}
-    used = [supply, storage, *rates.values(), *positive.values(), *nonnegative.values()]
-    used += [e for pair in invariant.values() for e in pair]
-    names = {s.name for e in used for s in sp.sympify(e).free_symbols} | {*signs}
-    known = {*rates, *constants, *(prefix + x for x in signs for prefix in ("abs_", "sign_"))}
-    content = {
-        "kind": "storage",
-        "title": title,
-        "constants": sorted(constants),
-        "signals": sorted(names - known),
-        "positive": _text(positive),
-        "nonnegative": _text(nonnegative),
-        "rates": _text(rates),
-        "supply": checker_text(supply),
-        "storage": checker_text(storage),
-        "signs": list(signs),
-        "invariant": {
-            n: {"expression": checker_text(h), "rate": checker_text(rate)}
-            for n, (h, rate) in invariant.items()
-        },
-        "proofs": {goal: _cases(by_case, signs) for goal, by_case in proofs.items()},
-        "example": _text({n: e for n, e in example.items() if n in {*names, *rates, *constants}}),
-    }
-    return seal(content)
-
-
-def _cases(by_case: Mapping[str, Sequence[Term]], signs: Sequence[str]) -> dict[str, list[Any]]:
-    """The terms of an identity for each combination of signs."""
-    cases = [" ".join(case) for case in product(("1", "-1"), repeat=len(signs))]
-    return {
-        case: [
-            [checker_text(w), dict(powers), checker_text(e)]
-            for w, powers, e in by_case.get(case, by_case.get("", ()))
-        ]
-        for case in cases
-    }
-
-
-def _text(expressions: Mapping[str, sp.Expr | int]) -> dict[str, str]:
-    return {name: checker_text(e) for name, e in expressions.items()}
 
 
 def checker_text(expression: sp.Expr | int) -> str:

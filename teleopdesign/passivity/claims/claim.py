@@ -24,11 +24,6 @@ from ...base.shown import Shown
 from ...base.units import unit_of
 from .certificate import Certificate
 
-#: of an exact answer without a certificate
-TOO_MUCH = (
-    "decided in exact arithmetic; a certificate would ask for more work than its checker does"
-)
-
 
 class NotTrueOrFalse:
     """A result with four statuses: `if claim:` is refused, it would pass if refuted, too."""
@@ -127,25 +122,6 @@ class Evidence(ByValue):
         side = "in favour" if self.holds else "against"
         margin = "" if math.isnan(self.margin) else f"; margin {self.margin:.4g} {self.unit}"
         return f"{side}: {self.searched}{margin}".rstrip()
-
-
-def prove_by_certificate(
-    method: str,
-    certificate: Callable[[], Certificate],
-    margin: float = float("nan"),
-    unit: str = "",
-    equality: str = "",
-) -> Proof | Evidence:
-    """A proof, if the checker accepts its certificate; else the exact result as evidence.
-
-    method, margin, unit, equality: as in `Proof`;  certificate: makes the certificate
-    """
-    try:
-        made = certificate()
-        made.check()
-    except (ModelError, ValueError):  # Python writes no integers of more than 4300 digits
-        return Evidence(True, f"{method}: {TOO_MUCH}", margin, unit)
-    return Proof(method, (made,), margin, unit, equality)
 
 
 @dataclass(frozen=True)

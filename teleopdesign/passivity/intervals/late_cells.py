@@ -14,8 +14,8 @@ abs(f) has to be larger. An angle is wrong by at most `_ANGLE` of its size.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -45,80 +45,65 @@ class _Group:
     turned: np.ndarray
 
 
-@dataclass(frozen=True)
-class LateSum:
-    """f over a box: groups of terms, the one without dead time first.
-
-    degree: highest power of s;  values: intervals, (values, 2);  longest: dead times, s
-    """
-
-    groups: tuple[_Group, ...]
-    degree: int
-    values: np.ndarray
-    longest: np.ndarray
-
-    @classmethod
-    def of(cls, p: Any, times: Mapping[sp.Symbol, sp.Expr], box: ValueBox) -> LateSum:
-        """f, a polynomial in s, the values of a box and symbols of e^(-s T)."""
-        symbols, n = p.ring.symbols, len(box.names)
-        marks = [symbols.index(x) for x in times]
-        ends = dict(zip(symbols[1 : 1 + n], box.high, strict=True))
-        longest = [
-            float(sp.sympify(t).xreplace({x: sp.Float(v, 17) for x, v in ends.items()}))
-            for t in times.values()
-        ]
-        used = [k for k in range(1, 1 + n) if any(powers[k] for powers in p)]
-        largest = max(map(abs, p.values()))
-        made: dict[tuple[int, ...], list[tuple[list[int], complex]]] = {}
-        for powers, c in p.items():
-            share = c / largest
-            size = int(share.numerator) / int(share.denominator) * 1j ** (powers[0] % 4)
-            late = tuple(powers[k] for k in marks)
-            made.setdefault(late, []).append(([powers[0], *(powers[k] for k in used)], size))
-        groups = tuple(
-            _Group(np.array(late), np.array([k for k, _ in terms]), np.array([c for _, c in terms]))
-            for late, terms in sorted(made.items(), key=lambda item: sum(item[0]))
-        )
-        values = np.array([[box.low[k - 1], box.high[k - 1]] for k in used]).reshape(-1, 2)
-        return cls(groups, max(k[0] for k in p), values, np.array(longest))
-
-    def groups_outside(self) -> tuple[_Group, ...]:
-        """The groups of f/w^n over 1/w."""
-        made = []
-        for group in self.groups:
-            powers = group.powers.copy()
-            powers[:, 0] = self.degree - powers[:, 0]
-            made.append(_Group(group.late, powers, group.turned))
-        return tuple(made)
-
-
-def is_zero_free(f: LateSum, *, most: int = _MOST_PARTS) -> int | None:
+def is_zero_free(p: Any, times: Mapping[sp.Symbol, sp.Expr], box: ValueBox) -> int | None:
     """Number of parts that show that f(jw) is nowhere zero, for all dead times from 0 on.
 
-    most: largest number of parts
+    p: f, a polynomial in s, the values of a box and symbols of e^(-s T);  times: of these T
     returns: None where nothing is shown
     """
-    if f.groups[0].late.any():
+    groups, values, longest = _sum_over_box(p, times, box)
+    if groups[0].late.any():
         return None  # every term is late: dead times may be taken off, which is not done here
-    fastest, total = _find_fastest(f), 0
-    # from `fastest` on, infinity included, over 1/w
-    for outside, end in ((True, 1 / fastest), (False, fastest)):
-        times = np.zeros(0) if outside else f.longest
-        low = np.concatenate([[0.0], f.values[:, 0], 0 * times])
-        high = np.concatenate([[end * (1 + 1e-12)], f.values[:, 1], times])
+    degree = max(k[0] for k in p)
+    fastest, total = _find_fastest(groups, degree, values), 0
+    # from `fastest` on, infinity included, f/w^n over 1/w
+    first = np.arange(1 + len(values)) == 0
+    beyond = [replace(g, powers=np.where(first, degree - g.powers, g.powers)) for g in groups]
+    for outside, sums, end in ((True, beyond, 1 / fastest), (False, groups, fastest)):
+        most = np.zeros(0) if outside else longest
+        low = np.concatenate([[0.0], values[:, 0], 0 * most])
+        high = np.concatenate([[end * (1 + 1e-12)], values[:, 1], most])
         # beyond the range of floats nothing is shown
         with np.errstate(all="ignore"):
-            parts = _show(
-                f.groups_outside() if outside else f.groups, low, high, outside, most - total
-            )
+            parts = _show(sums, low, high, outside, _MOST_PARTS - total)
         if parts is None:
             return None
         total += parts
     return total
 
 
+def _sum_over_box(
+    p: Any, times: Mapping[sp.Symbol, sp.Expr], box: ValueBox
+) -> tuple[list[_Group], np.ndarray, np.ndarray]:
+    """Groups of terms, the one without dead time first; intervals of the values; dead times, s.
+
+    returns: groups;  intervals, (values, 2), of the values that f depends on;  the longest times
+    """
+    symbols, n = p.ring.symbols, len(box.names)
+    marks = [symbols.index(x) for x in times]
+    ends = dict(zip(symbols[1 : 1 + n], box.high, strict=True))
+    longest = [
+        float(sp.sympify(t).xreplace({x: sp.Float(v, 17) for x, v in ends.items()}))
+        for t in times.values()
+    ]
+    used = [k for k in range(1, 1 + n) if any(powers[k] for powers in p)]
+    largest = max(map(abs, p.values()))
+    made: dict[tuple[int, ...], list[tuple[list[int], complex]]] = {}
+    for powers, c in p.items():
+        share = c / largest
+        size = int(share.numerator) / int(share.denominator) * 1j ** (powers[0] % 4)
+        late = tuple(powers[k] for k in marks)
+        made.setdefault(late, []).append(([powers[0], *(powers[k] for k in used)], size))
+    groups = [
+        _Group(np.array(late), np.array([k for k, _ in terms]), np.array([c for _, c in terms]))
+        for late, terms in sorted(made.items(), key=lambda item: sum(item[0]))
+    ]
+    values = np.array([[box.low[k - 1], box.high[k - 1]] for k in used]).reshape(-1, 2)
+    return groups, values, np.array(longest)
+
+
 def _show(
-    groups: tuple[_Group, ...], low: np.ndarray, high: np.ndarray, outside: bool, most: int
+    groups: Sequence[_Group], low: np.ndarray, high: np.ndarray, outside: bool, most: int
 ) -> int | None:
     """Number of parts that show that f(jw) is not zero between `low` and `high`; None: not shown.
 
@@ -149,9 +134,7 @@ def _show(
     return total
 
 
-def _hold(
-    groups: tuple[_Group, ...], low: np.ndarray, high: np.ndarray, outside: bool
-) -> np.ndarray:
+def _hold(groups: Sequence[_Group], low: np.ndarray, high: np.ndarray, outside: bool) -> np.ndarray:
     """Whether f is shown to have no zero in each part, (parts,)."""
     middle = low + (high - low) / 2
     half = np.maximum(high - middle, middle - low)
@@ -163,7 +146,7 @@ def _hold(
 
 
 def _values(
-    groups: tuple[_Group, ...], middle: np.ndarray, half: np.ndarray, outside: bool
+    groups: Sequence[_Group], middle: np.ndarray, half: np.ndarray, outside: bool
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Value in the middle, bound of the change, and size of each group, (groups, parts).
 
@@ -195,20 +178,20 @@ def _monomials(points: np.ndarray, powers: np.ndarray) -> np.ndarray:
     return out
 
 
-def _find_fastest(f: LateSum) -> float:
+def _find_fastest(groups: Sequence[_Group], degree: int, values: np.ndarray) -> float:
     """A frequency, rad/s, above which the first polynomial is larger than the others together.
 
     The choice is by samples. `is_zero_free` then tests all frequencies above it.
     """
     w = np.geomspace(1e-6, 1e9, 1501)
     fastest, far = 1e-6, w > 1e8
-    for point in (f.values[:, 0], f.values[:, 1], f.values.mean(axis=1)):
+    for point in (values[:, 0], values[:, 1], values.mean(axis=1)):
         here = np.column_stack([w, np.tile(point, (len(w), 1))])
-        size = np.abs([_monomials(here, g.powers) @ g.turned for g in f.groups])
+        size = np.abs([_monomials(here, g.powers) @ g.turned for g in groups])
         ratio = size[1:].sum(axis=0) / np.maximum(size[0], 1e-300)
         limit = 0.5 + 0.5 * float(np.min(ratio[far]))
         # p_0 is to be in its asymptote, where 1/w tells little
-        lead = np.maximum(size[0, -1] * (w / w[-1]) ** f.degree, 1e-300)
+        lead = np.maximum(size[0, -1] * (w / w[-1]) ** degree, 1e-300)
         for beyond in (ratio > limit, np.abs(size[0] / lead - 1) > 0.5):
             above = np.flatnonzero(beyond)
             fastest = max(fastest, float(w[above[-1]]) if len(above) else 0.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -96,20 +96,19 @@ def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) 
             f"a pole with real part {-worst.margin:.4g} 1/s; not Hurwitz by Routh's scheme, exactly"
         )
         return interval_claim(_STABLE, "refuted", worst, box, "1/s", how)
-    if not _is_hurwitz(signs, p):
-        return interval_claim(_STABLE, "evidence", worst, box, "1/s", _explain_no_proof(signs))
-    how = _describe_effort(signs, "its characteristic polynomial is nowhere zero on the axis")
-    shares = (Fraction(str(round(share, 6))) for share in _SHARES)
-    shifts = (Fraction(worst.margin).limit_denominator(10**6) * share for share in shares)
-    bound = next((c for c in shifts if c > 0 and _is_hurwitz(signs, _move_axis(p, c))), Fraction(0))
 
-    def certificates() -> tuple[Certificate, ...]:
+    def certificates(bound: Fraction) -> tuple[Certificate, ...]:
         title = f"{name}: every pole has a real part below -{bound} 1/s, s counted from there"
         moved = _move_axis(p, bound)
         return (stability_certificate(title, moved, names=box.names, ends=box.exact, signs=signs),)
 
-    made = interval_claim(_STABLE, "proved", worst, box, "1/s", how, proved_margin=float(bound))
-    return _proof(made, certificates)
+    return _prove(
+        interval_claim(_STABLE, "evidence", worst, box, "1/s", ""),
+        signs,
+        lambda bound: signs.is_hurwitz(_move_axis(p, bound)),
+        certificates,
+        "its characteristic polynomial is nowhere zero on the axis",
+    )
 
 
 def _move_axis(p: Any, left: Fraction) -> Any:
@@ -138,32 +137,61 @@ def judge_linear(
         worst = worst if worst.margin < 0 else replace(worst, margin=-np.inf)
         how = str(exact.verdict)
         return interval_claim(statement, "refuted", worst, box, unit, how, at_worst=exact)
-    if exact.holds and not family.times and _is_shown(signs, family, claim):
-        bound = Fraction(0) if claim != "passive" else _bound(signs, family, worst.margin)
-        how = _describe_effort(signs, "its conditions are polynomials of one sign")
-        worst = replace(worst, margin=max(worst.margin, float(bound)))
-        more = {"proved_margin": float(bound), "at_worst": exact}
-        made = interval_claim(statement, "proved", worst, box, unit, how, **more)
-        title = f"{alone.name}: {statement}"
-        return _proof(made, lambda: _certificates(signs, family, claim, bound, title))
-    status: Status = "evidence" if exact.holds else "unknown"
-    worst = replace(worst, margin=max(worst.margin, 0.0)) if exact.holds else worst
-    how = "with a dead time nothing is proved over a box"
-    if status == "unknown":
+    if not exact.holds:
         how = f"at the worst point of the search: {exact.verdict}"
-    elif not family.times:
-        how = _explain_no_proof(signs)
-    return interval_claim(statement, status, worst, box, unit, how, at_worst=exact)
+        return interval_claim(statement, "unknown", worst, box, unit, how, at_worst=exact)
+    worst = replace(worst, margin=max(worst.margin, 0.0))
+    how = "with a dead time nothing is proved over a box"
+    made = interval_claim(statement, "evidence", worst, box, unit, how, at_worst=exact)
+    if family.times:
+        return made
+    title = f"{alone.name}: {statement}"
+    return _prove(
+        made,
+        signs,
+        lambda bound: is_shown(signs, family, claim, bound),
+        lambda bound: _certificates(signs, family, claim, bound, title),
+        "its conditions are polynomials of one sign",
+        shares=_SHARES if claim == "passive" else (),
+    )
 
 
-def _is_shown(signs: Signs, family: Family, claim: str, margin: Fraction = Fraction(0)) -> bool:
-    """Whether the claim is shown for the whole box within the effort of a claim."""
-    return try_within_effort(lambda: is_shown(signs, family, claim, margin), False)
+def _prove(
+    made: IntervalClaim,
+    signs: Signs,
+    is_shown: Callable[[Fraction], bool],
+    certificates: Callable[[Fraction], tuple[Certificate, ...]],
+    what: str,
+    shares: Sequence[float] = _SHARES,
+) -> IntervalClaim:
+    """The claim, proved where it is shown for the whole box and the checker accepts that.
 
+    made: the claim as evidence;  what: is shown, in words
+    is_shown, certificates: with a margin that is taken away, in the unit of the claim
+    shares: of the worst margin that are tested as a proved bound
+    """
 
-def _is_hurwitz(signs: Signs, p: Any) -> bool:
-    """Whether all roots are shown to be on the left within the effort of a claim."""
-    return try_within_effort(lambda: signs.is_hurwitz(p), False)
+    def shown(margin: Fraction) -> bool:
+        return try_within_effort(lambda: is_shown(margin), False)
+
+    if not shown(Fraction(0)):
+        why = f"not shown on {signs.cells} parts of it, or modes that no port shows"
+        return replace(made, how=f"no proof over the whole box: {why}")
+    how = (
+        f"{what}: {signs.polynomials} shown by Bernstein coefficients on "
+        f"{signs.cells} parts of the box, in exact arithmetic"
+    )
+    shares = shares if np.isfinite(made.margin) else ()
+    margins = (Fraction(made.margin * share).limit_denominator(10**6) for share in shares)
+    bound = next((c for c in margins if 0 < c <= made.margin and shown(c)), Fraction(0))
+    try:
+        accepted = certificates(bound)
+    except ModelError:
+        how = f"{how}; a certificate would ask for more work than its checker does"
+        return replace(made, how=how)
+    how = f"{how}; {len(accepted)} certificate{'s' * (len(accepted) > 1)}"
+    margin = float(bound)
+    return replace(made, status="proved", proved_margin=margin, how=how, certificates=accepted)
 
 
 def _certificates(
@@ -194,29 +222,6 @@ def margin_over(diagram: Diagram, box: ValueBox, claim: str) -> MarginFunction |
     return port_margin(family_of_states(states, ports(diagram), box.names, box.exact), claim)
 
 
-def _proof(
-    made: IntervalClaim, certificates: Callable[[], tuple[Certificate, ...]]
-) -> IntervalClaim:
-    """A proof, if the checker accepts its certificates; else the exact result as evidence."""
-    try:
-        accepted = certificates()
-    except ModelError:
-        how = f"{made.how}; a certificate would ask for more work than its checker does"
-        return replace(made, status="evidence", proved_margin=float("nan"), how=how)
-    how = f"{made.how}; {len(accepted)} certificate{'s' * (len(accepted) > 1)}"
-    return replace(made, how=how, certificates=accepted)
-
-
-def _bound(signs: Signs, family: Family, margin: float) -> Fraction:
-    """Damping that Z may lose at every port while it is still proved to be passive, N s/m."""
-    if 0 < margin < np.inf:
-        for share in _SHARES:
-            excess = Fraction(margin * share).limit_denominator(10**6)
-            if 0 < excess <= margin and _is_shown(signs, family, "passive", excess):
-                return excess
-    return Fraction(0)
-
-
 def _settle(alone: Diagram, claim: str) -> Claim:
     """The claim at a single point of the box, by the exact tests."""
     there = drop_absent_effects(alone)
@@ -232,20 +237,6 @@ def _point_by_point(
     how = "its values are not in the linear forms as such: every point is decided by itself"
     how = str(there.verdict) if made.status == "refuted" else how
     return replace(made, statement=statement, unit=CLAIMS[claim], how=how, at_worst=there)
-
-
-def _describe_effort(signs: Signs, what: str) -> str:
-    return (
-        f"{what}: {signs.polynomials} shown by Bernstein coefficients on "
-        f"{signs.cells} parts of the box, in exact arithmetic"
-    )
-
-
-def _explain_no_proof(signs: Signs) -> str:
-    return (
-        f"no proof over the whole box: not shown on {signs.cells} parts of it, or modes that no "
-        "port shows"
-    )
 
 
 #: points inside the box at which the equations are compared, besides two opposite vertices

@@ -24,7 +24,7 @@ from ...controllers import laws_that_declare
 from ...derive.effort import TooMuchEffort, bounded_effort
 from ...diagrams import Diagram
 from ...diagrams.units import first_axis, unit_of_value
-from ..claims.claim import Claim, use_rotary_units
+from ..claims.claim import use_rotary_units
 from ..diagram_claims import FrictionPair, composed_claim, friction_pairs, pair_claims
 from ..linear.conditions import is_shown
 from ..linear.family import family_of_states
@@ -125,7 +125,13 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> IntervalClaim:
     claim: "passive" or "absolutely stable"
     """
     points = [*box.vertices(), box.centre]
-    answers = [(point, *_claims_at(middle.with_values(box.named(point)))) for point in points]
+    answers = []
+    for point in points:
+        here = drop_absent_effects(middle.with_values(box.named(point)))
+        pairs = friction_pairs(here)
+        composed = composed_claim(here, ports(here), pairs)
+        others = [one.claim for pair in pairs for one in pair_claims(pair, simulated=False)]
+        answers.append((point, composed.claim if composed else None, others))
     worst = Worst(box.centre, float("nan"), len(points))
     statement = f"its ports are {'together ' * (claim == 'passive')}{claim}"
     for point, whole, others in answers:
@@ -148,15 +154,6 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> IntervalClaim:
     return interval_claim(statement, "evidence", worst, box, "", how, at_worst=answers[-1][1])
 
 
-def _claims_at(diagram: Diagram) -> tuple[Claim | None, list[Claim]]:
-    """The proof from the parts of a diagram (None: no such proof), and claims on its friction."""
-    there = drop_absent_effects(diagram)
-    pairs = friction_pairs(there)
-    composed = composed_claim(there, ports(there), pairs)
-    others = [one.claim for pair in pairs for one in pair_claims(pair, simulated=False)]
-    return (composed.claim if composed else None), others
-
-
 def _vertices_decide(middle: Diagram, box: ValueBox) -> bool:
     """Whether the two conditions, and so the vertices, decide for all values of friction."""
     for pair in friction_pairs(drop_absent_effects(middle)):
@@ -170,25 +167,26 @@ def _vertices_decide(middle: Diagram, box: ValueBox) -> bool:
         # a law of one's own keeps its bound at the values that were looked at, no more is known
         if pair.stage is None or pair.stage.law not in laws_that_declare("bound"):
             return False
-        known = {pair.stage.name: (pair.stage.law.bound, pair.stage.law.bristle_stiffness)}
-        for name in box.names:
-            block, _, rest = name.partition(".")
-            if block == law.name and not _is_of(rest, known):
+        known = pair.stage.law.bound, pair.stage.law.bristle_stiffness
+        for block, part, value in map(_split, box.names):
+            if block == law.name and (part != pair.stage.name or value not in known):
                 return False
     return bool(len(box.vertices()) == 2 ** len(box.names))
 
 
-def _is_of(name: str, known: Mapping[str, tuple[str, ...]]) -> bool:
-    part, _, value = name.rpartition(".")
-    return value in known.get(part, ())
-
-
 def _belongs_to_friction(name: str, pairs: list[FrictionPair]) -> bool:
     """Whether a value belongs to friction or its cancellation, and not to the linear rest."""
-    block, _, rest = name.partition(".")
+    block, part, value = _split(name)
     laws = [pair.cancellation.name for pair in pairs if pair.cancellation is not None]
     bodies = [pair.body.name for pair in pairs]
-    return block in laws or (block in bodies and _is_of(rest, _FRICTION))
+    return block in laws or (block in bodies and value in _FRICTION.get(part, ()))
+
+
+def _split(name: str) -> tuple[str, str, str]:
+    """Block, part of the block and value of a name of `diagram.values`."""
+    block, _, rest = name.partition(".")
+    part, _, value = rest.rpartition(".")
+    return block, part, value
 
 
 def _rest_is_passive(middle: Diagram, box: ValueBox) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 import sympy as sp
 
@@ -13,10 +13,10 @@ from .family import Family
 from .matrices import Matrix, dampers
 from .signs import Ends, Signs
 
-#: claim -> kind of its certificate
-KINDS = {
-    "passive": "positive real over a box",
-    "absolutely stable": "absolute stability over a box",
+#: claim -> kind of its certificate at a point
+KINDS: dict[str, Literal["positive real", "absolute stability"]] = {
+    "passive": "positive real",
+    "absolutely stable": "absolute stability",
 }
 #: most characters of a name that the checker reads
 _LONGEST = 60
@@ -49,7 +49,7 @@ def impedance_certificate(
     if claim == "passive":
         middle = [[_middle_of(signs, e) for e in row] for row in n]
         fields["scale"] = str(max(dampers(middle, _middle_of(signs, family.d))))
-    return _certify(KINDS[claim], title, fields, plain, family.ends, signs)
+    return _certify(f"{KINDS[claim]} over a box", title, fields, plain, family.ends, signs)
 
 
 def _middle_of(signs: Signs, p: Any) -> Any:

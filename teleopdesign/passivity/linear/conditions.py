@@ -47,7 +47,11 @@ def _modes_decay(signs: Signs, family: Family, n: Matrix, claim: str) -> bool:
     shown to decay, and the poles of Z to be passive ones.
     """
     held = family.held if n is family.n else close(n, family.d, dampers(n, family.d))
-    is_slow = claim == "passive" or _is_slow(n, family.d)
+    # what passes from port to port between dampers is to grow at most like s far out
+    is_slow = claim == "passive" or (
+        degree(family.d) + max(degree(n[0][1]), degree(n[1][0]))
+        <= degree(determinant(hold(n, family.d, dampers(n, family.d)))) + 1
+    )
     decays = is_slow and signs.is_hurwitz(held)
     if decays and (n is family.n or signs.is_hurwitz(family.held)):
         return True
@@ -58,13 +62,6 @@ def _modes_decay(signs: Signs, family: Family, n: Matrix, claim: str) -> bool:
     if rest or not signs.is_hurwitz(hidden):
         return False
     return _has_passive_residues(signs, n, family.d, symmetric=claim == "passive")
-
-
-def _is_slow(n: Matrix, d: Any) -> bool:
-    """Whether what passes from port to port between dampers grows at most like s far out."""
-    rows = hold(n, d, dampers(n, d))
-    across = max(degree(n[0][1]), degree(n[1][0]))
-    return degree(d) + across <= degree(determinant(rows)) + 1
 
 
 def _has_passive_residues(signs: Signs, n: Matrix, d: Any, *, symmetric: bool) -> bool:

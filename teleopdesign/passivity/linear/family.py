@@ -14,10 +14,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, reduce
+from functools import cached_property, lru_cache, reduce
 from math import prod
 from typing import TYPE_CHECKING, Any
 
+import mpmath
 import numpy as np
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
@@ -106,6 +107,27 @@ class Family:
             return np.stack(flat, axis=-1).reshape(-1, size, size)
 
         return values
+
+    def precisely(self, s: mpmath.mpc, late: Sequence[mpmath.mpc] = ()) -> list[list[mpmath.mpc]]:
+        """Z at one s, N s/m, in the digits of mpmath; without values.
+
+        late: values of e^(-s T), other than those of s
+        raises ZeroDivisionError: s is a pole
+        """
+        times = (mpmath.mpf(int(t.p)) / int(t.q) for t in self.times.values())
+        late = late or [mpmath.exp(-s * t) for t in times]
+
+        def value(p: Any) -> mpmath.mpc:
+            total = mpmath.mpc(0)
+            for powers, c in p.items():
+                term = mpmath.mpf(int(c.numerator)) / int(c.denominator) * s ** powers[0]
+                for factor, power in zip(late, powers[1:], strict=True):
+                    term *= factor**power
+                total += term
+            return total
+
+        below = value(self.d)
+        return [[value(e) / below for e in row] for row in self.n]
 
     @property
     def impedance(self) -> Impedance:
@@ -201,23 +223,23 @@ def port_rows(states: AllStates, at: Sequence[Port], names: Sequence[str]) -> li
     return rows
 
 
-def family_of_matrix(z: Sequence[Sequence[sp.Expr]]) -> Family:
+@lru_cache(maxsize=32)
+def family_of_matrix(z: sp.ImmutableMatrix) -> Family:
     """The family of functions of s, with exp(-s T) for dead times; they have no further states.
 
     z: N s/m, square, in `S` with exact numbers
     raises ModelError: an entry is no ratio of polynomials in s and dead times
     """
-    powers = {x for row in z for e in row for x in sp.sympify(e).atoms(sp.exp)}
+    powers = z.atoms(sp.exp)
     delays = {power: -power.args[0].coeff(S) for power in powers}
     times, marks = late_symbols(delays.values())
     placed = {power: marks[time] for power, time in delays.items()}
     ring, *_ = sp.ring((S, *times), sp.QQ)
-    pairs = [[_ratio(sp.sympify(e).xreplace(placed), ring) for e in row] for row in z]
+    pairs = [[_ratio(e.xreplace(placed), ring) for e in row] for row in z.tolist()]
     d = reduce(lambda p, q: p * q.exquo(p.gcd(q)), (q for row in pairs for _, q in row))
     n = [[p * d.exquo(q) for p, q in row] for row in pairs]
-    written, held = sp.ImmutableMatrix(z), close(n, d, dampers(n, d))
     resting = _count_lost(n, d, times) if times else 0
-    return Family(n, d, held, times=times, written=written, resting=resting)
+    return Family(n, d, close(n, d, dampers(n, d)), times=times, written=z, resting=resting)
 
 
 def _count_lost(n: Matrix, d: Any, times: Mapping[sp.Symbol, sp.Expr]) -> int:

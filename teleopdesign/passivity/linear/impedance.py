@@ -20,7 +20,7 @@ from ...base.errors import ModelError
 from ...controllers import resolvent
 from ...derive.polynomials import element, fraction
 from ...realise.lti import S
-from .matrices import value_at
+from .matrices import parts_of, value_at
 
 MotionKind = Literal["velocity", "position"]
 _LONGEST = 9  # most characters of a fraction that a text contains as a fraction
@@ -48,7 +48,8 @@ class Impedance:
 
     def at(self, rate: Fraction, frequency: Fraction) -> tuple[Fraction, Fraction] | None:
         """Exact real and imaginary part at s = rate + j frequency (1/s); None at a pole."""
-        return value_at(element(self.p), element(self.q), (rate, frequency))
+        value = value_at(element(self.p), element(self.q), (rate, frequency))
+        return None if value is None else parts_of(value)
 
     def __call__(self, s: Any) -> Any:
         """Numerical value, N s/m, at complex s (array or number, 1/s)."""

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any, Literal
+from itertools import islice
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -17,32 +18,22 @@ import sympy as sp
 from ...base.errors import ModelError
 from ...derive.effort import TooMuchEffort, bounded_effort
 from ...derive.polynomials import X, as_poly, element, where_negative
-from ..claims.certificate import Certificate, matrix_certificate
-from ..claims.claim import TOO_MUCH, Claim, Evidence, Proof, Refutation, Unknown, Verdict
+from ..claims.certificate import matrix_certificate
+from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown, Verdict
 from ..search.growing_wave import GrowingWave, wave_of
-from ..search.points import (
-    candidates,
-    near_axis,
-    near_poles,
-    select_fastest,
-    wave_out_of,
-)
+from ..search.points import candidates, near_axis, near_poles, wave_out_of
 from ..two_port.growing_mode import growing_mode
 from ..two_port.termination import far_termination
-from .box_certificates import stability_certificate
+from .box_certificates import KINDS, stability_certificate
 from .conditions import axis_conditions, is_shown
 from .excess import damping_excess, describe_equality
 from .family import Family, family_of_impedance
 from .impedance import Impedance, MotionKind, impedance, readable
-from .matrices import round_point, value
+from .matrices import parts_of, round_point, value
 from .signs import Signs
 from .sweep import fails_at_ends, holds_at, least_over, margin_of, resonances, zeros_and_poles
 from .unseen import explain_unseen, unseen_modes
 
-KINDS: dict[str, Literal["positive real", "absolute stability"]] = {
-    "passive": "positive real",
-    "absolutely stable": "absolute stability",
-}
 _METHODS = {
     "passive": "the positive-real test of the matrix",
     "absolutely stable": "Llewellyn's criterion, its inequalities for all frequencies, and the "
@@ -76,17 +67,16 @@ def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
     """
     z = impedance(system, motion=motion)
     claim = passive_claim(replace(family_of_impedance(z), unseen=unseen_modes(system)))
-    if claim.status == "refuted" and is_rounded(system) and _rests_on_rounding(z, claim.record):
+    if (
+        claim.status == "refuted"
+        and not isinstance(system, Impedance)
+        # floats may be rounded by earlier operations
+        and (hasattr(system, "isdtime") or sp.sympify(system).atoms(sp.Float))
+        and _rests_on_rounding(z, claim.record)
+    ):
         why = f"it fails, but a relative change of coefficients by {NEARBY:.1g} decides: rounding"
         return Claim(claim.statement, Unknown(why))
     return claim
-
-
-def is_rounded(system: Any) -> bool:
-    """Whether a system contains floats, which earlier operations may have rounded."""
-    if isinstance(system, Impedance):
-        return False
-    return hasattr(system, "isdtime") or bool(sp.sympify(system).atoms(sp.Float))
 
 
 def _rests_on_rounding(z: Impedance, wave: Any) -> bool:
@@ -99,7 +89,7 @@ def _rests_on_rounding(z: Impedance, wave: Any) -> bool:
     above, below = (
         sum(abs(float(c)) * abs(s) ** k for (k,), c in part.terms()) for part in (z.p, z.q)
     )
-    size = abs(complex(*map(float, value(element(z.q), (wave.rate, wave.frequency)))))
+    size = abs(complex(*map(float, parts_of(value(element(z.q), (wave.rate, wave.frequency))))))
     return bool(abs(at.real) * size <= NEARBY * (above + abs(at) * below))
 
 
@@ -145,32 +135,38 @@ def _judge(family: Family, claim: str, statement: str) -> Claim:
 
 
 def _judge_exactly(family: Family, claim: str, statement: str) -> Verdict:
+    return prove(family, claim, statement) or _refute(family, claim)
+
+
+def prove(family: Family, claim: str, title: str) -> Proof | Evidence | None:
+    """The proof of a claim without dead times and values, exactly; None where it does not hold.
+
+    title: of the certificate
+    returns: exact evidence where a certificate would ask for more work than its checker does
+    """
     rows = family.z.tolist()
     if claim == "passive" and family.written is not None:
         rows = family.written.tolist()
     method, margin, unit, equality = _METHODS[claim], float("nan"), "", ""
     try:
-        certificate = matrix_certificate(statement, rows, KINDS[claim])
+        certificate = matrix_certificate(title, rows, KINDS[claim])
         certificate.check()
     except (ModelError, ValueError):  # Python writes no integers of more than 4300 digits
         certificate = None
         if not is_shown(Signs(()), family, claim):
-            return _refute(family, claim)
+            return None
     if family.size == 1:
         excess = damping_excess(family.impedance)
         method, margin, unit = "the positive-real test", float(excess.lower), "N s/m"
         equality = describe_equality(family.impedance, excess)
     if certificate is None:
-        return Evidence(True, f"{method}: {TOO_MUCH}", margin, unit)
-    return Proof(method, _with_modes(family, certificate), margin, unit, equality)
-
-
-def _with_modes(family: Family, certificate: Certificate) -> tuple[Certificate, ...]:
-    """The certificate, and one of the modes that no port shows, if there are any that decay."""
-    if not family.hides or family.undecayed:
-        return (certificate,)
-    more = stability_certificate("every mode decays with dampers at the ports", family.held)
-    return (certificate, more)
+        why = "a certificate would ask for more work than its checker does"
+        return Evidence(True, f"{method}: decided in exact arithmetic; {why}", margin, unit)
+    certificates = [certificate]
+    if family.hides and not family.undecayed:
+        more = "every mode decays with dampers at the ports"
+        certificates.append(stability_certificate(more, family.held))
+    return Proof(method, tuple(certificates), margin, unit, equality)
 
 
 def _refute(family: Family, claim: str) -> Verdict:
@@ -236,9 +232,9 @@ def _judge_late(family: Family, claim: str, statement: str) -> Verdict:
         if wave is not None:
             return Refutation(_describe_wave(wave), wave)
         return Unknown(f"{why}; no wave that takes energy out was found")
-    held = dict(_terminated_waves(family, frequencies))
-    wave = select_fastest(held)
-    if wave is not None:
+    held = dict(islice(_terminated_waves(family, frequencies), 3))
+    if held:
+        wave = max(held, key=lambda w: w.rate / (w.frequency or w.rate))  # the plainest
         return Refutation(f"port 2 {held[wave]}, a growing wave", wave)
     return Unknown(f"{why}; no termination that makes it grow was found")
 
@@ -259,10 +255,9 @@ def _terminated_waves(
 ) -> Iterator[tuple[GrowingWave, str]]:
     """Waves that take energy out of one port while the other has a passive termination, in words.
 
-    Port 2 "moved": port 1 has the termination. Three waves at most.
+    Port 2 "moved": port 1 has the termination.
     """
     points = np.concatenate([near_poles(family), near_axis(frequencies, range(1, 34))])
-    count = 0
     for s, second, turned in candidates(family, points):
         far = far_termination(s, second)
         z11, z12, z21, z22 = reversed(list(family.z)) if turned else family.z
@@ -270,6 +265,3 @@ def _terminated_waves(
         wave = wave_of(sp.ImmutableMatrix([[at_port]]), *round_point(s))
         if wave is not None and wave.energy > 0:
             yield wave, f"moved, port 1 {far}" if turned else f"{far}"
-            count += 1
-            if count == 3:
-                return

@@ -1,6 +1,6 @@
 """Small matrices of polynomials over one denominator, N/d, and their closed loops with dampers.
 
-Below: exact complex numbers (two fractions), and exact values of rational functions.
+Below: exact complex numbers, and exact values of rational functions.
 """
 
 from __future__ import annotations
@@ -101,8 +101,6 @@ def damper(n: Any, d: Any) -> Any:
 #: a complex number: real and imaginary part
 Gaussian = tuple[Fraction, Fraction]
 
-ZERO: Gaussian = (Fraction(0), Fraction(0))
-
 
 def round_point(s: complex) -> Gaussian:
     """A point s as fractions, rounded to seven digits of its distance from the axis.
@@ -129,37 +127,26 @@ def square_root(x: Fraction, digits: int) -> Fraction:
     return Fraction(isqrt(x.numerator * x.denominator * ten**2), x.denominator * ten)
 
 
-def value_at(p: Any, q: Any, at: Gaussian) -> Gaussian | None:
-    """Exact value of p/q, polynomials in s, at a complex number; None at a pole."""
+def exact_complex(at: Gaussian) -> Any:
+    """The number as an element of sympy's domain of exact complex numbers, which computes."""
+    return sp.QQ_I(*(sp.QQ(x.numerator, x.denominator) for x in at))
+
+
+def parts_of(number: Any) -> Gaussian:
+    """Real and imaginary part of an exact complex number."""
+    re, im = (Fraction(int(x.numerator), int(x.denominator)) for x in (number.x, number.y))
+    return re, im
+
+
+def value_at(p: Any, q: Any, at: Gaussian) -> Any:
+    """Exact complex value of p/q, polynomials in s, at a complex number; None at a pole."""
     above, below = (value(side, at) for side in (p, q))
-    return None if below == ZERO else divide(above, below)
+    return above / below if below else None
 
 
-def value(p: Any, at: Gaussian) -> Gaussian:
-    """Exact value of a polynomial, an element of a ring of s alone, at a complex number."""
-    total, powers = ZERO, {k[0]: c for k, c in p.items()}
+def value(p: Any, at: Gaussian) -> Any:
+    """Exact complex value of a polynomial, an element of a ring of s alone."""
+    s, total, powers = exact_complex(at), sp.QQ_I.zero, {k[0]: c for k, c in p.items()}
     for k in range(max(powers, default=-1), -1, -1):
-        c = powers.get(k, 0)
-        total = add(multiply(total, at), (Fraction(int(c.numerator), int(c.denominator)), ZERO[0]))
+        total = total * s + powers.get(k, sp.QQ.zero)
     return total
-
-
-def add(a: Gaussian, b: Gaussian, factor: int = 1) -> Gaussian:
-    """a + factor b."""
-    return a[0] + factor * b[0], a[1] + factor * b[1]
-
-
-def multiply(a: Gaussian, b: Gaussian) -> Gaussian:
-    """a times b."""
-    return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
-
-
-def divide(a: Gaussian, b: Gaussian) -> Gaussian:
-    """a / b;  b: not zero."""
-    size = b[0] ** 2 + b[1] ** 2
-    return multiply(a, (b[0] / size, -b[1] / size))
-
-
-def as_complex(a: Gaussian) -> complex:
-    """The same number in floating point."""
-    return complex(float(a[0]), float(a[1]))

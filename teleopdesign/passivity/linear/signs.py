@@ -34,7 +34,7 @@ Ends = Sequence[tuple[Fraction, Fraction]]
 MOST_WORK = 400_000
 #: most coefficients of one polynomial: with more, a single halving takes seconds
 MOST_COEFFICIENTS = 20_000
-#: terms of a polynomial beyond which finding its factors takes longer than the proof
+#: terms of a polynomial of which factors are looked for
 _MOST_TERMS = 600
 
 
@@ -89,9 +89,12 @@ class Signs:
         if not self.ends:
             self.polynomials += 1
             return is_non_negative(as_poly(p, X))
-        number, factors = _factors(p)
+        # finding the factors of a large polynomial takes longer than the proof
+        number, factors = p.factor_list() if len(p) <= _MOST_TERMS else (1, [(p, 1)])
         sign = 1 if number > 0 else -1
         for factor, multiplicity in factors:
+            if factor.is_ground:
+                continue
             if multiplicity > 1 and factor not in self.squares:
                 self.squares.append(factor)
             if multiplicity % 2 == 0:
@@ -155,14 +158,6 @@ def axis_unit(p: sp.Poly) -> Fraction:
     bits = ratio.numerator.bit_length() - ratio.denominator.bit_length()
     unit: Fraction = Fraction(4) ** round(bits / (high - low))
     return unit
-
-
-def _factors(p: Any) -> tuple[Any, list[tuple[Any, int]]]:
-    """A number, and factors with their multiplicities; large polynomials are not factored."""
-    if len(p) > _MOST_TERMS:
-        return 1, [(p, 1)]
-    number, factors = p.factor_list()
-    return number, [(f, m) for f, m in factors if not f.is_ground]
 
 
 Answer = Literal["yes", "no", "halve"]

@@ -10,7 +10,7 @@ dead time has every phase, whatever the frequency: phases are drawn.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from itertools import combinations
 from typing import Any
 
@@ -101,7 +101,7 @@ def fails_at_ends(family: Family, claim: str) -> tuple[str, float] | None:
             w = mpmath.mpf(float(fast)) * 10**decade
             for _ in range(_DRAWN):
                 late = [mpmath.expj(float(x)) for x in rng.uniform(0, 2 * np.pi, len(times))]
-                if not _holds(_value_at(family, w, late), claim):
+                if not _holds(family.precisely(mpmath.mpc(0, w), late), claim):
                     return "in the limit of high frequency", float(w) / (2 * np.pi)
     return None
 
@@ -109,29 +109,11 @@ def fails_at_ends(family: Family, claim: str) -> tuple[str, float] | None:
 def holds_at(family: Family, frequency: float, claim: str) -> bool:
     """Whether the inequality of a claim holds at a frequency, Hz, by many digits; so at a pole."""
     with mpmath.workdps(_DIGITS):
-        w = 2 * mpmath.pi * mpmath.mpf(frequency)
-        times = (mpmath.mpf(int(t.p)) / int(t.q) for t in family.times.values())
         try:
-            z = _value_at(family, w, [mpmath.expj(-w * t) for t in times])
+            z = family.precisely(mpmath.mpc(0, 2 * mpmath.pi * frequency))
         except ZeroDivisionError:
             return True
         return _holds(z, claim)
-
-
-def _value_at(family: Family, w: mpmath.mpf, late: Sequence[mpmath.mpc]) -> list[list[mpmath.mpc]]:
-    """Z at s = j w with these values of e^(-s T)."""
-
-    def value(p: Any) -> mpmath.mpc:
-        total = mpmath.mpc(0)
-        for powers, c in p.items():
-            term = mpmath.mpf(int(c.numerator)) / int(c.denominator) * mpmath.mpc(0, w) ** powers[0]
-            for factor, power in zip(late, powers[1:], strict=True):
-                term *= factor**power
-            total += term
-        return total
-
-    below = value(family.d)
-    return [[value(e) / below for e in row] for row in family.n]
 
 
 def _holds(z: list[list[mpmath.mpc]], claim: str) -> bool:

@@ -39,16 +39,23 @@ def unseen_modes(system: Any) -> tuple[complex, ...]:
     """
     if hasattr(system, "num"):
         above, below = ([side for row in m for side in row] for m in (system.num, system.den))
-        pairs = ([_polynomial(p), _polynomial(q)] for p, q in zip(above, below, strict=True))
+        pairs = (map(_polynomial, pair) for pair in zip(above, below, strict=True))
         return tuple(mode for pair in pairs for mode in not_decaying(sp.gcd(*pair)))
     if not hasattr(system, "A") or not len(system.A):
         return ()
     matrices = (system.A, system.B, system.C, system.D)
     a, b, c, straight = ([[fraction(exact(x)) for x in row] for row in m] for m in matrices)
     places = range(len(c))
+
+    def in_ring(falling: Sequence[Fraction]) -> Any:
+        return element(_polynomial(falling))
+
     made = [[resolvent(a, [row[j] for row in b], c[i]) for j in places] for i in places]
-    d = _in_ring(made[0][0][0])
-    n = [[_in_ring(made[i][j][1]) + _in_ring([straight[i][j]]) * d for j in places] for i in places]
+    d = in_ring(made[0][0][0])
+    n = [
+        [in_ring(one) + in_ring([x]) * d for (_, one), x in zip(*row, strict=True)]
+        for row in zip(made, straight, strict=True)
+    ]
     loose, tight = (determinant(hold(n, d, [sp.QQ(c)] * len(n))) for c in (1, 3))
     shared = loose.gcd(tight)
     for _ in places[1:]:
@@ -67,12 +74,8 @@ def unseen_within(part: Block) -> tuple[complex, ...]:
     return not_decaying(as_poly(shared, S)) if d and not is_late else ()
 
 
-def _polynomial(falling: Sequence[float]) -> sp.Poly:
-    return sp.Poly([exact(c) for c in falling], S, domain="QQ")
-
-
-def _in_ring(falling: Sequence[Fraction]) -> Any:
-    return element(sp.Poly([sp.Rational(c) for c in falling] or [0], S, domain="QQ"))
+def _polynomial(falling: Sequence[float | Fraction]) -> sp.Poly:
+    return sp.Poly([exact(c) for c in falling] or [0], S, domain="QQ")
 
 
 def explain_unseen(modes: Sequence[complex]) -> str:

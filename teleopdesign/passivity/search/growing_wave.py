@@ -19,16 +19,16 @@ from typing import Any
 import mpmath
 import numpy as np
 import sympy as sp
-from mpmath.libmp import NoConvergence
 
-from ...derive.polynomials import even_part, fraction, where_negative
+from ...derive.polynomials import even_part, where_negative
 from ...realise.lti import S
 from ..linear.impedance import Impedance
 from ..linear.matrices import square_root
+from ..linear.sweep import passive_margin
 from ..rate_independent import AbstractRecord
 
 LONGEST = 500  # most periods of a wave that are sampled; each of them releases energy
-_DIGITS = 40  # decimal digits of a first numerical value
+_DIGITS = 320  # decimal digits in which Z is evaluated
 #: -Re Z as a share of abs(Z), below which a replay in double precision loses Re Z in its sum (about
 #: 1e4 roundings)
 _WEAKEST = 1e-11
@@ -70,72 +70,41 @@ class GrowingWave(AbstractRecord):
         z, v = self.value, np.array(self.velocity)
         return float(-((v.conj() @ z @ v).real / self.s.real + (v @ z @ v / self.s).real) / 4)
 
-    def samples(self, number: int | None = 20001) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Samples of the last part of the wave: time, velocities and forces.
+    def replay(self) -> float:
+        """Energy released, J: minus the integral of force times velocity over `last_part`.
 
         If all poles decay, or grow slower than the wave, the force is also that of a motion that
-        started from rest, after its transient.
-
-        number: of samples, see `last_part`
-        returns: time (n,), s; velocities (n, ports), m/s; forces (n, ports), N
+        started from rest, after its transient. 0 where the sum is no larger than the rounding of
+        its terms, because it then shows nothing.
         """
-        t, _ = last_part(self.s, number)
+        t, weights = last_part(self.s)
         wave = np.exp(self.s * t)[:, None] * np.array(self.velocity)
-        return t, wave.real, (wave @ self.value.T).real
-
-    def replay(self) -> float:
-        """Energy released, J: minus the integral of force times velocity over `samples`.
-
-        0 where the sum is no larger than the rounding of its terms, because it then shows nothing.
-        """
-        _, v, f = self.samples(None)
-        return -drop_rounding(last_part(self.s)[1] * (f * v).sum(axis=1))
+        terms = weights * (wave.real * (wave @ self.value.T).real).sum(axis=1)
+        total = float(terms.sum())
+        return -total if abs(total) > ROUNDING * float(np.abs(terms).sum()) else 0.0
 
 
-def last_part(s: complex, number: int | None = None) -> tuple[np.ndarray, np.ndarray]:
+def last_part(s: complex) -> tuple[np.ndarray, np.ndarray]:
     """Times of the last part of a motion that grows as e^(s t), and weights of an integral over it.
 
     The part is twelve time constants of growth (what came before is 1e-10 of it), or LONGEST
-    periods if they are shorter. The weights are those of Simpson's rule.
-
-    number: of times, odd; default: a thousand in each period, and in the whole
+    periods if they are shorter, with a thousand times in each period, and in the whole. The weights
+    are those of Simpson's rule.
     """
     span = 12.0 / s.real
     if s.imag:
         span = min(span, LONGEST * 2 * math.pi / s.imag)
-    t = np.linspace(-span, 0.0, number or 2 * int(500 * (1 + span * s.imag / (2 * math.pi))) + 1)
+    t = np.linspace(-span, 0.0, 2 * int(500 * (1 + span * s.imag / (2 * math.pi))) + 1)
     weights = np.ones(len(t))
     weights[1:-1:2], weights[2:-1:2] = 4, 2
     return t, (t[1] - t[0]) / 3 * weights
 
 
-def drop_rounding(terms: np.ndarray) -> float:
-    """Sum of the terms; 0 where the sum is no larger than the possible rounding of the terms."""
-    total = float(terms.sum())
-    return total if abs(total) > ROUNDING * float(np.abs(terms).sum()) else 0.0
-
-
 def value_at(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> np.ndarray:
-    """Z at rate + j frequency, N s/m, (n, n), to double precision.
-
-    NaN at a pole, and where even 320 decimal digits do not determine the value.
-    """
+    """Z at rate + j frequency, N s/m, (n, n), to double precision; NaN at a pole."""
     # poles and zeros of badly scaled systems lie close together, and near s = 0 dead times leave
     # differences of numbers that agree in tens of digits
-    few = _evaluate_precisely(z, rate, frequency, digits=_DIGITS)
-    for digits in (2 * _DIGITS, 4 * _DIGITS, 8 * _DIGITS):
-        more = _evaluate_precisely(z, rate, frequency, digits=digits)
-        if np.allclose(few, more, rtol=1e-12, atol=0):
-            return more
-        few = more
-    return np.full(z.shape, np.nan, dtype=complex)
-
-
-def _evaluate_precisely(
-    z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction, *, digits: int
-) -> np.ndarray:
-    """Z at rate + j frequency, computed in so many decimal digits, then rounded; NaN at a pole."""
-    with mpmath.workdps(digits):
+    with mpmath.workdps(_DIGITS):
         s = mpmath.mpc(*(mpmath.mpf(x.numerator) / x.denominator for x in (rate, frequency)))
         try:
             return np.array([[complex(x) for x in row] for row in _numeric_matrix(z, "mpmath")(s)])
@@ -152,73 +121,55 @@ def _numeric_matrix(z: sp.ImmutableMatrix, library: str) -> Callable[[Any], list
 def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
     """The wave at s = rate + j frequency that releases most energy.
 
-    The decision is in double precision, with a dead time within 1e-9 of abs(Z). `growing_wave`
+    The decision is in double precision, with a dead time within 1e-9 of abs(Z). `wave_beside_axis`
     decides exactly.
 
     z: N s/m, (n, n);  rate: 1/s;  frequency: rad/s
     returns: None where no wave at s releases energy
     """
-    if z.has(sp.exp) and _is_plainly_passive(z, complex(float(rate), float(frequency))):
-        return None
+    s, is_late = complex(float(rate), float(frequency)), z.has(sp.exp)
+    if is_late:
+        with np.errstate(all="ignore"):
+            near = np.array([_numeric_matrix(z, "numpy")(np.complex128(s))], dtype=complex)
+        if passive_margin(near)[0] > _PLAIN * np.abs(near).max():
+            return None
     value = value_at(z, rate, frequency)
     if not np.all(np.isfinite(value)):
         return None
     real = (value + value.conj().T) / 2
     sizes, vectors = np.linalg.eigh(real)
-    if sizes[0] >= (-1e-9 * np.abs(value).max() if z.has(sp.exp) else 0):
+    if sizes[0] >= (-1e-9 * np.abs(value).max() if is_late else 0):
         return None
     v = vectors[:, 0]
     if frequency == 0:
         v = v.real  # there is no phase to choose: the wave is one exponential
     else:
-        s = complex(float(rate), float(frequency))
         v = v * np.exp(1j * (math.pi - np.angle(v @ value @ v / s)) / 2)
     return GrowingWave(z, rate, frequency, tuple(complex(x) for x in v))
 
 
-def _is_plainly_passive(z: sp.ImmutableMatrix, s: complex) -> bool:
-    """Whether Z + Z^H at s is positive by far more than rounding, computed in double precision."""
-    with np.errstate(all="ignore"):
-        value = np.array(_numeric_matrix(z, "numpy")(np.complex128(s)), dtype=complex)
-    if not np.all(np.isfinite(value)):
-        return False
-    lowest = np.linalg.eigvalsh((value + value.conj().T) / 2)[0]
-    return bool(lowest > _PLAIN * np.abs(value).max())
-
-
-def first_wave(
-    z: sp.ImmutableMatrix, points: Iterable[tuple[Fraction, Fraction]]
-) -> GrowingWave | None:
-    """The wave at the first of these points (rate, frequency) at which one releases energy."""
-    waves = (wave_of(z, rate, frequency) for rate, frequency in points)
-    return next((wave for wave in waves if wave is not None), None)
-
-
 def rates_at(frequency: Fraction, number: int) -> Iterable[tuple[Fraction, Fraction]]:
     """Rates of growth, halved so many times, at a frequency."""
-    return ((rate, frequency) for rate in halvings(frequency, number))
+    return ((frequency / 2**k, frequency) for k in range(1, number + 1))
 
 
-def growing_wave(z: Impedance) -> GrowingWave | None:
-    """A wave that takes energy out of an impedance, with Re Z < 0 at its s verified exactly.
+def wave_beside_axis(z: Impedance) -> GrowingWave | None:
+    """The wave of an impedance that grows fastest against its frequency, just beside the axis.
 
-    returns: None where z is positive real, or where the search does not resolve a wave
+    That Re Z < 0 at its s is verified exactly.
+
+    returns: None where Re Z is negative nowhere on the axis, or where no wave is resolved
     """
     waves = [_find_beside_axis(z, x) for x in where_negative(even_part(z.p, z.q))]
     growing = [w for w in waves if w is not None]
     # the one that grows fastest against its frequency is the plainest to look at
-    best = max(growing, key=lambda w: w.rate / w.frequency, default=None)
-    if best is not None:
-        at = complex(best.value[0, 0])
-        if -at.real / abs(at) > _WEAKEST:
-            return best
-    # a mode that grows shows more, where a zero beside it hides it from the axis
-    return _find_at_growing_mode(z) or best
+    return max(growing, key=lambda w: w.rate / w.frequency, default=None)
 
 
-def halvings(start: Fraction, number: int) -> Iterable[Fraction]:
-    """The numbers start/2, start/4, ...: so many of them."""
-    return (start / 2**k for k in range(1, number + 1))
+def is_plain(wave: GrowingWave) -> bool:
+    """Whether a replay in double precision shows that Re Z is negative at a wave of one port."""
+    at = complex(wave.value[0, 0])
+    return -at.real / abs(at) > _WEAKEST
 
 
 def _find_beside_axis(z: Impedance, x: Fraction) -> GrowingWave | None:
@@ -228,54 +179,10 @@ def _find_beside_axis(z: Impedance, x: Fraction) -> GrowingWave | None:
     """
     for digits in (20, 60, 200):  # enough for a dip in frequency that narrow, relative
         frequency = square_root(x, digits)
-        for rate in halvings(frequency, 4 * digits):
-            wave = _check_exactly(z, rate, frequency)
-            if wave is not None:
-                return wave
+        for rate, _ in rates_at(frequency, 4 * digits):
+            value = z.at(rate, frequency)
+            if value is not None and value[0] < 0:
+                wave = wave_of(sp.ImmutableMatrix([[z.expression]]), rate, frequency)
+                if wave is not None:
+                    return wave
     return None
-
-
-def _find_at_growing_mode(z: Impedance) -> GrowingWave | None:
-    """A wave near a zero of Z + c in the right half plane: there Re Z = -c.
-
-    With a damper c > 0 at the port, the system has this growing mode.
-    """
-    for c in (sp.Rational(10) ** k for k in (0, -2, 2, -4, 4, -6, 6)):
-        closed = sp.Poly(z.p + z.q.mul_ground(c), S)
-        scale = _middle(closed)
-        even = sp.Poly([x / scale**k for k, x in enumerate(closed.all_coeffs())], S)
-        for digits in (30, 60, 120):
-            try:
-                roots = even.nroots(n=digits, maxsteps=500)
-            except (sp.polys.polyerrors.PolynomialError, NoConvergence):
-                continue
-            waves = []
-            for root in roots:
-                rate, frequency = (
-                    Fraction(str(sp.Float(x, digits))) * fraction(scale)
-                    for x in root.as_real_imag()
-                )
-                if rate > 0 and frequency >= 0:
-                    waves.append(_check_exactly(z, rate, frequency))
-            growing = [w for w in waves if w is not None]
-            if growing:
-                return max(growing, key=lambda w: w.rate)
-    return None
-
-
-def _middle(polynomial: sp.Poly) -> sp.Rational:
-    """Power of ten near the geometric mean of the sizes of all roots other than 0, 1/s."""
-    sizes = [abs(x) for x in polynomial.all_coeffs() if x]
-    powers = [k for k, x in enumerate(polynomial.all_coeffs()) if x]
-    if len(sizes) < 2:
-        return sp.S(1)
-    decades = float(sp.log(sizes[-1] / sizes[0], 10)) / (powers[-1] - powers[0])
-    return sp.Rational(10) ** round(decades)
-
-
-def _check_exactly(z: Impedance, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
-    """The wave at s = rate + j frequency if Re Z < 0 there, decided exactly; else None."""
-    value = z.at(rate, frequency)
-    if value is None or value[0] >= 0:
-        return None
-    return wave_of(sp.ImmutableMatrix([[z.expression]]), rate, frequency)

@@ -6,7 +6,7 @@ plane. Without dead times it knows these frequencies exactly, and modes that gro
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -15,9 +15,9 @@ import sympy as sp
 from ...derive.polynomials import roots_of
 from ..linear.conditions import where_it_fails
 from ..linear.family import Family
-from ..linear.matrices import ZERO, add, close, dampers, multiply, value_at
+from ..linear.matrices import close, dampers, exact_complex, value_at
 from ..linear.sweep import passive_margin, zeros_and_poles
-from .growing_wave import GrowingWave, growing_wave, halvings, wave_of
+from .growing_wave import GrowingWave, is_plain, wave_beside_axis, wave_of
 
 #: most points with a termination that are tested for a motion, a millisecond each
 _MOST = 40
@@ -37,14 +37,9 @@ def near_poles(family: Family) -> np.ndarray:
             points += [low * 2.0**-k * turn, high * 2.0**k * turn]
     for size in np.geomspace(low / 4, high * 4, 25):
         points += list(size * np.exp(1j * np.linspace(0, 0.46 * np.pi, 12)))
-    return np.array(list(_growing(points)))
-
-
-def _growing(points: Sequence[complex]) -> Iterator[complex]:
-    for s in points:
-        imaginary = s.imag if abs(s.imag) > 1e-9 * abs(s) else 0.0  # rounding: no swing
-        if s.real > 1e-12 * abs(s) and imaginary >= 0:
-            yield complex(s.real, imaginary)
+    s = np.array(points)
+    s = np.where(np.abs(s.imag) > 1e-9 * np.abs(s), s, s.real)  # rounding: no swing
+    return np.asarray(s[(s.real > 1e-12 * np.abs(s)) & (s.imag >= 0)])
 
 
 def near_axis(frequencies: Sequence[float], closer: Sequence[int]) -> np.ndarray:
@@ -122,12 +117,21 @@ _TESTED = 20
 
 
 def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWave | None:
-    """A wave that takes energy out of the ports; None where the search has no result.
+    """The first of `waves_out_of`; None where the search has no result."""
+    return next(waves_out_of(family, frequencies), None)
+
+
+def waves_out_of(family: Family, frequencies: Sequence[float] = ()) -> Iterator[GrowingWave]:
+    """Waves that take energy out of the ports, the plainest first.
 
     frequencies: where to look, Hz, besides those that are known exactly
     """
+    weak = None
     if family.size == 1 and not family.times:
-        return growing_wave(family.impedance)
+        weak = wave_beside_axis(family.impedance)
+        if weak is not None and is_plain(weak):
+            yield weak
+            weak = None
     parts = [near_poles(family), near_axis(frequencies, range(33))]
     if not family.times:
         places = where_it_fails(family, "passive")
@@ -137,7 +141,7 @@ def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWav
         ]
     points = np.concatenate(parts)
     z = family.at(points)
-    finite = np.isfinite(z).all(axis=(1, 2))
+    finite = np.isfinite(z).all(axis=(1, 2)) & z.any(axis=(1, 2))
     points, z = points[finite], z[finite]
     share = passive_margin(z) / np.abs(z).max(axis=(1, 2)) * points.real / np.abs(points)
     size = np.abs(np.log(np.abs(points) / np.median(np.abs(points))))
@@ -147,28 +151,9 @@ def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWav
         at = Fraction(points[k].real), Fraction(points[k].imag)
         wave = wave_of(family.z, *at)
         if wave is not None and wave.energy > 0 and (family.times or _takes_out(family, wave)):
-            return wave
-    return select_fastest(wave_at(family.z, f) for f in frequencies)
-
-
-def select_fastest(waves: Iterable[GrowingWave | None]) -> GrowingWave | None:
-    """The wave that grows fastest relative to its frequency; None where there is no wave."""
-    growing = [w for w in waves if w is not None]
-    return max(growing, key=lambda w: w.rate / (w.frequency or w.rate), default=None)
-
-
-def wave_at(z: sp.ImmutableMatrix, frequency: float) -> GrowingWave | None:
-    """A growing wave at about that frequency (Hz) that releases energy; None where there is none.
-
-    The rate of growth is halved until a wave releases energy, down to 2^-30 of the frequency: a
-    margin below this share is near rounding.
-    """
-    w = Fraction(2 * np.pi * frequency)
-    for rate in halvings(8 * w, 33):
-        wave = wave_of(z, rate, w)
-        if wave is not None and wave.energy > 0:
-            return wave
-    return None
+            yield wave
+    if weak is not None:
+        yield weak
 
 
 def _modes_between_dampers(family: Family) -> np.ndarray:
@@ -186,12 +171,12 @@ def _modes_between_dampers(family: Family) -> np.ndarray:
 
 def _takes_out(family: Family, wave: GrowingWave) -> bool:
     """Whether V^H (Z + Z^H) V < 0 at the wave, exactly; V: its velocities, read as fractions."""
-    v = [(Fraction(x.real), Fraction(x.imag)) for x in wave.velocity]
-    at, total = (wave.rate, wave.frequency), ZERO
-    for (re, im), row in zip(v, family.n, strict=True):
+    v = [exact_complex((Fraction(x.real), Fraction(x.imag))) for x in wave.velocity]
+    at, total = (wave.rate, wave.frequency), sp.QQ_I.zero
+    for one, row in zip(v, family.n, strict=True):
         for entry, other in zip(row, v, strict=True):
             value = value_at(entry, family.d, at)
             if value is None:
                 return False
-            total = add(total, multiply(multiply((re, -im), value), other))
-    return total[0] < 0
+            total += sp.QQ_I(one.x, -one.y) * value * other
+    return bool(total.x < 0)

@@ -31,7 +31,7 @@ import sympy as sp
 from ...base.errors import ModelError, did_you_mean
 from ...base.units import AXES
 from ...effects import EFFECTS
-from ..claims.certificate import Certificate, Term, checker_text, seal, storage_certificate
+from ..claims.certificate import Certificate, checker_text, seal
 from ..claims.claim import Claim, use_units_of
 from ..linear.impedance import exact
 
@@ -204,60 +204,65 @@ def _entry(name: str) -> dict[str, Any]:
 def _whole(name: str) -> Mapping[str, Any]:
     """The content of a certificate without digest; its example has no values yet."""
     entry = _entry(name)
+    signs, constants = entry.get("signs", []), sorted(entry.get("constants", []))
+    read: list[sp.Expr] = []
 
-    def each(field: str) -> dict[str, sp.Expr]:
-        return {n: _read(text) for n, text in entry.get(field, {}).items()}
+    def text(expression: str) -> str:
+        read.append(_read(expression))
+        return checker_text(read[-1])
 
-    signs = entry.get("signs", [])
-    proofs = {goal: _cases(terms, signs) for goal, terms in entry["proofs"].items()}
-    inequalities = each("positive"), each("nonnegative")
-    supply, storage = _read(entry["supply"]), _read(entry.get("storage", "0"))
-    invariant = {n: tuple(map(_read, pair)) for n, pair in entry.get("invariant", {}).items()}
-    every = [supply, storage, *each("rates").values(), *(e for p in invariant.values() for e in p)]
-    every += [e for part in inequalities for e in part.values()]
-    names = {x.name for e in every for x in e.free_symbols} | {*signs}
-    known = {prefix + x for x in signs for prefix in ("abs_", "sign_")}
-    made = storage_certificate(
-        entry["title"],
-        supply=supply,
-        storage=storage,
-        rates=each("rates"),
-        constants=entry.get("constants", []),
-        positive=inequalities[0],
-        nonnegative=inequalities[1],
-        invariant=invariant,
-        signs=signs,
-        proofs={"storage": {"": ()}, **proofs},
-        example=dict.fromkeys(names - known, 0),
-    )
-    return {n: x for n, x in made.content.items() if n != "digest"}
+    def each(field: str) -> dict[str, str]:
+        return {n: text(expression) for n, expression in entry.get(field, {}).items()}
 
-
-def _cases(terms: Mapping[str, Sequence[str]], signs: Sequence[str]) -> dict[str, list[Term]]:
-    """Terms of each case of the signs: those of all cases, and those of a pattern that fits."""
-    cases = [" ".join(case) for case in product(("1", "-1"), repeat=len(signs))]
-    patterns = {p: list(map(_term, texts)) for p, texts in terms.items() if p != "all"}
-    common = list(map(_term, terms.get("all", ())))
-    if not patterns:
-        return {"": common}
+    pairs = entry.get("invariant", {}).items()
+    content = {
+        "kind": "storage",
+        "title": entry["title"],
+        "constants": constants,
+        "positive": each("positive"),
+        "nonnegative": each("nonnegative"),
+        "rates": each("rates"),
+        "supply": text(entry["supply"]),
+        "storage": text(entry.get("storage", "0")),
+        "signs": signs,
+        "invariant": {n: {"expression": text(h), "rate": text(rate)} for n, (h, rate) in pairs},
+    }
+    names = {x.name for e in read for x in e.free_symbols} | {*signs}
+    names -= {prefix + x for x in signs for prefix in ("abs_", "sign_")}
+    proofs = {"storage": {}, **entry["proofs"]}
     return {
-        case: [*common, *(t for p, more in patterns.items() if fnmatchcase(case, p) for t in more)]
-        for case in cases
-        if any(fnmatchcase(case, p) for p in patterns)
+        **content,
+        "signals": sorted(names - {*content["rates"], *constants}),
+        "proofs": {goal: _cases(terms, signs) for goal, terms in proofs.items()},
+        "example": dict.fromkeys(names),
     }
 
 
-def _term(text: str) -> Term:
+def _cases(terms: Mapping[str, Sequence[str]], signs: Sequence[str]) -> dict[str, list[Any]]:
+    """Terms of each case of the signs: those of all cases, and those of a pattern that fits."""
+    cases = (" ".join(case) for case in product(("1", "-1"), repeat=len(signs)))
+    return {
+        case: [
+            _term(one)
+            for pattern, listed in terms.items()
+            if pattern == "all" or fnmatchcase(case, pattern)
+            for one in listed
+        ]
+        for case in cases
+    }
+
+
+def _term(text: str) -> list[Any]:
     """A term such as "1/2 abs_v F^-1 [p]": weight, factor -> power, root."""
     head, _, root = text.partition("[")
-    weight, powers = sp.S(1), {}
+    weight, powers = "1", {}
     for word in head.split():
         if word[0].isdigit():
-            weight = sp.Rational(word)
+            weight = word
         else:
             factor, _, power = word.partition("^")
             powers[factor] = int(power or 1)
-    return weight, powers, _read(root.removesuffix("]") or "1")
+    return [weight, powers, checker_text(_read(root.removesuffix("]") or "1"))]
 
 
 def _read(text: str) -> sp.Expr:

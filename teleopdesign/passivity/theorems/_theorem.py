@@ -18,15 +18,15 @@ from ...base.errors import ModelError
 from ...base.frozen import ByValue
 from ...blocks import Body, Value
 from ...controllers import Stage, controller, laws_that_declare
-from ...diagrams import haptic_interface
+from ...diagrams import Diagram, haptic_interface
 from ...effects import EFFECTS
 from ...simulate import Sampling
 from ..claims.claim import Claim, Counterexample, Proof, Refutation, Unknown
 from ..identified import IdentifiedDevice
 from ..law_facts import ANY_TIME, LawFacts, law_facts
 from ..rate_independent import Coulomb, Cycle, Dahl
-from ..search.by_simulation import SimulatedMotion, confirmed_motion
-from ..search.growing_wave import first_wave
+from ..search.by_simulation import SimulatedMotion, confirmed_motion, search_counterexample
+from ..search.growing_wave import wave_of
 from ..search.stroke_motion import Strokes
 from ._hypotheses import hypotheses_of
 
@@ -113,8 +113,17 @@ class TopicClaim(ByValue):
     time: Time = "continuous"
 
     @classmethod
-    def from_search(cls, topic: str, claim: Claim) -> TopicClaim:
-        """A claim that a search decided, whose motion was replayed in simulation."""
+    def from_search(
+        cls, topic: str, statement: str, diagram: Diagram, **settings: Any
+    ) -> TopicClaim:
+        """A claim that `search_counterexample` decides, whose motion is replayed in simulation.
+
+        statement: of the claim where the simulation does not take the diagram
+        """
+        try:
+            claim = search_counterexample(diagram, **settings)
+        except ModelError as problem:
+            claim = Claim(statement, Unknown(str(problem)))
         verdict = claim.verdict
         if isinstance(verdict, Refutation) and isinstance(verdict.record, SimulatedMotion):
             return cls(topic, claim, verdict.replayed, verdict.record)
@@ -184,7 +193,9 @@ def refute_by_wave(
 
     points: rate (1/s) and frequency (rad/s), at which a wave is searched in turn
     """
-    wave = first_wave(sp.ImmutableMatrix([[z]]), points)
+    matrix = sp.ImmutableMatrix([[z]])
+    waves = (wave_of(matrix, rate, frequency) for rate, frequency in points)
+    wave = next((wave for wave in waves if wave is not None), None)
     how = wave and f"a growing wave at {float(wave.frequency) / (2 * math.pi):.4g} Hz"
     return refute(statement, wave, how or "", "the condition fails, but no wave was found")
 

@@ -15,7 +15,6 @@ from typing import Any
 import sympy as sp
 
 from ..claims.claim import Claim, Evidence, Proof, Unknown
-from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Cycle, Dahl, symmetric_cycle
 from ._hypotheses import Positive, certificate, require_hypotheses
@@ -81,22 +80,14 @@ def _claims(question: Question) -> list[TopicClaim]:
     if bound is None or device.presliding is not None:
         return []
     acting, time = device.acting_force(bound), question.time_of_bound
-    claims = [TopicClaim("any law within the level", _compare_level(device, acting), time=time)]
-    if question.estimates:
-        claims.append(TopicClaim("the same, with damping", _compare_at_every_speed(device, acting)))
-    return claims
-
-
-def _compare_level(device: IdentifiedDevice, acting: float) -> Claim:
-    """The claim that the friction level covers any law whose acting force is within `acting`, N."""
     if math.isinf(acting):
         why = "no bound is known of the force that the actuation makes of a command"
-        return Claim("no law within the friction level drives a motion", Unknown(why))
-    return bounded_compensation(coulomb_level=device.lowest.low, bound=acting)
-
-
-def _compare_at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
-    """The claim that level and damping together cover a law with a force within `acting`, N."""
+        claim = Claim("no law within the friction level drives a motion", Unknown(why))
+    else:
+        claim = bounded_compensation(coulomb_level=device.lowest.low, bound=acting)
+    claims = [TopicClaim("any law within the level", claim, time=time)]
+    if not question.estimates:
+        return claims
     least, unit = device.least_resistance.low, device.force_unit.replace("*", " ")
     statement = (
         f"ideal friction of the device and its viscous damping resist with more than "
@@ -105,7 +96,8 @@ def _compare_at_every_speed(device: IdentifiedDevice, acting: float) -> Claim:
     searched = (
         f"interval arithmetic: the resistance is at least {least:.4g} {unit} in the 95 % interval"
     )
-    return Claim(statement, Evidence(least >= acting, searched, least - acting, unit))
+    verdict = Evidence(least >= acting, searched, least - acting, unit)
+    return [*claims, TopicClaim("the same, with damping", Claim(statement, verdict))]
 
 
 def _covers(question: Question) -> Sequence[str]:

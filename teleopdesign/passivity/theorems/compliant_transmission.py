@@ -21,6 +21,7 @@ from ..rate_independent import (
     Cycle,
     Dahl,
     Spring,
+    compliance,
     lost_share,
     strongest,
     symmetric_cycle,
@@ -156,8 +157,7 @@ def free_motion_margin(
 
 def _worst_cycle(helps: Dahl, against: Sequence[AbstractElement]) -> Cycle | None:
     """The symmetric cycle that releases most energy per travel, of a grid of amplitudes."""
-    stuck = against[1]
-    elastic = stuck.level / stuck.stiffness if isinstance(stuck, Spring) else 1.0
+    elastic = against[1].level * compliance(against[1])
     bristle = helps.level / helps.stiffness
     # well within a soft bristle nothing is released, and thousands of rounds would be travelled
     shortest = max(1e-2 * elastic, 1e-3 * bristle)
@@ -170,8 +170,7 @@ def _paths(
     helps: Dahl, against: Sequence[AbstractElement], rng: np.random.Generator, number: int
 ) -> Iterator[Cycle]:
     """Cycles with a step back and forth at each reversal, and so many random closed paths."""
-    lengths = [helps.level / helps.stiffness]
-    lengths += [e.level / e.stiffness for e in against if isinstance(e, Dahl | Spring)]
+    lengths = [e.level * compliance(e) for e in (helps, *against) if not isinstance(e, Coulomb)]
     for a in np.geomspace(0.3 * min(lengths), 3.0 * max(lengths), 24):
         for step in a * np.geomspace(0.003, 0.5, 8):
             points = (a, a - step, a, -a, step - a, -a)

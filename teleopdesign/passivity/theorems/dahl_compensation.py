@@ -17,7 +17,7 @@ from ...base.errors import ModelError
 from ..claims.claim import Claim, Proof
 from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal
-from ..rate_independent import Coulomb, Cycle, Dahl, dahl_loss, lost_share, symmetric_cycle
+from ..rate_independent import Cycle, Dahl, dahl_loss, lost_share, symmetric_cycle
 from ._hypotheses import Positive, PositiveOrNone, certificate, require_hypotheses
 from ._theorem import Question, Theorem, Time, TopicClaim, decide, simulate_cycle
 from .bounded_compensation import cycle_beyond_onset, proof_of_level
@@ -88,7 +88,7 @@ def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: 
     coulomb_level: f_C, N;  stiffness: sigma_D, N/m;  amplitude: A, m
     returns: inf where no level releases energy
     """
-    from scipy.optimize import brentq
+    from scipy.optimize import brentq, minimize_scalar
 
     _refuse_not_positive(
         "largest_passive_level: expected levels, stiffness and amplitude > 0",
@@ -100,12 +100,12 @@ def largest_passive_level(*, coulomb_level: float, stiffness: float, amplitude: 
     def out(level: float) -> float:
         return dahl_loss(level, stiffness, amplitude) / (4 * amplitude) - coulomb_level
 
-    # for a level without limit the compensator is a spring, which releases nothing
-    levels = coulomb_level * np.geomspace(1.0, 1e6, 4001)
-    k = next((k for k, level in enumerate(levels) if out(float(level)) > 0), None)
-    if k is None:
+    # beyond the best level the compensator becomes a spring, which releases nothing
+    best = minimize_scalar(lambda u: -lost_share(u) / u, bounds=(0.1, 10.0), method="bounded")
+    most = max(stiffness * amplitude / float(best.x), coulomb_level)
+    if out(most) <= 0:
         return float("inf")
-    return float(brentq(out, levels[max(k - 1, 0)], levels[k], xtol=1e-12 * coulomb_level))
+    return float(brentq(out, coulomb_level, most, xtol=1e-12 * coulomb_level))
 
 
 def largest_ratio(u: float, *, motion: Literal["cycles", "closed paths"] = "cycles") -> float:
@@ -146,24 +146,18 @@ def onset_amplitude(
 ) -> float:
     """Amplitude, m, from which on symmetric cycles release energy; inf where f_D <= f_C.
 
-    By bisection, to a relative 1e-9, on the energy of one period, which is integrated exactly.
+    There f_D (1 - tanh(u)/u) = f_C, u = sigma_D A/f_D.
 
     coulomb_level: f_C, N;  compensator_level: f_D, N;  compensator_stiffness: sigma_D, N/m
     """
+    from scipy.optimize import brentq
+
     f_c, f_d, stiffness = map(float, (coulomb_level, compensator_level, compensator_stiffness))
     if f_d <= f_c:
         return float("inf")
-    helps, against = Dahl(f_d, stiffness), [Coulomb(f_c)]
-    low, high = 0.0, f_d / stiffness
-    while symmetric_cycle(helps, against, high).energy <= 0:
-        low, high = high, 2 * high
-    while high - low > 1e-9 * high:
-        middle = (low + high) / 2
-        if symmetric_cycle(helps, against, middle).energy > 0:
-            high = middle
-        else:
-            low = middle
-    return high
+    beyond = f_d / (f_d - f_c)  # there 1 - tanh(u)/u > 1 - 1/u = f_C/f_D
+    u = brentq(lambda u: f_d * lost_share(u) - f_c, 1e-300, beyond, xtol=1e-300, rtol=1e-14)
+    return float(u) * f_d / stiffness
 
 
 def self_motion_speed(*, coulomb_level: float, compensator_level: float, damping: float) -> float:

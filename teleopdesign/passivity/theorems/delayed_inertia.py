@@ -100,7 +100,7 @@ def cancelled_inertia(
     z = m * S + b - c * S * late / (t * S + 1) ** order
     if t and c <= order * b * t:
         method = "Re Z >= B - mhat/(r T) >= 0 at every frequency, for any delay"
-        made = certificate(f"cancelled_inertia_{order}", B=b, T=t, m=c)
+        made = certificate("cancelled_inertia", B=b, T=t, m=c, r=sp.S(order))
         return Claim(statement, Proof(method, (made,), float(b - c / (order * t)), "N s/m"))
     if not tau or not c:
         return Claim(statement, positive_real(z if c else m * S + b).verdict)

@@ -187,9 +187,8 @@ def _claims(question: Question) -> list[TopicClaim]:
     plain = sum((EFFECTS[n].expression() for n in ("coulomb", "stribeck")), sp.S(0))
     if device.body.level() == plain:
         low = values["coulomb.level"]
-        high = float(
-            f"{low + values['stribeck.extra_static_level']:.12g}"
-        )  # of decimals, a decimal
+        # of decimals, a decimal
+        high = float(f"{low + values['stribeck.extra_static_level']:.12g}")
     claim = lugre_passivity(
         coulomb_level=low,
         static_level=high,

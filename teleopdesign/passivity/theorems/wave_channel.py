@@ -142,7 +142,12 @@ def _wave_impedance(diagram: Diagram) -> float:
     """
     bodies = {b.name: b.body for b in diagram.blocks if isinstance(b, Moving)}
     controls = {c.name: replace(c, analog=False) for c in diagram.controls}
-    impedance = _damping_of(diagram, "b_m") if "b_m" in controls else 0.0
+    impedance = 0.0
+    if "b_m" in controls:  # its linear form is to be b s
+        linear = linear_blocks(diagram, only="b_m")
+        damping = sp.cancel(linear.blocks["b_m"] / S)
+        is_damper = "b_m" not in linear.left_out and not damping.free_symbols
+        impedance = float(damping) if is_damper else 0.0
     if {"Z_m", "Z_s"} <= set(bodies) and "P" in controls and impedance > 0:
         made = wave_variables(
             bodies["Z_m"],
@@ -157,13 +162,6 @@ def _wave_impedance(diagram: Diagram) -> float:
     raise ModelError(
         f"{diagram.name}: not wired as `wave_variables` does it, with one b on both sides"
     )
-
-
-def _damping_of(diagram: Diagram, name: str) -> float:
-    """Damping b of a controller whose linear form is b s; 0 for any other controller."""
-    linear = linear_blocks(diagram, only=name)
-    damping = sp.cancel(linear.blocks[name] / S)
-    return 0.0 if name in linear.left_out or damping.free_symbols else float(damping)
 
 
 THEOREM = Theorem(mathematics=(wave_channel, wave_teleoperator), order=71)

@@ -10,48 +10,32 @@ its inverse has a pole at s, unless the sum is singular everywhere.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
 
 import numpy as np
 import sympy as sp
 
-from ...derive.polynomials import (
-    X,
-    as_poly,
-    halves,
-    is_free_of_growth,
-    positive_roots,
-    roots_of,
-)
+from ...derive.polynomials import as_poly, is_free_of_growth, roots_of
 from ...realise.lti import S
 from ..linear.conditions import where_it_fails
 from ..linear.family import Family, family_of_matrix
 from ..linear.matrices import (
-    ZERO,
     Gaussian,
-    add,
-    as_complex,
     close,
-    divide,
+    exact_complex,
     inverse_denominator,
-    multiply,
+    parts_of,
     round_point,
-    short,
-    square_root,
     value_at,
 )
 from ..rate_independent import AbstractRecord
 from ..search.growing_wave import last_part
 from ..search.points import candidates, near_axis, near_poles
 from .termination import (
-    CLAMPED,
     Termination,
     exact_value,
     far_termination,
-    termination_near,
     termination_of,
     velocities_in_phase,
     with_resonance,
@@ -105,27 +89,19 @@ class GrowingMode(AbstractRecord):
 
     def is_confirmed(self) -> bool:
         """Whether the closed loop has a pole in the open right half plane, exactly (Routh)."""
-        family = _family(self.impedance)
+        family = family_of_matrix(self.impedance)
         free = [k for k, held in enumerate(self.terminations) if not held.clamped]
         if not free:
             return False
         s, d = family.d.ring.gens[0], family.d
         rows = [[family.n[i][j] * s for j in free] for i in free]
         for row, k in zip(range(len(free)), free, strict=True):
-            rows[row][row] += d * _times_s(self.terminations[k], d.ring)
+            held = self.terminations[k]  # R + m s + k/s, times s
+            parts = enumerate((held.stiffness, held.damping, held.inertia))
+            times_s = {(power,): sp.QQ(x.numerator, x.denominator) for power, x in parts if x}
+            rows[row][row] += d * d.ring(times_s)
         q = inverse_denominator(rows, d * s)
         return bool(q) and not is_free_of_growth(as_poly(q, S))
-
-
-@lru_cache(maxsize=8)
-def _family(impedance: sp.ImmutableMatrix) -> Family:
-    return family_of_matrix(impedance.tolist())
-
-
-def _times_s(held: Termination, ring: sp.PolyRing) -> sp.PolyElement:
-    """s times R + m s + k/s."""
-    parts = (held.stiffness, held.damping, held.inertia)
-    return ring({(k,): sp.QQ(x.numerator, x.denominator) for k, x in enumerate(parts) if x})
 
 
 def growing_mode(family: Family) -> GrowingMode | None:
@@ -134,124 +110,69 @@ def growing_mode(family: Family) -> GrowingMode | None:
     family: 2 x 2, without dead times and values
     returns: a motion that is confirmed exactly; None where the search has no result
     """
-    search = _Search(family)
-    return search.over_points() or search.between_dampers() or search.near_axis()
+    return _search_points(family) or _search_between_dampers(family)
 
 
-@dataclass(frozen=True)
-class _Search:
-    family: Family
+def _search_points(family: Family) -> GrowingMode | None:
+    """A mode at one of the points of the right half plane at which growth is most likely."""
+    places = where_it_fails(family, "absolutely stable")
+    negative = [float(x) ** 0.5 / (2 * np.pi) for x in places]
+    steps = (*range(1, 34, 2), *range(35, 68, 4))
+    points = np.concatenate([near_axis(negative, steps), near_poles(family)])
+    for s, second, turned in candidates(family, points):
+        mode = _mode_at(family, round_point(s), far_termination(s, second), turned)
+        if mode is not None:
+            return mode
+    return None
 
-    def over_points(self) -> GrowingMode | None:
-        """A mode at one of the points of the right half plane at which growth is most likely."""
-        places = where_it_fails(self.family, "absolutely stable")
-        negative = [float(x) ** 0.5 / (2 * np.pi) for x in places]
-        steps = (*range(1, 34, 2), *range(35, 68, 4))
-        points = np.concatenate([near_axis(negative, steps), near_poles(self.family)])
-        for s, second, turned in candidates(self.family, points):
-            mode = self._mode_at(round_point(s), far_termination(s, second), turned)
-            if mode is not None:
-                return mode
+
+def _search_between_dampers(family: Family) -> GrowingMode | None:
+    """A mode that grows between dampers, also one that moves one port only."""
+    for size in (1, 100, Fraction(1, 100)):
+        held = Termination(Fraction(size))
+        c = sp.QQ(*Fraction(size).as_integer_ratio())
+        q = close(family.n, family.d, [c, c])
+        growing = [r for r in roots_of(q) if r.real > 0 and r.imag >= 0] if q else []
+        if not growing or is_free_of_growth(as_poly(q, S)):
+            continue
+        pole = complex(max(growing, key=lambda r: r.real))
+        beside = family.at(np.array([pole * (1 + 1e-7)]))[0] + float(size) * np.eye(2)
+        v = np.linalg.svd(np.linalg.inv(beside))[0][:, 0]
+        v = v * np.exp(-1j * np.angle(v[np.argmax(np.abs(v))])) / np.abs(v).max()
+        v = np.where(np.abs(v) < 1e-5, 0, v if pole.imag else v.real)
+        velocity = complex(v[0]), complex(v[1])
+        at = Fraction(pole.real), Fraction(pole.imag)
+        return GrowingMode(family.z, (held, held), *at, velocity)
+    return None
+
+
+def _mode_at(family: Family, at: Gaussian, far: Termination, turned: bool) -> GrowingMode | None:
+    """The growing mode at exactly s = `at` with that far termination.
+
+    turned: the far port is port 1
+    returns: None where the near termination is not passive, or the mode is not confirmed
+    """
+    ports = (1, 0) if turned else (0, 1)
+    values = [value_at(family.n[i][j], family.d, at) for i in ports for j in ports]
+    if any(value is None for value in values):
         return None
-
-    def between_dampers(self) -> GrowingMode | None:
-        """A mode that grows between dampers, also one that moves one port only."""
-        for size in (1, 100, Fraction(1, 100)):
-            held = Termination(Fraction(size))
-            c = sp.QQ(*Fraction(size).as_integer_ratio())
-            q = close(self.family.n, self.family.d, [c, c])
-            growing = [r for r in roots_of(q) if r.real > 0 and r.imag >= 0] if q else []
-            if not growing or is_free_of_growth(as_poly(q, S)):
-                continue
-            pole = complex(max(growing, key=lambda r: r.real))
-            beside = self.family.at(np.array([pole * (1 + 1e-7)]))[0] + float(size) * np.eye(2)
-            v = np.linalg.svd(np.linalg.inv(beside))[0][:, 0]
-            v = v * np.exp(-1j * np.angle(v[np.argmax(np.abs(v))])) / np.abs(v).max()
-            v = np.where(np.abs(v) < 1e-5, 0, v if pole.imag else v.real)
-            velocity = complex(v[0]), complex(v[1])
-            at = Fraction(pole.real), Fraction(pole.imag)
-            return GrowingMode(self.family.z, (held, held), *at, velocity)
-        return None
-
-    def near_axis(self) -> GrowingMode | None:
-        """A mode beside the axis, with up to 60 digits, where a condition fails by little.
-
-        Inequalities fail in a narrow band of frequencies, residues fail at a pole that both ways
-        between the ports share.
-        """
-        failing = where_it_fails(self.family, "absolutely stable")
-        narrow = [square_root(x, 30) for x in failing]
-        shared = [square_root(x, 60) for x in self._shared_poles()]
-        for k in range(4, 132, 4):
-            places = [(w / 2**k, w) for w in (*narrow, *shared)]
-            places += [(Fraction(1, 2**k), Fraction(0)), (Fraction(2**k), Fraction(0))]
-            for rate, frequency in places:
-                at = short(rate, 6), frequency
-                for turned in (False, True):
-                    for far in self._best_exact(at, turned):
-                        mode = self._mode_at(at, far, turned)
-                        if mode is not None:
-                            return mode
-        return None
-
-    def _shared_poles(self) -> list[Fraction]:
-        """Values of w^2 of the poles on the axis that z12 and z21 share."""
-        d, n = self.family.d, self.family.n
-        shared = n[0][1].cancel(d)[1].gcd(n[1][0].cancel(d)[1])
-        return positive_roots(sp.gcd(*(as_poly(half, X) for half in halves(shared))), bits=200)
-
-    def _values(self, at: Gaussian, turned: bool) -> list[Gaussian] | None:
-        """z11, z12, z21, z22 at a point, exactly; from the other port where `turned`."""
-        ports = (1, 0) if turned else (0, 1)
-        values = (value_at(self.family.n[i][j], self.family.d, at) for i in ports for j in ports)
-        known = [value for value in values if value is not None]
-        return known if len(known) == 4 else None
-
-    def _mode_at(self, at: Gaussian, far: Termination, turned: bool) -> GrowingMode | None:
-        """The growing mode at exactly s = `at` with that far termination.
-
-        turned: the far port is port 1
-        returns: None where the near termination is not passive, or the mode is not confirmed
-        """
-        values = self._values(at, turned)
-        if values is None:
+    z11, z12, z21, z22 = values
+    at_port, ratio = z11, 0j
+    if not far.clamped:
+        below = z22 + exact_complex(exact_value(far, at))
+        if not below:
             return None
-        z11, z12, z21, z22 = values
-        at_port, ratio = z11, 0j
-        if not far.clamped:
-            below = add(z22, exact_value(far, at))
-            if below == ZERO:
-                return None
-            at_port = add(z11, divide(multiply(z12, z21), below), -1)
-            ratio = -as_complex(
-                divide(z21, below)
-            )  # velocity of the far port for 1 m/s of the near
-        plain = termination_of((-at_port[0], -at_port[1]), at)
-        if plain is None or at_port == ZERO:
-            return None
-        for near in (plain, with_resonance(plain, at)):
-            velocity = velocities_in_phase(near, far, ratio, as_complex(at))
-            mode = GrowingMode(self.family.z, (near, far), *at, velocity)
-            if turned:
-                mode = replace(mode, terminations=(far, near), velocity=velocity[::-1])
-            if mode.energy > 0 and mode.is_confirmed():
-                return mode
+        at_port = z11 - z12 * z21 / below
+        # velocity of the far port for 1 m/s of the near
+        ratio = -complex(*map(float, parts_of(z21 / below)))
+    plain = termination_of(parts_of(-at_port), at)
+    if plain is None or not at_port:
         return None
-
-    def _best_exact(self, at: Gaussian, turned: bool) -> Iterator[Termination]:
-        """Far terminations: a clamp, a free port, and the best one of `candidates` to 40 digits."""
-        yield CLAMPED
-        yield Termination()
-        values = self._values(at, turned)
-        if values is None or at[1] == 0:
-            return
-        _, z12, z21, z22 = values
-        loop = multiply(z12, z21)
-        size = square_root(loop[0] ** 2 + loop[1] ** 2, 40)
-        if size + loop[0] == 0 or loop == ZERO:
-            return
-        slope, share = loop[1] / (size + loop[0]), at[0] / at[1]  # tan(arg(L)/2)
-        r = z22[0]
-        for _ in range(6):
-            r = z22[0] + abs(r * slope - z22[1]) * share
-        yield termination_near((r - z22[0], r * slope - z22[1]), at, 40)
+    for near in (plain, with_resonance(plain, at)):
+        velocity = velocities_in_phase(near, far, ratio, complex(*map(float, at)))
+        mode = GrowingMode(family.z, (near, far), *at, velocity)
+        if turned:
+            mode = replace(mode, terminations=(far, near), velocity=velocity[::-1])
+        if mode.energy > 0 and mode.is_confirmed():
+            return mode
+    return None

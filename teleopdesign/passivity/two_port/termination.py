@@ -69,10 +69,15 @@ CLAMPED = Termination(clamped=True)
 
 
 def far_termination(s: complex, value: complex) -> Termination:
-    """The passive termination that has about that impedance at s; a clamp if it is infinite."""
+    """The passive termination that has about that impedance at s; a clamp if it is infinite.
+
+    Its parts are rounded to seven digits, and a negative damper is left out.
+    """
     if cmath.isinf(value):
         return CLAMPED
-    return termination_near((Fraction(value.real), Fraction(value.imag)), round_point(s), 7)
+    real, *rest = _parts((Fraction(value.real), Fraction(value.imag)), round_point(s))
+    real, inertia, stiffness = (short(x, 7) for x in (max(real, Fraction(0)), *rest))
+    return Termination(real, inertia, stiffness)
 
 
 def with_resonance(held: Termination, at: Gaussian) -> Termination:
@@ -114,16 +119,6 @@ def termination_of(wanted: Gaussian, at: Gaussian) -> Termination | None:
     real, inertia, stiffness = _parts(wanted, at)
     if real < 0 or (wanted[1] != 0 and at[1] == 0):
         return None
-    return Termination(real, inertia, stiffness)
-
-
-def termination_near(wanted: Gaussian, at: Gaussian, digits: int) -> Termination:
-    """A termination whose impedance at s is about `wanted`.
-
-    Its parts are rounded to so many digits, and a negative damper is left out.
-    """
-    real, *rest = _parts(wanted, at)
-    real, inertia, stiffness = (short(x, digits) for x in (max(real, Fraction(0)), *rest))
     return Termination(real, inertia, stiffness)
 
 

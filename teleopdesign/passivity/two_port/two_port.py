@@ -50,7 +50,7 @@ class TwoPort:
     @cached_property
     def family(self) -> Family:
         """The two-port as a family of functions, at a point."""
-        return replace(family_of_matrix(self.z.tolist()), unseen=self.unseen)
+        return replace(family_of_matrix(self.z), unseen=self.unseen)
 
     def over(self, frequency: np.ndarray) -> np.ndarray:
         """Impedance matrices at each frequency (Hz), N s/m, (n, 2, 2)."""

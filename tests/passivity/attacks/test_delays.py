@@ -132,7 +132,7 @@ def one_port(rng):
     whole = sp.Add(
         *(written(p) / written(q) * sp.exp(-S * sp.Rational(repr(t))) for p, q, t in terms)
     )
-    claim = passive_claim(family_of_matrix([[whole]]))
+    claim = passive_claim(family_of_matrix(sp.ImmutableMatrix([[whole]])))
 
     def z(s, exp):
         def at(p):

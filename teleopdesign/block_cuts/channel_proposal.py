@@ -1,0 +1,184 @@
+"""Channels of a diagram among the columns of a log, with what each choice rests on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..base.arguments import check_types
+from ..base.errors import ExperimentError, did_you_mean, quote
+from ..diagrams import Diagram
+from ..measurement.doors._log import Log, join_names
+from ..measurement.from_arrays import log_of
+from ..measurement.survey.clock import duration_of, numeric_columns, time_column
+from ..measurement.survey.content import NONE, Choices, unit_in_log
+from .channel_search import ChannelSearch, ColumnChoice
+
+#: odds above which a choice needs no question
+CLEAR = 20.0
+
+
+@dataclass(frozen=True)
+class ChannelProposal:
+    """Proposed channels of an experiment of a diagram.
+
+    duration: of the log, s
+    channels: "time" or "sample_rate", then signal -> its table in [channels]
+    zero: outside signals that are taken to be zero
+    known: signal -> why its column is no guess;  guesses: "channels.R_A.column" -> why
+    open: signals of which another choice is about as likely;  unused: column -> why
+    errors: cut -> error of the stated diagram
+    """
+
+    diagram: Diagram
+    duration: float
+    channels: Mapping[str, Mapping[str, Any]]
+    zero: tuple[str, ...]
+    known: Mapping[str, str]
+    guesses: Mapping[str, str]
+    open: tuple[str, ...]
+    unused: Mapping[str, str]
+    errors: Mapping[str, float]
+
+    def __repr__(self) -> str:
+        lines = [f"the signals of the diagram {self.diagram.name}"]
+        for key, table in self.channels.items():
+            column = quote(table["column"]) if "column" in table else f"{table['value']:g}"
+            basis = f"known {self.known[key]}" if key in self.known else "guess"
+            basis = "open: another choice is about as likely" if key in self.open else basis
+            sign = ", sign -1" if table.get("sign") == -1 else ""
+            more = f"  ({basis})  {self.diagram.texts.get(key, '')}".rstrip()
+            text = f"  {key:<12} {column} in {table['unit']}{sign}"
+            lines.append(text + (more if key in self.diagram.signals else ""))
+        lines += [f"  {name:<12} 0" for name in self.zero]
+        lines += [f"  not used: {column}: {why}" for column, why in self.unused.items()]
+        lines += ["guessed:"] if self.guesses else []
+        return "\n".join([*lines, *(f"  {key}: {why}" for key, why in self.guesses.items())])
+
+
+@check_types
+def propose_channels(
+    diagram: Diagram,
+    log: Any,
+    *,
+    file: str = "log",
+    choices: Choices | None = None,
+    stated: Mapping[str, str] | None = None,
+) -> ChannelProposal:
+    """Propose the channels of an experiment of a diagram.
+
+    log: an open log, a DataFrame or a dict of arrays
+    choices: time, units and sample rate that the user states;  stated: signal -> column or "none"
+    raises ExperimentError: no such signal or column; no column fits any signal
+    """
+    choices, stated = choices or Choices(), stated or {}
+    raw, idle, log = numeric_columns(log if isinstance(log, Log) else log_of(log), file)
+    _require(stated, diagram.signals, "signal", file)
+    _require([choices.time or NONE, *choices.units, *stated.values()], tuple(raw), "column", file)
+    guesses: dict[str, str] = {}
+    time, unit = time_column(raw, log, choices, guesses, file)
+    clock: dict[str, Any] = {"time": {"column": time, "unit": unit}}
+    if time is None:
+        if choices.sample_rate is None:
+            raise ExperimentError(f"{file}: {guesses['sample_rate']}: --sample-rate HZ states it")
+        clock = {"sample_rate": {"value": choices.sample_rate, "unit": "Hz"}}
+    rows = max(map(len, raw.values())) if time is None else len(raw[time])
+    idle |= {n: "has other rows than the time" for n, x in raw.items() if len(x) != rows}
+    idle |= {n: "is constant" for n, x in raw.items() if np.nanmax(x) == np.nanmin(x)}
+    units = {
+        n: choices.units.get(n) or log.units.get(n) or unit_in_log(n, log.names)
+        for n in raw
+        if n != time and n not in idle
+    }
+    data = {n: x for n, x in raw.items() if n == time or n in units}
+    search = ChannelSearch(diagram, data, units, clock, stated)
+    best = search.best()
+    _require_fit(search, best, file)
+    used = {one.column for one in best.values()}
+    left = {n: f" in {unit}" if unit else "" for n, unit in units.items() if n not in used}
+    idle |= {n: f"fits no signal of the diagram{unit}" for n, unit in left.items()}
+    known, open_ = _explain(search, best, guesses)
+    return ChannelProposal(
+        diagram,
+        duration_of(raw, time, unit, choices),
+        clock | {s: best[s].table for s in search.signals if s in best},
+        search.zero(best),
+        known,
+        guesses,
+        open_,
+        idle,
+        search.errors(best),
+    )
+
+
+def _require(names: Iterable[str], present: Sequence[str], kind: str, file: str) -> None:
+    """Refuse names of signals or columns that are not there."""
+    for name in names:
+        if name not in (*present, NONE):
+            raise ExperimentError(
+                f"{file}: no {kind} {quote(name)}, found {join_names(present)}"
+                f"{did_you_mean(name, present)}"
+            )
+
+
+def _require_fit(search: ChannelSearch, best: Mapping[str, ColumnChoice], file: str) -> None:
+    """Refuse a log that tests no block, and a stated column of another quantity."""
+    for signal, name in search.stated.items():
+        if name != NONE and signal not in best:
+            raise ExperimentError(
+                f"{file}: column {quote(name)} as {signal}: found the unit "
+                f"{search.units.get(name)}, expected one of a {search.quantity(signal)}"
+            )
+    if not search.errors(best):
+        raise ExperimentError(
+            f"{file}: no columns fit the signals of {search.diagram.name} so that a block is "
+            f"tested, found {join_names(tuple(search.data))}: --signal NAME=COLUMN states one"
+        )
+
+
+def _explain(
+    search: ChannelSearch,
+    best: Mapping[str, ColumnChoice],
+    guesses: dict[str, str],
+) -> tuple[dict[str, str], tuple[str, ...]]:
+    """What each choice rests on, in `guesses` if it is one; the known and the open signals."""
+    known, open_ = {}, []
+    others = list(search.changes(best))
+    for signal, one in best.items():
+        if signal in search.stated or search.tells(signal, one.column):
+            known[signal] = "as stated" if signal in search.stated else "by its name"
+        else:
+            without = {s: o for s, o in best.items() if s != signal}
+            apart = [without, *(o for o in others if o[signal].column != one.column)]
+            second = max(apart, key=search.score)
+            guesses[f"channels.{signal}.column"] = _compare(search, best, second, signal)
+            if search.score(best) - search.score(second) < np.log(CLEAR):
+                open_.append(signal)
+        if search.units[one.column] is None:
+            guesses[f"channels.{signal}.unit"] = f"the name {one.column!r} states no unit"
+        if one.sign < 0:
+            guesses[f"channels.{signal}.sign"] = "the other sign fits better"
+    for name in search.zero(best):
+        guesses[f"diagram.outside.{name}"] = "no column holds it: taken as zero in the recording"
+    return known, tuple(open_)
+
+
+def _compare(
+    search: ChannelSearch,
+    best: Mapping[str, ColumnChoice],
+    second: Mapping[str, ColumnChoice],
+    signal: str,
+) -> str:
+    """The errors of the cuts with a choice and with the next best one."""
+    here, there = search.errors(best), search.errors(second)
+    other = f"{second[signal].column!r}" if signal in second else "no column"
+    errors = [
+        f"{name} is off by {100 * error:.2g} %, with {other} "
+        + (f"by {100 * there[name]:.2g} %" if name in there else "untested")
+        for name, error in here.items()
+        if error != there.get(name)
+    ]
+    return "; ".join(errors) or f"by what its name suggests; {other} fits as well"
