@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..show.figures.diagnosis import BACKWARD, FORWARD
+from ..show.figures.diagnosis import BACKWARD, FORWARD, label_of
 from ..show.figures.style import AFTER, BEFORE
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ WIDE = 800
 HIGH = 170
 #: name of the selection of rows that all panels share
 ROWS = "rows"
+_TIPS = ("time", "position", "velocity", "measured", "model", "residual")
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ def rows_of(data: Dataset, body: str, use: str) -> list[dict[str, float | str]]:
     counts = data["counts"].values & (data["body"].values == body) & (data["use"].values == use)
     chosen = np.flatnonzero(counts)
     chosen = chosen[:: max(1, -(-len(chosen) // MOST))]
-    names = ("time", "position", "velocity", "measured", "model", "residual")
+    names = [n for n in (*_TIPS, "carrier") if n in data]
     columns: dict[str, list[Any]] = {
         n: [float(f"{x:.6g}") for x in data[n].values[chosen]] for n in names
     }
@@ -126,9 +127,10 @@ def _forces(unit: dict[str, str]) -> dict[str, Any]:
 def comparison_chart(
     one: Dataset, other: Dataset, body: str, use: str, names: tuple[str, str]
 ) -> Chart:
-    """The residuals of two models over velocity and over time, one panel above the other.
+    """The residuals of two models over "carrier" and over time, one panel above the other.
 
-    one, other: as `Comparison.data`;  names: of the two models
+    one, other: as `Comparison.data`, with the variable that carries the effect by which they
+        differ;  names: of the two models
     """
     rows = [
         {**row, "of": name}
@@ -141,7 +143,7 @@ def comparison_chart(
     of = {"field": "of", "type": "nominal", "scale": colours, "legend": _legend_above()}
 
     def over(name: str) -> dict[str, Any]:
-        title = f"{name} ({one[name].attrs['units']})"
+        title = label_of(one, name)
         along = {"field": name, "type": "quantitative", "title": title, "scale": {"zero": False}}
         return {
             "data": {"name": ROWS},
@@ -155,7 +157,7 @@ def comparison_chart(
         {
             "$schema": "https://vega.github.io/schema/vega-lite/v5.json",
             "datasets": {ROWS: rows},
-            "vconcat": [over("velocity"), over("time")],
+            "vconcat": [over("carrier"), over("time")],
             "config": {"axis": {"grid": False}},
         }
     )
@@ -176,5 +178,4 @@ def _legend_above() -> dict[str, Any]:
 
 
 def _tip() -> list[dict[str, str]]:
-    names = ("time", "position", "velocity", "measured", "model", "residual")
-    return [{"field": n, "type": "quantitative", "format": ".4g"} for n in names]
+    return [{"field": n, "type": "quantitative", "format": ".4g"} for n in _TIPS]

@@ -8,6 +8,7 @@ from pathlib import Path
 from ..base.errors import TeleopDesignError
 from ..base.files import write_beside, write_text
 from ..diagnose import write_answer
+from ..diagnose.by_simulation import simulated_if_possible
 from .pages import propose_design
 from .workbench import Workbench
 
@@ -52,7 +53,8 @@ def write_all(
     say("report, answer and figure")
     diagnosis = bench.diagnosis()
     left = where_it_fails(diagnosis.model, diagnosis.prepared, diagnosis.floor)
-    write_report(diagnosis, target / "report.html", unexplained=left)
+    simulation = simulated_if_possible(diagnosis)
+    write_report(diagnosis, target / "report.html", unexplained=left, simulation=simulation)
     write_answer(diagnosis, target / "answer.json")
     with write_beside(target / "figure.svg") as part:
         diagnosis.plot().savefig(part, format="svg")

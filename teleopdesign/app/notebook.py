@@ -360,12 +360,13 @@ def _(bench, body, factor, use, views, which):
 
 
 @app.cell
-def _(bench, mo, pages):
+def _(bench, mo, pages, views):
     left_view = mo.lazy(lambda: pages.what_is_left(bench), show_loading_indicator=True)
     next_view = mo.lazy(
         lambda: mo.plain_text(pages.next_experiment(bench)), show_loading_indicator=True
     )
-    return left_view, next_view
+    simulation_view = mo.lazy(lambda: views.simulation_view(bench), show_loading_indicator=True)
+    return left_view, next_view, simulation_view
 
 
 @app.cell
@@ -396,6 +397,7 @@ def _(
     mo,
     next_view,
     residual_view,
+    simulation_view,
     slider_view,
 ):
     mo.ui.tabs(
@@ -403,6 +405,7 @@ def _(
             "Residual": residual_view,
             "Compare": compare_view,
             "Parameters": slider_view,
+            "Simulation": simulation_view,
             "What is left": left_view,
             "Next experiment": next_view,
             "Design": design_view,

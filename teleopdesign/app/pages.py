@@ -17,8 +17,11 @@ from ..base.sentences import (
 )
 from ..base.units import unit_after_number, unit_of
 from ..diagnose.adequacy import floors_left, is_adequate
+from ..diagnose.by_simulation import compare_by_simulation
 from ..diagnose.comparison import residual_data
 from ..diagnose.noise_floor import say_floors
+from ..show.figures.carrier import carrier_of_change, with_carrier
+from ..show.report.parameter_table import correlation_rows
 from .workbench import Workbench
 
 if TYPE_CHECKING:
@@ -134,6 +137,36 @@ def _estimate(model: Model, name: str) -> str:
     best, error = with_error(value.value, value.stderr)
     sure = f" ± {error}" if value.stderr == value.stderr else ""
     return f"{best}{sure} {unit_text(model.unit(name))}"
+
+
+def correlations(bench: Workbench) -> str:
+    """Correlations of the last model's estimates as a Markdown table; "" for fewer than two."""
+    rows = correlation_rows(bench.state.fit)
+    if len(rows) < 2:
+        return ""
+    numbers = [str(k + 1) for k in range(len(rows))]
+    head = f"| correlation of the estimates | {' | '.join(numbers)} |"
+    lines = [
+        f"| {k} `{row.name}` | {' | '.join(f'{r:.2f}' for r in row.values)} |"
+        for k, row in zip(numbers, rows, strict=True)
+    ]
+    return "\n".join([head, f"|:---|{'---:|' * len(rows)}", *lines])
+
+
+def simulated_motion(bench: Workbench) -> Figure | str:
+    """Motion of the last model under the recorded forces over the measured one; or why not."""
+    try:
+        return compare_by_simulation(bench.model, bench.experiment).plot()
+    except TeleopDesignError as error:
+        return str(error)
+
+
+def carried_residuals(bench: Workbench, one: int, other: int, body: str) -> tuple[Dataset, Dataset]:
+    """Residuals of two rungs, with the variable that carries what they differ by."""
+    bodies = [bench.rungs[rung].fit.model.body(body) for rung in (one, other)]
+    carrier = carrier_of_change(*bodies)
+    data = [with_carrier(residuals(bench, k), carrier, bodies[0].axis) for k in (one, other)]
+    return data[0], data[1]
 
 
 def move_parameter(bench: Workbench, parameter: str, factor: float) -> str:

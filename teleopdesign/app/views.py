@@ -146,8 +146,7 @@ def compare_view(
         parts += [
             mo.md(pages.compare_rungs(bench, one.value, other.value)),
             charts.comparison_chart(
-                pages.residuals(bench, one.value),
-                pages.residuals(bench, other.value),
+                *pages.carried_residuals(bench, one.value, other.value, body.value),
                 body.value,
                 use.value,
                 (one.selected_key, other.selected_key),
@@ -193,7 +192,15 @@ def slider_view(
     data = pages.moved_residuals(bench, which.value, factor.value)
     if data is not None:
         parts.append(charts.residual_chart(data, body.value, use.value))
+    if table := pages.correlations(bench):
+        parts.append(mo.md(table))
     return mo.vstack(parts)
+
+
+def simulation_view(bench: Workbench) -> PageElement:
+    """Measured and simulated motion, and the correlations of the residual."""
+    shown = pages.simulated_motion(bench)
+    return mo.plain_text(shown) if isinstance(shown, str) else mo.as_html(shown)
 
 
 def design_view(bench: Workbench, body: str) -> PageElement:

@@ -22,13 +22,14 @@ class Series(ByValue):
     """One set of points or one line of a graph.
 
     x, y: (n,);  low, high: a band around y, (n,), or None
-    kind: "measured" and "rest" are drawn as points, "model" and "trend" as lines, "limit" dashed
+    kind: "measured" and "rest" are drawn as points, "model" and "trend" as lines, "limit" dashed,
+        "course" (a measured signal over time) as a thick line
     """
 
     name: str
     x: Array
     y: Array
-    kind: Literal["measured", "rest", "model", "trend", "limit"] = "measured"
+    kind: Literal["measured", "rest", "model", "trend", "limit", "course"] = "measured"
     low: Array | None = None
     high: Array | None = None
 

@@ -129,7 +129,7 @@ def run(options: argparse.Namespace) -> int:
         with write_beside(options.figure) as part:
             diagnosis.plot().savefig(part)
     if options.report is not None:
-        write_page(diagnosis, options.report)
+        write_page(diagnosis, options.report, simulation)
     say_written(options.report, options.json, options.predictions, options.figure)
     source = shell_word(options.json or folder)
     for line in _suggest_commands(diagnosis, source):

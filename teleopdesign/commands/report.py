@@ -14,7 +14,7 @@ from ._whole_diagram import diagnosed_diagram
 if TYPE_CHECKING:
     from ..base.finding import Finding
     from ..block_cuts import BlockDiagnosis
-    from ..diagnose import Diagnosis
+    from ..diagnose import Diagnosis, SimulationComparison
 
 EXAMPLES = """
   teleopdesign report answer.json
@@ -65,8 +65,14 @@ def report_diagram(diagnosis: BlockDiagnosis, options: argparse.Namespace) -> in
     return 0
 
 
-def write_page(diagnosis: Diagnosis, path: Path) -> None:
-    """Write the page, with findings on the recording, the residual, and what to measure next."""
+def write_page(
+    diagnosis: Diagnosis, path: Path, simulation: SimulationComparison | None = None
+) -> None:
+    """Write the page, with findings on the recording, the residual, and what to measure next.
+
+    simulation: of the final model; None: it is simulated here, driven freely
+    """
+    from ..diagnose.by_simulation import simulated_if_possible
     from ..fitted_checks import check_experiment
     from ..show.figures.friction_curve import curve_finding
     from ..show.report import write_report
@@ -82,8 +88,17 @@ def write_page(diagnosis: Diagnosis, path: Path) -> None:
         if one.kind:
             left[part] = (curve_finding(one), *left[part])
     steps = _next_steps(diagnosis)
+    say("simulating the final model")
+    simulation = simulation or simulated_if_possible(diagnosis)
     say("")
-    write_report(diagnosis, path, soundness=soundness, unexplained=left, next_steps=steps)
+    write_report(
+        diagnosis,
+        path,
+        soundness=soundness,
+        unexplained=left,
+        next_steps=steps,
+        simulation=simulation,
+    )
 
 
 def _next_steps(diagnosis: Diagnosis) -> tuple[Finding, ...]:

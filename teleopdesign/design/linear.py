@@ -9,16 +9,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from ..base.errors import ModelError
 from ..blocks import Body
 from ..controllers import Controller
 from ..diagrams import Diagram, four_cases
-from ..frequency import FrequencyResponse, bode, describing_function
+from ..frequency import FrequencyResponse, ParameterCovariance, bode, describing_function
 from ..frequency.closed_forms import dahl
+from ..frequency.confidence import ResponseBand, confidence_band
 from ..frequency.frozen_friction import without_friction
 from .quasi_static import force_needed
 from .stated_motion import StatedMotion
@@ -52,10 +55,28 @@ def linear_error(hybrid: Diagram, motion: StatedMotion) -> tuple[Mapping[str, fl
     return dict(zip(gains.left_out, map(float, size), strict=True)), ", ".join(gone)
 
 
-def transparency(hybrid: Diagram, motion: StatedMotion) -> FrequencyResponse:
-    """T, from R_D to R_M, of the four cases; the diagram has a load in place of the hand."""
-    frequency = np.geomspace(0.1, 100.0, 301)
-    return bode(linear_cases(hybrid, motion), frequency=frequency, speed=mean_speed(motion))
+def transparency(
+    hybrid: Diagram, motion: StatedMotion, covariance: ParameterCovariance
+) -> FrequencyResponse:
+    """T, from R_D to R_M, of the four cases, with the band that the estimates of the device leave.
+
+    hybrid: with a load in place of the hand; C and H stay as designed
+    """
+
+    def response(diagram: Diagram) -> FrequencyResponse:
+        cases = linear_cases(diagram, motion)
+        return bode(cases, frequency=np.geomspace(0.1, 100.0, 301), speed=mean_speed(motion))
+
+    made = response(hybrid)
+    if not covariance.names:
+        return made
+
+    def values(diagram: Diagram) -> NDArray[np.complex128]:
+        one = response(diagram)
+        return np.array([one.values(case) for case in one.cases])
+
+    band = confidence_band(values, [hybrid], covariance)
+    return replace(made, band=ResponseBand(band.log_magnitude[0], band.phase[0], band.undetermined))
 
 
 def _linear(diagram: Diagram, motion: StatedMotion) -> Diagram:

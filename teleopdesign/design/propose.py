@@ -126,7 +126,9 @@ def design(
             speeds=reach.peak_speed * SHARES,
             position=motion.centre,
         ),
-        transparency=transparency(_with_load(best, body, settings), motion),
+        transparency=transparency(
+            _with_load(best, body, settings), motion, diagnosis.covariance({"Z_M": at})
+        ),
         claims=_claims(best, body, friction, reach, settings),
         verdict=diagnosis.verdict,
         left=diagnosis.left,

@@ -40,6 +40,8 @@ from .parts_fit import error_over_joints
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from .diagnosis import Diagnosis
+
 #: s: times until the simulation restarts on the measured motion; at last the whole record
 HORIZONS = (0.1, 0.3, 1.0, 3.0, 10.0)
 #: horizons whose courses are kept, to be drawn
@@ -156,6 +158,15 @@ def compare_by_simulation(
     return SimulationComparison(
         model, prepared, by_force["fit"], by_force["check"], tuple(errors), loop, courses
     )
+
+
+def simulated_if_possible(diagnosis: Diagnosis) -> SimulationComparison | None:
+    """The final model driven freely; None: an effect has no simulated form, or there is no time."""
+    try:
+        parts = diagnosis.recording.parts
+        return None if diagnosis.kind else compare_by_simulation(diagnosis.model, parts)
+    except ModelError:
+        return None
 
 
 def _gains(

@@ -20,14 +20,18 @@ from ..model import Model
 from ..realise.along_motion import residual_along
 from .by_simulation import SimulationComparison, compare_by_simulation
 from .candidates import restrict_to_curve
+from .covariance import covariance_in_blocks
 from .error import force_error
 from .horizon_errors import RecordedLoop
 from .noise_floor import NoiseFloor, noise_floor
 from .record_offsets import as_logged
+from .recorded_impedance import recorded_impedance
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
+
+    from ..frequency import FrequencyResponse, ParameterCovariance
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +51,29 @@ class Comparison(ByValue):
     floor: NoiseFloor
     data: Dataset
 
-    def plot(self) -> Figure:
-        """Residual over time, velocity and position."""
-        return figure_of(self)
+    def covariance(self, blocks: Mapping[str, str] | None = None) -> ParameterCovariance:
+        """Covariance of the fitted parameters, for the bands of responses: `bode(covariance=...)`.
+
+        blocks: block of a diagram -> body of the model; None: "Z_M" is the only body
+        """
+        return covariance_in_blocks(self.model, self.prepared, blocks)
+
+    def impedance(self, at: str | None = None, *, modelled: bool = False) -> FrequencyResponse:
+        """Measured force over motion, E/L, with coherence: points for `response.plot(measured=)`.
+
+        at: body; None: the first
+        modelled: of the force that the model needs along the same motion: a line
+        """
+        place = at or next(iter(self.model.bodies))
+        return recorded_impedance(self.model, self.prepared, place, modelled=modelled)
+
+    def plot(self, *, before: Comparison | None = None) -> Figure:
+        """Residual over time, velocity and position.
+
+        before: of another model of the same records: both residuals on one scale, over the variable
+            that carries the effect by which the models differ
+        """
+        return figure_of(self, before=before)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the data with units to a NetCDF file."""

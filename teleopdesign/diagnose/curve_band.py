@@ -7,7 +7,8 @@ import numpy as np
 from ..measurement.filtering import Array
 from ..measurement.friction_curve import points_as_motion
 from ..realise.along_motion import residual_along
-from .fit import Fit, covariance_of
+from .covariance import covariance_of
+from .fit import Fit
 
 
 def friction_at(fit: Fit, velocity: Array) -> tuple[Array, Array]:

@@ -22,6 +22,7 @@ from ..model import Model
 from ..realise.friction_cells import FrictionCell
 from .adequacy import floors_left, is_adequate
 from .candidates import Candidate
+from .covariance import covariance_in_blocks
 from .fingerprint import Fingerprint
 from .learnable import Learnable, NearReversals
 from .model_data import model_of_body
@@ -49,7 +50,7 @@ from .verdict import VerdictName, verdict
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..measurement.prepare import Prepared
+    from ..frequency import ParameterCovariance
     from .fit import Fit
 
 
@@ -280,6 +281,13 @@ class Diagnosis(Shown, ByValue):
     def last_fit(self) -> Fit:
         """The final model along the records."""
         return self.fit(self.model)
+
+    def covariance(self, blocks: Mapping[str, str] | None = None) -> ParameterCovariance:
+        """Covariance of the final parameters, for the bands of responses: `bode(covariance=...)`.
+
+        blocks: block of a diagram -> body of the model; None: "Z_M" is the only body
+        """
+        return covariance_in_blocks(self.model, self.recording.searched, blocks)
 
     def plot(self) -> Figure:
         """Figure of forces, of the residual over time, velocity and position, and of the ladder."""

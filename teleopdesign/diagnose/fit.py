@@ -81,7 +81,7 @@ class Fit(ByValue):
     @property
     def correlations(self) -> dict[tuple[str, str], float]:
         """Correlation of each pair of estimates that the records move, the largest first."""
-        covariance, _, sensitive = _covariance(self.jacobian, self.fit_residual, self.fit_blocks)
+        covariance, _, sensitive = sandwich(self.jacobian, self.fit_residual, self.fit_blocks)
         moving = np.flatnonzero(sensitive)
         spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
         correlation = covariance / np.outer(spread, spread)
@@ -267,25 +267,13 @@ def standard_errors(jacobian: Array, residual: Array, blocks: NDArray[np.intp]) 
     returns: (p,) standard errors; NaN where the residual does not depend on the parameter, and for
         all parameters where a search diverged until numbers overflow
     """
-    covariance, norm, sensitive = _covariance(jacobian, residual, blocks)
+    covariance, norm, sensitive = sandwich(jacobian, residual, blocks)
     errors = np.full(jacobian.shape[1], np.nan)
     errors[sensitive] = np.sqrt(np.maximum(np.diag(covariance), 0.0)) / norm
     return errors
 
 
-def covariance_of(fit: Fit) -> Array:
-    """Covariance (p, p) of the estimates of a fit, as their standard errors have it, SI.
-
-    A parameter on which the residual does not depend counts as known.
-    """
-    scaled, norm, sensitive = _covariance(fit.jacobian, fit.fit_residual, fit.fit_blocks)
-    unit = fit.scale[sensitive] / norm
-    covariance = np.zeros((len(fit.free), len(fit.free)))
-    covariance[np.ix_(sensitive, sensitive)] = scaled * np.outer(unit, unit)
-    return covariance
-
-
-def _covariance(
+def sandwich(
     jacobian: Array, residual: Array, blocks: NDArray[np.intp]
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
     """The sandwich estimate for columns of size one, these sizes, and which of the p have any.

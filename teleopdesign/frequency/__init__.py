@@ -6,6 +6,8 @@ from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
     from ..derive import transfer_function as transfer_function
+    from .confidence import ParameterCovariance as ParameterCovariance
+    from .confidence import ResponseBand as ResponseBand
     from .describing_function import describing_function as describing_function
     from .impedance_map import ImpedanceMap as ImpedanceMap
     from .impedance_map import falling_profile as falling_profile
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from .measured_response import measured_impedance as measured_impedance
     from .measured_response import measured_response as measured_response
     from .measured_response import simulated_response as simulated_response
+    from .recorded import recorded_response as recorded_response
     from .response import FrequencyResponse as FrequencyResponse
     from .response import bode as bode
 

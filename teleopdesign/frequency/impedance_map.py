@@ -21,6 +21,7 @@ from ..base.shown import Shown, figure_of
 from ..base.units import unit_of
 from ..diagrams import Diagram
 from ..diagrams.units import first_axis
+from .confidence import ParameterCovariance, ResponseBand, confidence_band
 from .quasi_linear import QuasiLinearForm
 from .response import cases_of
 
@@ -38,7 +39,8 @@ class ImpedanceMap(Shown, ByValue):
     The coordinate `amplitude` (of the drive) depends on `frequency` if it follows a profile. A
     measured map also has `distortion` of the force, the rms of its higher harmonics over that of
     the first; `unsettled`, the relative difference of the first harmonics of successive cycles; and
-    `motion_amplitude` (m or rad) of the motion itself.
+    `motion_amplitude` (m or rad) of the motion itself. A map of a fitted device may have
+    `magnitude_error` (relative) and `phase_error` (deg): standard errors, drawn as bands of 95 %.
     """
 
     data: xarray.Dataset
@@ -65,6 +67,13 @@ class ImpedanceMap(Shown, ByValue):
     def measured(self) -> bool:
         """Whether the map was measured, in simulation or on a device; else it was predicted."""
         return "distortion" in self.data
+
+    @property
+    def band(self) -> ResponseBand | None:
+        """Standard errors over the dimensions of the impedance; None: not known."""
+        if "magnitude_error" not in self.data:
+            return None
+        return ResponseBand(self.data["magnitude_error"].values, self.data["phase_error"].values)
 
     def up_to(self, largest: Callable[[np.ndarray], np.ndarray]) -> ImpedanceMap:
         """The map where the amplitude is at most largest(frequency in Hz); NaN elsewhere."""
@@ -216,25 +225,31 @@ def quasi_linear_impedance(
     frequency: float | Sequence[float] | np.ndarray,
     motion: str = "L",
     force: str = "E",
+    covariance: ParameterCovariance | None = None,
 ) -> ImpedanceMap:
     """Impedance Zhat_M that a hand feels over frequency and amplitude, without simulation.
 
     Arguments are those of `measured_impedance`, with a prescribed motion; controllers are
     continuous.
 
+    covariance: of fitted parameters, such as `diagnosis.covariance()`: the map has a band
     raises ModelError: a block without laws or without describing function
     """
     cases = cases_of(diagrams)
     grid = Grid.of(amplitude, frequency)
-    z = np.empty((len(cases), *(len(getattr(grid, n)) for n in grid.dims)), dtype=complex)
-    for i, diagram in enumerate(cases.values()):
+    shape = tuple(len(getattr(grid, n)) for n in grid.dims)
+    _, sizes, frequencies = (np.array(one) for one in zip(*grid.points, strict=True))
+
+    def impedance(diagram: Diagram) -> np.ndarray:
         form = QuasiLinearForm(diagram, motion, force, motion, motion)
-        places, sizes, frequencies = zip(*grid.points, strict=True)
-        made = form.values(np.array(sizes), np.array(frequencies))
-        for at, value in zip(places, made, strict=True):
-            z[(i, *at)] = value
+        return form.values(sizes, frequencies).reshape(shape)
+
     axis = first_axis(next(iter(cases.values())))
+    z = np.array([impedance(diagram) for diagram in cases.values()])
     values = {"impedance": (z, unit_of("stiffness", axis))}
+    if covariance is not None:
+        band = confidence_band(impedance, cases.values(), covariance)
+        values |= {"magnitude_error": (band.log_magnitude, "1"), "phase_error": (band.phase, "deg")}
     data = grid.label(values, cases=list(cases), length=unit_of("position", axis))
     data.attrs |= {"motion": motion, "force": force}
     return ImpedanceMap(data)

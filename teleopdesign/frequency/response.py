@@ -23,6 +23,7 @@ from ..derive import with_values
 from ..diagrams import Diagram
 from ..realise.lti import numerical
 from ..realise.tips import linear_tips
+from .confidence import ParameterCovariance, ResponseBand, confidence_band
 from .frozen_friction import cancellations_left_over, growing_modes, with_frozen_friction
 
 if TYPE_CHECKING:
@@ -54,6 +55,8 @@ class FrequencyResponse(Shown, ByValue):
         entry where that is not known
     left_over: case -> controllers that cancel friction while friction is left out
     measured: whether the response was measured: it is drawn as points instead of lines
+    band: standard errors, drawn as a band of 95 %, or as bars at points; None: not known
+    coherence: of a measured response, (cases, n), 0 to 1; None: not known
     """
 
     cases: tuple[str, ...]
@@ -69,19 +72,27 @@ class FrequencyResponse(Shown, ByValue):
     amplitude: float = 0.0
     unstable: Mapping[str, str] = field(default_factory=dict)
     left_over: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    band: ResponseBand | None = None
+    coherence: Array | None = None
 
     @cached_property
     def data(self) -> xarray.Dataset:
-        """Magnitude and phase over `case` and `frequency`, with their units."""
+        """Magnitude, phase, standard errors and coherence over `case` and `frequency`, with units.
+
+        The standard error of the magnitude is relative.
+        """
         import xarray  # its import takes longer than a Bode plot
 
         dims = ("case", "frequency")
         further = {"measured": 1} if self.measured else {"speed": self.speed}
+        made = {"magnitude": (self.magnitude, self.unit), "phase": (self.phase, "deg")}
+        if self.band is not None:
+            made["magnitude_error"] = self.band.log_magnitude, "1"
+            made["phase_error"] = self.band.phase, "deg"
+        if self.coherence is not None:
+            made["coherence"] = self.coherence, "1"
         return xarray.Dataset(
-            {
-                "magnitude": (dims, self.magnitude, {"units": self.unit}),
-                "phase": (dims, self.phase, {"units": "deg"}),
-            },
+            {name: (dims, values, {"units": unit}) for name, (values, unit) in made.items()},
             {"case": list(self.cases), "frequency": ("frequency", self.frequency, {"units": "Hz"})},
             {"output": self.output, "input": self.input, **further},
         )
@@ -116,7 +127,7 @@ class FrequencyResponse(Shown, ByValue):
     def plot(
         self, *, measured: FrequencyResponse | None = None, columns: Literal[1, 2] = 1
     ) -> matplotlib.figure.Figure:
-        """Bode plot, one line for each case.
+        """Bode plot, one line for each case, with its band of 95 % where the response has one.
 
         measured: drawn as points in the same plot;  columns: of the page, 3.5 in or 7.16 in wide
         """
@@ -142,6 +153,7 @@ def bode(
     frequency: np.ndarray | Sequence[float] | None = None,
     speed: float = 0.0,
     amplitude: float = 0.0,
+    covariance: ParameterCovariance | None = None,
 ) -> FrequencyResponse:
     """Frequency response from one signal to another, for one diagram or several cases.
 
@@ -157,31 +169,31 @@ def bode(
     speed: m/s or rad/s, at which friction, its cancellation and schedules are frozen
     amplitude: m or rad, of the motion "L" at every frequency: nonlinear laws have their describing
         functions there, as in `quasi_linear_impedance`; default: at 200 frequencies
+    covariance: of fitted parameters, such as `diagnosis.covariance()`: the response has a band
     raises ModelError: frequencies below 0, speed and amplitude together, no describing function
     """
     cases = cases_of(diagrams)
     if amplitude and speed:
         raise ModelError("bode: speed and amplitude: found both, expected one of them")
-    steps = 200 if amplitude else 2001
-    f = np.geomspace(0.1, 1000.0, steps) if frequency is None else np.asarray(frequency, float)
-    if f.ndim != 1 or not np.all(np.isfinite(f)) or np.any(f < 0):
-        raise ModelError("bode: frequency: expected numbers in Hz from 0, in one row")
+    f = _frequencies(frequency, steps=200 if amplitude else 2001)
     signals = _Signals(output, input, given)
-    made = {
-        name: _first_harmonics(one, signals, amplitude, f)
-        if amplitude
-        else _freeze(one, signals, abs(speed), f)
-        for name, one in cases.items()
-    }
-    diagram = next(iter(cases.values()))
-    rows = [one.values for one in made.values()]
-    values = np.array(rows)
+
+    def case_of(one: Diagram, stability: bool = True) -> _Case:
+        if amplitude:
+            return _first_harmonics(one, signals, amplitude, f)
+        return _freeze(one, signals, abs(speed), f, stability=stability)
+
+    made = {name: case_of(one) for name, one in cases.items()}
+    values = np.array([one.values for one in made.values()])
+    band = None
+    if covariance is not None:
+        band = confidence_band(lambda one: case_of(one, False).values, cases.values(), covariance)
     return FrequencyResponse(
         tuple(cases),
         f,
         np.abs(values),
         phase_of(values, f),
-        ratio_unit(linear_tips(diagram), output, input),
+        ratio_unit(linear_tips(next(iter(cases.values()))), output, input),
         output,
         input,
         {name: one.left_out for name, one in made.items()},
@@ -189,7 +201,16 @@ def bode(
         amplitude=amplitude,
         unstable={n: one.modes for n, one in made.items() if one.modes is not None},
         left_over={name: one.left_over for name, one in made.items()},
+        band=band,
     )
+
+
+def _frequencies(stated: np.ndarray | Sequence[float] | None, *, steps: int) -> Array:
+    """The stated frequencies, or so many steps from 0.1 to 1000 Hz."""
+    f = np.geomspace(0.1, 1000.0, steps) if stated is None else np.asarray(stated, float)
+    if f.ndim != 1 or not np.all(np.isfinite(f)) or np.any(f < 0):
+        raise ModelError("bode: frequency: expected numbers in Hz from 0, in one row")
+    return f
 
 
 class _Signals(NamedTuple):
@@ -213,12 +234,12 @@ def _first_harmonics(diagram: Diagram, of: _Signals, amplitude: float, f: Array)
     return _Case(quasi_linear(diagram, of.output, of.input, of.given, amplitude, f))
 
 
-def _freeze(diagram: Diagram, of: _Signals, speed: float, f: Array) -> _Case:
+def _freeze(diagram: Diagram, of: _Signals, speed: float, f: Array, *, stability: bool) -> _Case:
     frozen = with_frozen_friction(diagram, speed) if speed else diagram
     expression, linear = with_values(
         frozen, output=of.output, input=of.input, given=of.given, speed=speed, held=True
     )
-    modes = None if of.given else growing_modes(frozen, speed=speed)
+    modes = None if of.given or not stability else growing_modes(frozen, speed=speed)
     over = cancellations_left_over(frozen, linear.left_out)
     return _Case(numerical(expression)(2j * np.pi * f), linear.left_out, over, modes)
 

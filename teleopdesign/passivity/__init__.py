@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from .intervals.over_box import claim_over_intervals as claim_over_intervals
     from .linear.excess import Excess as Excess
     from .linear.excess import damping_excess as damping_excess
-    from .linear.excess import mobility_excess as mobility_excess
     from .linear.impedance import Impedance as Impedance
     from .linear.impedance import impedance as impedance
     from .linear.judge import positive_real as positive_real
@@ -73,7 +72,6 @@ if TYPE_CHECKING:
     from .theorems.dahl_compensation import self_motion_speed as self_motion_speed
     from .theorems.delayed_compensation import delayed_small_motion as delayed_small_motion
     from .theorems.delayed_compensation import inertia_given_out as inertia_given_out
-    from .theorems.delayed_compensation import released_by_delay as released_by_delay
     from .theorems.delayed_coupling import delayed_spring as delayed_spring
     from .theorems.delayed_inertia import cancelled_inertia as cancelled_inertia
     from .theorems.delayed_inertia import damping_given_out as damping_given_out

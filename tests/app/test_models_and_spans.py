@@ -81,9 +81,22 @@ def test_two_models_stand_beside_each_other(bench):
     assert after < before
 
 
+def test_correlations_of_the_last_model_stand_in_a_table(bench):
+    lines = pages.correlations(bench).splitlines()
+    assert lines[0].endswith("| 1 | 2 | 3 |") and len(lines) == 5
+    pair, value = next(iter(bench.state.fit.correlations.items()))
+    assert f"`{pair[0]}`" in "\n".join(lines) and f"{value:.2f}" in "\n".join(lines)
+
+
+def test_the_simulated_motion_of_the_last_model_is_drawn(bench):
+    figure = pages.simulated_motion(bench)
+    assert figure.axes[0].get_ylabel() == "position (m)"
+
+
 def test_a_chart_shows_the_residual_of_both(bench):
     better = bench.add("stribeck", "device")
-    data = [pages.residuals(better, k) for k in (0, 1)]
+    data = pages.carried_residuals(better, 0, 1, "device")
+    assert data[0]["carrier"].attrs["label"] == "velocity"
     chart = charts.comparison_chart(*data, "device", "check", ("yours", "other"))
     rows = chart.specification["datasets"][charts.ROWS]
     by_name = {n: [r["residual"] for r in rows if r["of"] == n] for n in ("yours", "other")}

@@ -75,20 +75,6 @@ def damping_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
     return Excess(lower, upper, float(np.sqrt(at)))
 
 
-def mobility_excess(system: Any, *, motion: MotionKind = "velocity") -> Excess:
-    """Excess of the mobility 1/Z, m/(N s): the index of output passivity.
-
-    system, motion: see `impedance`
-    returns: the largest c for which 1/Z - c is still passive; < 0: a shortage; +inf where Z = 0
-    raises ModelError: no impedance
-    """
-    z = impedance(system, motion=motion)
-    if z.p.is_zero:
-        return Excess(float("inf"), float("inf"), 0.0)
-    lead = z.p.LC()
-    return damping_excess(Impedance(z.q.quo_ground(lead), z.p.quo_ground(lead)))
-
-
 def _infimum(real: sp.Poly, size: sp.Poly) -> tuple[float, float]:
     """(x, value) at the infimum of real/size over x >= 0, in floating point.
 

@@ -17,7 +17,6 @@ from fractions import Fraction
 import numpy as np
 import sympy as sp
 
-from ...frequency.closed_forms import dahl
 from ...realise.lti import S
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
@@ -27,16 +26,6 @@ from ._theorem import Theorem, refute_by_wave
 
 #: just above 0.2172336, which is minus the least value of sin(y)/y (at tan y = y, y = 4.4934)
 SINC_LEAST = sp.Rational(21724, 100000)
-
-
-def released_by_delay(*, level: float, stiffness: float, amplitude: float, phase: float) -> float:
-    """Energy that a delayed Dahl compensator releases per cycle, J.
-
-    level: N;  stiffness: N/m;  amplitude: of x = A sin(w t), m;  phase: w tau, rad
-    """
-    # in numbers of any size: I_1(u)/cosh(u) overflows in those of the machine
-    first = complex(sp.N(dahl(level, stiffness, amplitude)))
-    return float(np.pi * amplitude**2 * (first * np.exp(-1j * phase)).imag)
 
 
 def inertia_given_out(*, inertia: float, amplitude: float, frequency: float, delay: float) -> float:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from ...base.sentences import unit_at_axis, with_standard_error
 from ...base.units import unit_of
 from ..figures.style import CASES, TWO_COLUMNS
+from ..frequency.panels import draw_interval, keep_scale
 from ..registry import shows
 from .headline import headline
 
@@ -257,9 +258,13 @@ def _residual(axis: Axes, design: Design) -> None:
 
 def _transparency(axis: Axes, design: Design) -> None:
     response = design.transparency
-    for case, size in zip(response.cases, response.magnitude, strict=True):
+    for k, (case, size) in enumerate(zip(response.cases, response.magnitude, strict=True)):
         colour, line, _ = CASES[case]
         axis.semilogx(response.frequency, size, color=colour, linestyle=line)
+        if response.band is not None:
+            ratio = 10 ** (response.band.decibel[k] / 20)
+            draw_interval(axis, response.frequency, (size / ratio, size * ratio), colour)
+    keep_scale(axis)
     axis.axhline(1.0, color="#BFBFBF", linewidth=0.5, zorder=0)
     axis.set_ylim(bottom=0.0)
     axis.set_xlim(float(response.frequency[0]), float(response.frequency[-1]))

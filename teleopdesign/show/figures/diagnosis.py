@@ -1,4 +1,4 @@
-"""Figures of comparisons and diagnoses; they draw the contents of results and compute nothing."""
+"""Figures of diagnoses, and panels of residuals; they draw results and compute nothing."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.sentences import unit_at_axis
-from ...diagnose.comparison import Comparison, residual_data
-from ...diagnose.recording import DiagnosedRecording
+from ...diagnose.comparison import residual_data
 from ..registry import shows
-from .carrier import CarryingVariable, carrier_of
+from .carrier import CarryingVariable, carrier_of, with_carrier
 from .friction_curve import draw_friction_curve
 from .ladder import draw_ladder
 from .style import AFTER, BEFORE, MEASURED, house_style
@@ -89,34 +88,6 @@ def draw_over_time(ax: Axes, data: Any, name: str, color: str, label: str, width
         )
 
 
-@shows("figure")
-def plot_comparison(comparison: Comparison) -> Figure:
-    """Measured and modelled force, and the residual over time, velocity and position."""
-    import matplotlib.pyplot as plt
-
-    if comparison.prepared.is_curve:
-        with plt.style.context(house_style()):
-            figure, axes = plt.subplots(1, 2, figsize=(7.16, 2.9))
-            recording = DiagnosedRecording(stated=comparison.prepared.experiment)
-            fit = recording.evaluate(comparison.model)
-            draw_friction_curve(axes[0], comparison.prepared, {"model": (fit, AFTER)})
-            draw_by_direction(axes[1], comparison.data, "velocity")
-            direction_legend(axes[1])
-        return figure
-    data = check_rows(comparison.data)
-    with plt.style.context(house_style()):
-        figure, axes = plt.subplots(2, 2, figsize=(7.16, 4.6))
-        draw_over_time(axes[0, 0], data, "measured", MEASURED, "measured", 1.4)
-        draw_over_time(axes[0, 0], data, "model", AFTER, "model", 0.7)
-        _force_axes(axes[0, 0], data)
-        draw_over_time(axes[0, 1], data, "residual", AFTER, "residual", 0.7)
-        axes[0, 1].set(xlabel=label_of(data, "time"), ylabel=label_of(data, "residual"))
-        draw_by_direction(axes[1, 0], data, "velocity")
-        draw_by_direction(axes[1, 1], data, "position")
-        direction_legend(axes[1, 0])
-    return figure
-
-
 def direction_legend(ax: Axes) -> None:
     """A legend of the directions above the panel, so that it covers no points."""
     ax.legend(
@@ -130,7 +101,8 @@ def direction_legend(ax: Axes) -> None:
     )
 
 
-def _force_axes(ax: Axes, data: Any) -> None:
+def force_axes(ax: Axes, data: Any) -> None:
+    """Labels and legend of a panel with measured and modelled force over time."""
     force = label_of(data, "measured").replace("measured", "force")
     ax.set(xlabel=label_of(data, "time"), ylabel=force)
     ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=3)
@@ -151,8 +123,11 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
     if diagnosis.kind:
         return _plot_friction_curve(diagnosis)
     carrier = carrier_of(diagnosis, next(iter(diagnosis.model.bodies)))
+    if carrier.name == "velocity":
+        carrier = CarryingVariable("position")  # the velocity has panels of its own
+    axis = next(iter(diagnosis.model.bodies.values())).axis
     before, after = (
-        _with_carrier(check_rows(residual_data(model, diagnosis.prepared)), carrier, diagnosis)
+        with_carrier(check_rows(residual_data(model, diagnosis.prepared)), carrier, axis)
         for model in (diagnosis.before.model, diagnosis.model)
     )
     changed = len(diagnosis.rungs) > 1
@@ -173,7 +148,7 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
         draw_over_time(ax, before, "model", BEFORE, "your model", 0.6)
         if changed:
             draw_over_time(ax, after, "model", AFTER, "with what was missing", 0.6)
-        _force_axes(ax, before)
+        force_axes(ax, before)
         # anybody's text: no formula in it
         figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
         ax = axes["time"]
@@ -212,15 +187,6 @@ def _plot_friction_curve(diagnosis: Diagnosis) -> Figure:
         axes["v1"].set_ylim(axes["v0"].get_ylim())
         draw_ladder(axes["ladder"], diagnosis, of="the measured force")
     return figure
-
-
-def _with_carrier(data: Any, carrier: CarryingVariable, diagnosis: Diagnosis) -> Any:
-    """The data with the variable "carrier", beside the velocity; the position carries as well."""
-    if carrier.name == "velocity":
-        carrier = CarryingVariable("position")
-    axis = next(iter(diagnosis.model.bodies.values())).axis
-    attributes = {"units": data[carrier.name].attrs["units"], "label": carrier.label(axis)}
-    return data.assign(carrier=("sample", carrier.values(data), attributes))
 
 
 def _plot_joints(diagnosis: Diagnosis) -> Figure:

@@ -26,6 +26,7 @@ COLOURS = {
     "model": PAIR,
     "trend": (INK, *PAIR),
     "limit": (INK, MEASURED),
+    "course": (MEASURED, *PAIR),
 }
 POINTS = ("measured", "rest")
 #: most points drawn of one series; more are not seen on a panel of a few inches
@@ -99,7 +100,7 @@ def _draw(series: Series, axes: Axes, colour: str) -> None:
     elif series.kind == "limit":
         style = {"linestyle": "--", "linewidth": 0.8}
     else:
-        style = {"linestyle": "-", "linewidth": 1.0}
+        style = {"linestyle": "-", "linewidth": 2.6 if series.kind == "course" else 1.0}
     # a series of one point is a level; a line through one point would not be seen
     if series.kind not in POINTS and len(series.x) == 1:
         axes.axhline(float(series.y[0]), color=colour, label=_label(series), **style)

@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Literal
 from ...base.sentences import unit_at_axis
 from ..figures.style import house_style
 from ..registry import shows
-from .response import PageColumns, legend_below, look, mark_degrees, panels, points, share_abscissa
+from .panels import (
+    PageColumns,
+    draw_interval,
+    keep_scale,
+    legend_below,
+    look,
+    mark_degrees,
+    panels,
+    points,
+    share_abscissa,
+)
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -51,7 +61,8 @@ def plot_impedance(
 ) -> matplotlib.figure.Figure:
     """Size (dB) and phase (0 to 360 degrees), as in figures 6 and 7 of Bernstein, Lawrence, Pao.
 
-    Several values of the other variable are drawn in shades, from light to dark.
+    Several values of the other variable are drawn in shades, from light to dark. Bands are
+    intervals of 95 %, at the darkest.
 
     model: drawn as lines; `result` is then drawn as points
     """
@@ -65,9 +76,10 @@ def plot_impedance(
     unit = unit_at_axis(result.decibel.attrs["units"])
     upper.set_ylabel(rf"$|\hat Z_M|$ ({unit})")
     lower.set_ylabel(r"phase of $\hat Z_M$ (deg)")
+    keep_scale(upper)
     lower.set_ylim(0, 360)
     mark_degrees(lower)
-    share_abscissa(upper, lower, label, (float(x.min()), float(x.max())), columns)
+    share_abscissa((upper, lower), label, (float(x.min()), float(x.max())), columns)
     if len(result.data["case"]) > 1:
         # below 90 and above 270 degrees there is room
         lower.legend(loc="upper left", ncols=1 if columns == 2 else 2)
@@ -85,7 +97,7 @@ def _impedance_lines(
 ) -> None:
     x, _ = _scale(result, against)
     other = _other_variable(result, against)
-    shades = result.data[other].values if other else [None]
+    shades, band = result.data[other].values if other else [None], result.band
     for case in map(str, result.data["case"].values):
         for k, value in enumerate(shades):
             chosen = {"case": case} | ({other: value} if other else {})
@@ -93,8 +105,13 @@ def _impedance_lines(
             style["alpha"] = 1.0 - 0.75 * (len(shades) - 1 - k) / len(shades)
             if k < len(shades) - 1:
                 style["label"] = "_"
-            axes[0].plot(x, result.decibel.sel(chosen), **style)
-            axes[1].plot(x, result.phase.sel(chosen), **style)
+            halves = () if band is None else (band.decibel, band.degrees)
+            for j, values in enumerate((result.decibel, result.phase)):
+                y = values.sel(chosen).values
+                (line,) = axes[j].plot(x, y, **style)
+                if halves and k == len(shades) - 1:
+                    half = values.copy(data=halves[j]).sel(chosen).values
+                    draw_interval(axes[j], x, (y - half, y + half), line.get_color())
 
 
 def plot_spread(
@@ -121,9 +138,7 @@ def plot_spread(
         for axis in axes:
             axis.set_ylim(bottom=0.0)
         f = result.data["frequency"].values
-        share_abscissa(
-            axes[0], axes[1], "frequency (Hz)", (float(f.min()), float(f.max())), columns
-        )
+        share_abscissa(axes, "frequency (Hz)", (float(f.min()), float(f.max())), columns)
         if len(result.data["case"]) > 1:
             legend_below(figure, axes[0])
         axes[0].set_title(_WHICH if model else "", loc="left", pad=3)

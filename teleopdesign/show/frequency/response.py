@@ -1,17 +1,23 @@
-"""Texts of responses and loop gains, Bode and Nyquist figures.
-
-A figure of one column is 3.5 in wide with magnitude above phase, a figure of two columns is 7.16 in
-wide with both side by side; fonts, lines and colours are the same. A model is drawn as lines,
-measurements as points, here and in figures over amplitude.
-"""
+"""Texts of responses and loop gains, Bode and Nyquist figures."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING
 
 from ...base.sentences import unit_at_axis
-from ..figures.style import CASES, ONE_COLUMN, TWO_COLUMNS
+from ..figures.style import ONE_COLUMN, TWO_COLUMNS
 from ..registry import shows
+from .panels import (
+    PageColumns,
+    draw_interval,
+    keep_scale,
+    legend_below,
+    look,
+    mark_degrees,
+    panels,
+    points,
+    share_abscissa,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,6 +45,8 @@ def response_text(response: FrequencyResponse) -> str:
             lines.append(f"    UNSTABLE: a mode of the whole diagram grows, {modes}")
         if over := _left_over(response.left_over.get(case, ())):
             lines.append(f"    {over}: state speed= or amplitude=")
+    if response.band is not None and response.band.undetermined:
+        lines.append(f"  the band takes as known: {', '.join(response.band.undetermined)}")
     return "\n".join(lines)
 
 
@@ -79,34 +87,74 @@ def plot_bode(
 ) -> matplotlib.figure.Figure:
     """Magnitude (dB) and phase (deg) against frequency (Hz); measured: drawn as points.
 
-    A case that is zero at every frequency has no curve; the legend says that it is zero.
+    A case that is zero at every frequency has no curve; the legend says that it is zero. Bands and
+    bars are intervals of 95 %. A coherence has a panel of its own.
     """
-    import numpy as np
-
-    figure, (upper, lower) = panels(columns)
-    for one in (response, measured):
-        if one is None:
-            continue
-        for name in one.cases:
-            style = points(name, alone=len(one.cases) == 1) if one.measured else look(name)
-            style["label"] = _name(one, name)
-            if one.is_zero(name):
-                upper.plot([], [], **(style | {"label": f"{style['label']} (zero)"}))
-                continue
-            size = one.magnitude[one.row(name)]
-            upper.plot(one.frequency, 20 * np.log10(size), **style)
-            lower.plot(one.frequency, _unwrap_beside(one, response, name), **style)
+    curves = [one for one in (response, measured) if one is not None]
+    figure, axes = panels(columns, 3 if any(c.coherence is not None for c in curves) else 2)
+    draw_bode(axes, curves, columns)
     ratio = f"{_symbol(response.output)}/{_symbol(response.input)}"
     unit = "" if response.unit == "1" else f" re 1 {unit_at_axis(response.unit)}"
-    upper.set_ylabel(f"$|{ratio}|$ (dB{unit})")
-    lower.set_ylabel(rf"$\angle\,{ratio}$ (deg)")
-    mark_degrees(lower)
-    ends = float(response.frequency[0]), float(response.frequency[-1])
-    share_abscissa(upper, lower, "frequency (Hz)", ends, columns)
-    _warn(upper, response)
-    if measured is not None or len(response.cases) > 1:
-        legend_below(figure, upper)
+    axes[0].set_ylabel(f"$|{ratio}|$ (dB{unit})")
+    axes[1].set_ylabel(rf"$\angle\,{ratio}$ (deg)")
+    _warn(axes[0], response)
+    if len(axes[0].get_legend_handles_labels()[1]) > 1:
+        legend_below(figure, axes[0])
     return figure
+
+
+def draw_bode(
+    axes: Sequence[matplotlib.axes.Axes],
+    curves: Sequence[FrequencyResponse],
+    columns: PageColumns = 1,
+) -> None:
+    """Magnitude (dB), phase (deg) and coherence of responses; the first one rules the phases."""
+    for one in curves:
+        for name in one.cases:
+            _bode_lines(axes, one, curves[0], name)
+    for axis in axes[:2]:
+        keep_scale(axis)
+    mark_degrees(axes[1])
+    if len(axes) > 2:
+        axes[2].set_ylabel("coherence (1)")
+        axes[2].set_ylim(0.0, 1.05)
+    ends = float(curves[0].frequency[0]), float(curves[0].frequency[-1])
+    share_abscissa(axes, "frequency (Hz)", ends, columns)
+
+
+def _bode_lines(
+    axes: Sequence[matplotlib.axes.Axes],
+    one: FrequencyResponse,
+    model: FrequencyResponse,
+    case: str,
+) -> None:
+    """Magnitude, phase and coherence of one case; model: of whose phase it lies beside."""
+    import numpy as np
+
+    style = points(case, alone=len(one.cases) == 1) if one.measured else look(case)
+    style["label"] = _name(one, case)
+    if one.is_zero(case):
+        axes[0].plot([], [], **(style | {"label": f"{style['label']} (zero)"}))
+        return
+    k = one.row(case)
+    size, phase = one.magnitude[k], _unwrap_beside(one, model, case)
+    (line,) = axes[0].plot(one.frequency, 20 * np.log10(size), **style)
+    axes[1].plot(one.frequency, phase, **style)
+    if one.coherence is not None:
+        axes[2].plot(one.frequency, one.coherence[k], **style)
+    if one.band is None:
+        return
+    label = "_" if one.measured or k else "95 % interval"
+    middles, halves = (20 * np.log10(size), phase), (one.band.decibel[k], one.band.degrees[k])
+    for axis, middle, half in zip(axes, middles, halves, strict=False):
+        draw_interval(
+            axis,
+            one.frequency,
+            (middle - half, middle + half),
+            line.get_color(),
+            bars=one.measured,
+            label=label,
+        )
 
 
 @shows("nyquist")
@@ -188,7 +236,7 @@ def _unwrap_beside(one: FrequencyResponse, model: FrequencyResponse, case: str) 
     phase, f = one.phase[one.row(case)], np.log(model.frequency)
     line = model.phase[model.row(case if case in model.cases else "")]
     expected = np.interp(np.log(one.frequency), f, line)
-    return np.asarray(phase + 360 * np.round(np.median(expected - phase) / 360))
+    return np.asarray(phase + 360 * np.round(np.nanmedian(expected - phase) / 360))
 
 
 def _decades(axis: matplotlib.axes.Axes, f: np.ndarray, z: np.ndarray, colour: str | None) -> None:
@@ -206,82 +254,3 @@ def _decades(axis: matplotlib.axes.Axes, f: np.ndarray, z: np.ndarray, colour: s
             named.append(z[k])
             beside = (float(z[k].real), float(z[k].imag))
             axis.annotate(f"{ten:g} Hz", beside, (3, 3), textcoords="offset points", fontsize=6)
-
-
-PageColumns = Literal[1, 2]
-MEASURED = "#7F7F7F"
-#: inches that the longest entry of a legend takes
-ENTRY = 1.7
-
-
-def look(case: str) -> dict[str, Any]:
-    """Colour, line style and label of a case, the same in every figure."""
-    colour, line, label = CASES.get(case, (None, "-", case))
-    return {"color": colour, "linestyle": line, "label": label}
-
-
-def points(case: str, *, alone: bool) -> dict[str, Any]:
-    """Style of measured points: grey, or the colour of the case if there are several cases."""
-    colour = MEASURED if alone or case not in CASES else CASES[case][0]
-    return {
-        "color": colour,
-        "linestyle": "none",
-        "marker": "o",
-        "markersize": 2.6,
-        "markerfacecolor": "none",
-        "markeredgewidth": 0.7,
-    }
-
-
-def panels(columns: PageColumns) -> tuple[matplotlib.figure.Figure, Any]:
-    """Two panels with a common abscissa: one above the other, or side by side for two columns."""
-    import matplotlib.pyplot as plt
-
-    if columns == 2:
-        return plt.subplots(1, 2, sharex=True, figsize=(TWO_COLUMNS, 2.4))
-    return plt.subplots(2, 1, sharex=True, figsize=(ONE_COLUMN, 3.6))
-
-
-def share_abscissa(
-    upper: matplotlib.axes.Axes,
-    lower: matplotlib.axes.Axes,
-    label: str,
-    ends: tuple[float, float],
-    columns: PageColumns,
-) -> None:
-    """A logarithmic abscissa for both panels, labelled below the lower panel or below the row."""
-    logarithmic(lower, *ends)
-    for axis in (upper, lower):
-        axis.grid(True)
-        if columns == 2 or axis is lower:
-            axis.set_xlabel(label)
-    upper.figure.align_ylabels()
-
-
-def logarithmic(axis: matplotlib.axes.Axes, low: float, high: float) -> None:
-    """A logarithmic abscissa with plain numbers; also 2 and 5 on a range below two decades."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    axis.set_xscale("log")
-    if low < high:
-        axis.set_xlim(low, high)
-    subs = (1.0, 2.0, 5.0) if high < 100 * low else (1.0,)
-    axis.xaxis.set_major_locator(LogLocator(subs=subs))
-    axis.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-    axis.xaxis.set_minor_formatter(NullFormatter())
-
-
-def mark_degrees(axis: matplotlib.axes.Axes) -> None:
-    """Ticks at every 45 or 90 degrees, if the range is wide enough."""
-    from matplotlib.ticker import MultipleLocator
-
-    low, high = axis.get_ylim()
-    if high - low > 90:
-        axis.yaxis.set_major_locator(MultipleLocator(90 if high - low > 270 else 45))
-
-
-def legend_below(figure: matplotlib.figure.Figure, axis: matplotlib.axes.Axes) -> None:
-    """The legend of one axis below the whole figure, where it covers no curve."""
-    handles, labels = axis.get_legend_handles_labels()
-    across = max(1, int(figure.get_figwidth() / ENTRY))
-    figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), across))

@@ -103,7 +103,7 @@ def excerpt(rows: BodySamples, axis: str, bandwidth: float) -> Graph:
     window = _window(rows, bandwidth)
     kept = window[:: max(1, len(window) // EXCERPT_POINTS)]  # low-passed: neighbours are alike
     force = choose_prefix(unit_of("force", axis), size_of(rows.measured[window]))
-    series = [Series("measured", rows.clock[kept], force.factor * rows.measured[kept])]
+    series = [Series("measured", rows.clock[kept], force.factor * rows.measured[kept], "course")]
     for name, r in _first_and_last(rows.residual):
         model = force.factor * (rows.measured[kept] - r[kept])
         series.append(Series(name, rows.clock[kept], model, "model"))

@@ -21,9 +21,13 @@ from markupsafe import Markup
 from ...base.finding import Graph
 from ...base.sentences import number_on_page as number
 from ...base.sentences import percent_on_page as percent
+from ...base.sentences import unit_on_page as unit_text
 from ..figures.graph import draw_graph
 from ..figures.style import AFTER, BEFORE, STYLE, further_fonts
+from ..frequency.panels import legend_below
+from ..frequency.response import draw_bode
 from .before_and_after import YOURS
+from .motion import ImpedanceView
 from .residuals import BodyView, RungResidual
 
 if TYPE_CHECKING:
@@ -180,6 +184,21 @@ def graph_figure(graph: Graph, alt: str, *, width: float = PANEL) -> Markup:
         draw_graph(graph, axes, colours={YOURS: BEFORE})
 
     return picture(draw, size=(width, 0.62 * width), alt=alt)
+
+
+def impedance_figure(view: ImpedanceView) -> Markup:
+    """Force over motion: recorded with coherence, of the model along the motion, and derived."""
+
+    def draw(figure: Figure) -> None:
+        axes = figure.subplots(3, 1, sharex=True, height_ratios=[1.0, 1.0, 0.55])
+        draw_bode(axes, [view.derived, view.along, view.recorded])
+        axes[0].set_ylabel(f"size (dB re 1 {unit_text(view.derived.unit)})")
+        axes[1].set_ylabel("phase (deg)")
+        legend_below(figure, axes[0])
+
+    what = "size, phase and coherence of force over motion"
+    alt = f"{view.body}: {what} over frequency, recorded and of the model."
+    return picture(draw, size=(WIDE, 4.4), alt=alt)
 
 
 #: settings of matplotlib for pictures of a page, besides the house style

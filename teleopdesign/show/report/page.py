@@ -6,8 +6,6 @@ Its sources are the record files and the channels.
 from __future__ import annotations
 
 import dataclasses
-import hashlib
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
@@ -15,11 +13,9 @@ from typing import Any
 
 from ...base.files import make_plain
 from ...base.finding import Finding, Graph
-from ...base.units import unit_of
-from ...diagnose import Diagnosis
+from ...diagnose import Diagnosis, SimulationComparison
 from ...diagnose.answer import answer
-from ...measurement.experiment import Experiment
-from ...measurement.reading import ReadingStep, log_name
+from ...measurement.reading import ReadingStep
 from ..diagnose.text import sentence
 from ..figures.graph import thin_series
 from .candidate_table import (
@@ -31,7 +27,16 @@ from .candidate_table import (
     ladder_lines,
 )
 from .cannot_tell import cannot_tell
-from .parameter_table import AddedEffect, ParameterRow, added_effects, parameter_rows
+from .motion import ImpedanceView, MotionOverlay, impedance_views, simulated_motions
+from .parameter_table import (
+    AddedEffect,
+    CorrelationRow,
+    ParameterRow,
+    added_effects,
+    correlation_rows,
+    parameter_rows,
+)
+from .provenance import ChannelRow, RecordRow, channel_rows, record_rows
 from .residuals import BodyView, body_views
 from .words import describe_judgement, sentence_of, verdict
 
@@ -98,6 +103,9 @@ class Page:
     added: tuple[AddedEffect, ...]
     views: tuple[BodyView, ...]
     parameters: tuple[ParameterRow, ...]
+    correlations: tuple[CorrelationRow, ...]
+    simulated: tuple[MotionOverlay, ...]
+    impedances: tuple[ImpedanceView, ...]
     candidate_steps: tuple[CandidateStep, ...]
     candidates: tuple[CandidateRow, ...]
     cannot_tell: tuple[Finding, ...]
@@ -118,11 +126,13 @@ def page_of(
     soundness: Sequence[Finding] = (),
     unexplained: Unexplained = (),
     next_steps: Sequence[Finding] = (),
+    simulation: SimulationComparison | None = None,
 ) -> Page:
     """The page of a diagnosis.
 
     soundness: findings on the recording;  unexplained: findings on the last residual
     next_steps: findings on what to measure next; a section without findings is left out
+    simulation: of the final model, driven by the recorded forces
     """
     experiment, ladder = diagnosis.experiment, ladder_lines(diagnosis)
     left = unexplained if isinstance(unexplained, Mapping) else {"": unexplained}
@@ -144,7 +154,7 @@ def page_of(
         near_reversals=sentence_of(diagnosis.near_reversals),
         repeats=sentence_of(diagnosis.repeats),
         ladder=ladder,
-        joints=tuple(_joint(diagnosis, j, left.get(j, ())) for j in diagnosis.joints),
+        joints=tuple(_joint(diagnosis, j, left.get(j, ()), simulation) for j in diagnosis.joints),
         links=tuple(
             LinkRow(name, one.unit, one.value, make_plain(one.stderr))
             for name, one in diagnosis.links.items()
@@ -154,6 +164,9 @@ def page_of(
         if body is None or body.kind
         else body_views(body, tuple(line.name for line in ladder)),
         parameters=rows,
+        correlations=() if body is None else correlation_rows(body.last_fit),
+        simulated=() if body is None else simulated_motions(simulation, body.model.bodies),
+        impedances=() if body is None or body.kind else impedance_views(body),
         candidate_steps=() if body is None else candidate_steps(body),
         candidates=() if body is None else candidate_rows(body),
         cannot_tell=() if body is None else cannot_tell(body),
@@ -169,7 +182,12 @@ def page_of(
     )
 
 
-def _joint(diagnosis: Diagnosis, joint: str, left: Sequence[Finding]) -> JointPart:
+def _joint(
+    diagnosis: Diagnosis,
+    joint: str,
+    left: Sequence[Finding],
+    simulation: SimulationComparison | None,
+) -> JointPart:
     one = diagnosis.joints[joint]
     return JointPart(
         name=joint,
@@ -178,7 +196,7 @@ def _joint(diagnosis: Diagnosis, joint: str, left: Sequence[Finding]) -> JointPa
         floor=one.floor.value,
         left=one.left,
         sentence=sentence(one).removeprefix("verdict: "),
-        page=page_of(one, unexplained=left),
+        page=page_of(one, unexplained=left, simulation=simulation),
     )
 
 
@@ -205,90 +223,3 @@ def _thin(graph: Graph) -> Graph:
 def page_data(page: Page, diagnosis: Diagnosis) -> dict[str, Any]:
     """Data embedded in the page: the answer, and every number that the page shows."""
     return {"answer": make_plain(answer(diagnosis)), "report": make_plain(page, digits=DIGITS)}
-
-
-#: bytes that are read at once: a log may be larger than the memory
-_BLOCK = 1 << 20
-
-
-@dataclass(frozen=True)
-class RecordRow:
-    """A record and its content; duration: s, rate: Hz, NaN on friction curves; digest: SHA-256."""
-
-    file: str
-    use: str
-    samples: int
-    duration: float
-    rate: float
-    segments: int
-    offset_names: tuple[str, ...]
-    digest: str
-
-
-@dataclass(frozen=True)
-class ChannelRow:
-    """A channel as described; resolution and noise in SI (`si_unit`), None if not stated."""
-
-    name: str
-    column: str
-    unit: str
-    resolution: float | None
-    noise: float | None
-    si_unit: str
-
-
-def record_rows(experiment: Experiment) -> tuple[RecordRow, ...]:
-    """Every record of the experiment."""
-    return tuple(
-        RecordRow(
-            file=r.file,
-            use=r.use,
-            samples=len(r.time),
-            duration=math.nan if r.is_curve else r.duration,
-            rate=math.nan if r.is_curve else 1.0 / r.sample_time,
-            segments=len(r.segments),
-            offset_names=tuple(sorted(n.replace("_", " ") for n in r.offset_names)),
-            digest=_digest(experiment, r.file),
-        )
-        for r in experiment.records
-    )
-
-
-def _digest(experiment: Experiment, file: str) -> str:
-    """SHA-256 of a record's log; "" if the log no longer exists.
-
-    For a folder (a bag): of its files one after the other, sorted by name.
-    """
-    path = experiment.folder / file
-    if not path.exists():  # a part of a log
-        path = experiment.folder / log_name(file)
-    files = sorted(p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
-    whole = hashlib.sha256()
-    try:
-        for one in files:
-            with one.open("rb") as stream:
-                while block := stream.read(_BLOCK):
-                    whole.update(block)
-    except OSError:
-        return ""
-    return whole.hexdigest()
-
-
-def channel_rows(experiment: Experiment) -> tuple[ChannelRow, ...]:
-    """Every channel of the experiment."""
-    kinds = {"actuator_force": "force", "interaction_force": "force"}
-    return tuple(
-        ChannelRow(
-            name=name,
-            column=c.column,
-            unit=c.unit,
-            resolution=c.resolution,
-            noise=c.noise,
-            si_unit=(
-                ""
-                if c.body is None
-                else unit_of(kinds.get(c.quantity, c.quantity), experiment.axis(c.body))
-            ),
-        )
-        for name, c in experiment.channels.items()
-    )

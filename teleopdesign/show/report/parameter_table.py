@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from ...base.errors import ExperimentError
 from ...base.files import make_plain
 from ...blocks import CONTACT, NINETY_FIVE, Value
-from ...diagnose import Diagnosis
+from ...diagnose import Diagnosis, Fit
 from ...effects import EFFECTS
 from ...model import Model
 
@@ -41,6 +41,25 @@ class ParameterRow:
     at_bound: bool = False
     added: bool = False
     gave_way_to: str = ""
+
+
+@dataclass(frozen=True)
+class CorrelationRow:
+    """Correlations of an estimate with those of the rows before it, and 1 with itself."""
+
+    name: str
+    values: tuple[float, ...]
+
+
+def correlation_rows(fit: Fit) -> tuple[CorrelationRow, ...]:
+    """Every estimate that the records move, in the order of the parameters."""
+    known = fit.correlations
+    moved = {name for pair in known for name in pair}
+    names = [name for name in fit.free if name in moved]
+    return tuple(
+        CorrelationRow(name, (*(known[name, other] for other in names[:k]), 1.0))
+        for k, name in enumerate(names)
+    )
 
 
 @dataclass(frozen=True)

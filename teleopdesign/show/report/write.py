@@ -36,8 +36,15 @@ from ...base.sentences import (
 from ...base.sentences import (
     with_error_on_page as with_error,
 )
-from ...diagnose import Diagnosis
-from .figures import WIDE, colour_scale, graph_figure, ladder_figure, step_figure
+from ...diagnose import Diagnosis, SimulationComparison
+from .figures import (
+    WIDE,
+    colour_scale,
+    graph_figure,
+    impedance_figure,
+    ladder_figure,
+    step_figure,
+)
 from .page import Page, Unexplained, page_data, page_of
 
 TEMPLATES = Path(__file__).with_name("templates")
@@ -55,6 +62,8 @@ class Figures:
     steps: tuple[tuple[Markup, ...], ...]
     over_carrier: tuple[Markup, ...]
     excerpts: tuple[Markup, ...]
+    simulated: tuple[Markup, ...]
+    impedances: tuple[Markup, ...]
     findings: dict[tuple[str, int], Markup]
     joints: tuple[Figures, ...]
 
@@ -66,14 +75,22 @@ def write_report(
     soundness: Sequence[Finding] = (),
     unexplained: Unexplained = (),
     next_steps: Sequence[Finding] = (),
+    simulation: SimulationComparison | None = None,
 ) -> None:
     """Write the page of a diagnosis; the same diagnosis gives the same bytes.
 
     soundness: findings on the recording;  unexplained: findings on the last residual, of an arm
         those of each joint
     next_steps: findings on what to measure next; a section without findings is left out
+    simulation: of the final model, driven by the recorded forces; None: that section is left out
     """
-    page = page_of(diagnosis, soundness=soundness, unexplained=unexplained, next_steps=next_steps)
+    page = page_of(
+        diagnosis,
+        soundness=soundness,
+        unexplained=unexplained,
+        next_steps=next_steps,
+        simulation=simulation,
+    )
     html = render(page, figures_of(page), page_data(page, diagnosis))
     write_text(path, html)
 
@@ -139,6 +156,11 @@ def figures_of(page: Page) -> Figures:
             )
             for v in page.views
         ),
+        simulated=tuple(
+            graph_figure(one.graph, f"{one.body}: measured and simulated position.", width=WIDE)
+            for one in page.simulated
+        ),
+        impedances=tuple(impedance_figure(one) for one in page.impedances),
         findings={
             (section, i): graph_figure(f.graph, f"{f.topic}: {f.sentence}")
             for section, rows in sections.items()

@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -39,4 +40,18 @@ def test_a_wave_is_folded_into_its_period_so_that_one_sees_it_once():
     assert folded.min() >= 0 and folded.max() < wave["period"]
     angle = 2 * np.pi / wave["period"]
     np.testing.assert_allclose(np.sin(angle * folded), np.sin(angle * places), atol=1e-9)
-    assert carrier.label("revolute") == "position in a period of 0.5712 rad, 11 a turn"
+    assert carrier.label("revolute") == "position in a period of 0.5712 rad, 11.0 a turn"
+
+
+def test_a_comparison_beside_another_shows_both_on_one_scale_over_what_carries_the_effect():
+    experiment = td.load_experiment(td.example("rod"))
+    stated = td.Model.from_experiment(experiment)
+    spring = stated.with_effect("spring", values={"stiffness": 30.0})
+    before, after = (td.compare(model, experiment) for model in (stated, spring))
+    for one, other, error in ((after, before, before), (before, after, after)):
+        force, time, left, right = one.plot(before=other).axes
+        assert left.get_xlabel() == right.get_xlabel() == "position (m)"
+        assert left.get_ylim() == right.get_ylim()
+        assert left.get_title("left").endswith(f"{100 * error.check_error:.2f} %")
+        assert len(force.lines) == 3 and len(time.lines) == 2
+    plt.close("all")

@@ -85,4 +85,4 @@ def test_a_written_page_holds_the_answer_and_every_joint(two_joints, tmp_path):
     for name in ("j1-ladder", "j2-ladder", "links"):
         assert f'id="{name}"' in text
     # one ladder of the whole arm, and the pictures of the rod's page for each joint
-    assert text.count("<img ") == 1 + 2 * 6
+    assert text.count("<img ") == 1 + 2 * 7

@@ -7,12 +7,14 @@ import pytest
 
 from teleopdesign.blocks import Value
 from teleopdesign.diagnose.answer import with_recording
+from teleopdesign.diagnose.by_simulation import simulated_if_possible
 from teleopdesign.diagnose.comparison import residual_data
 from teleopdesign.diagnose.recording import DiagnosedRecording
 from teleopdesign.diagnose.statements import Alternative
 from teleopdesign.show.report.cannot_tell import cannot_tell
-from teleopdesign.show.report.page import record_rows
+from teleopdesign.show.report.motion import simulated_motions
 from teleopdesign.show.report.parameter_table import parameter_rows
+from teleopdesign.show.report.provenance import record_rows
 from teleopdesign.show.report.residuals import CELLS, body_views
 
 
@@ -38,6 +40,33 @@ def test_the_rms_of_each_step_is_its_error_times_the_measured_force(page, diagno
     for step, rung in zip(view.steps, diagnosis.rungs, strict=True):
         # the error counts every few rows of what is low-passed, the page all of them
         assert step.rms == pytest.approx(rung.check_error * measured, rel=0.01)
+
+
+def test_correlations_are_those_of_the_last_fit_each_once(page, diagnosis):
+    rows, known = page.correlations, diagnosis.last_fit.correlations
+    assert [len(row.values) for row in rows] == list(range(1, len(rows) + 1))
+    assert sum(len(row.values) - 1 for row in rows) == len(known)
+    assert rows[2].values[1] == known[rows[2].name, rows[1].name]
+
+
+def test_the_right_model_has_the_recorded_impedance_along_the_motion(page):
+    (view,) = page.impedances
+    known = np.isfinite(view.recorded.magnitude[0]) & (view.recorded.frequency < 30.0)
+    ratio = view.along.values()[known] / view.recorded.values()[known]
+    assert known.sum() > 15 and np.abs(np.log(ratio)).max() < 0.05
+    assert view.derived.band is not None and view.left_out == ()
+
+
+def test_the_simulated_motion_lies_over_the_measured_one_with_its_fit(diagnosis):
+    comparison = simulated_if_possible(diagnosis)
+    (motion,) = simulated_motions(comparison, ["device"])
+    assert simulated_motions(comparison, ["master"]) == simulated_motions(None, ["device"]) == ()
+    assert motion.fit == comparison.error(np.inf).fit and motion.use == "check"
+    measured, simulated, restarted = motion.graph.series
+    assert (measured.kind, simulated.kind) == ("course", "model")
+    assert restarted.name == "restarted each 1 s"
+    low, high = np.nanmin(measured.y), np.nanmax(measured.y)
+    assert np.nanmax(simulated.y) <= high + 0.5 * (high - low)
 
 
 def test_a_map_holds_the_mean_residual_of_each_cell(page, diagnosis):

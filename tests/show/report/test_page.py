@@ -74,7 +74,7 @@ def test_a_page_has_one_title_headings_in_order_and_unlike_identifiers(html):
 
 def test_every_figure_has_an_alternative_text_and_every_table_a_caption(html):
     pictures = html.all("img")
-    assert len(pictures) == 6
+    assert len(pictures) == 7
     assert all(e.attributes["alt"] for e in pictures)
     tables = html.all("table")
     assert len(tables) == len(html.all("caption"))
@@ -137,7 +137,7 @@ def bare(page):
     empty = Markup("<b></b>")
     steps = tuple(tuple(empty for _ in v.steps) for v in page.views)
     each = tuple(empty for _ in page.views)
-    return Figures(empty, each, steps, each, each, {}, ())
+    return Figures(empty, each, steps, each, each, (), each, {}, ())
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,74 @@
+"""Covariance of the estimates of a fit: of its parameters, and as those of a diagram's blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.errors import ModelError, unknown
+from ..frequency.confidence import ParameterCovariance
+from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared
+from ..model import Model
+from .effort import EFFORTS
+from .fit import Fit, block_numbers, free_parameters, sandwich
+from .solve import solve
+
+
+def covariance_of(fit: Fit) -> Array:
+    """Covariance (p, p) of the estimates of a fit, with the standard errors that its model states.
+
+    Correlations are those of the sandwich estimate. The standard errors also contain errors of the
+    readings and shifts of the records. A parameter without a finite one counts as known.
+    """
+    known = sandwich(fit.jacobian, fit.fit_residual, fit.fit_blocks)
+    return _with_stated_errors(fit.model, fit.free, known)
+
+
+def covariance_in_blocks(
+    model: Model, prepared: Prepared, blocks: Mapping[str, str] | None = None
+) -> ParameterCovariance:
+    """The covariance of a model's estimates on the fit records, by the parameters of a diagram.
+
+    blocks: block of the diagram -> body of the model that it is; None: "Z_M" is the only body
+    raises ModelError: no such body, or several bodies and no mapping
+    """
+    places, free = model.bodies, free_parameters(model)
+    if blocks is None:
+        if len(places) > 1:
+            raise ModelError(
+                f"covariance: found {len(places)} bodies, expected blocks, such as "
+                f'{{"Z_M": "{next(iter(places))}"}}'
+            )
+        blocks = {"Z_M": next(iter(places))}
+    for place in blocks.values():
+        if place not in places:
+            raise ModelError(f"covariance: {unknown('body', place, places)}")
+    stretches = prepared.of("fit")
+    along = solve(model, free, prepared, stretches, EFFORTS.stay)
+    known = sandwich(along.jacobian, along.residual, block_numbers(stretches))
+    matrix = _with_stated_errors(model, free, known)
+    of_blocks = {
+        f"{block}.{model.locate(name)[1]}": k
+        for block, place in blocks.items()
+        for k, name in enumerate(free)
+        if model.locate(name)[0] == place
+    }
+    determined = {n: k for n, k in of_blocks.items() if matrix[k, k] > 0}
+    kept = list(determined.values())
+    undetermined = tuple(n for n in of_blocks if n not in determined)
+    return ParameterCovariance(tuple(determined), matrix[np.ix_(kept, kept)], undetermined)
+
+
+def _with_stated_errors(
+    model: Model, free: Sequence[str], known: tuple[Array, Array, NDArray[np.bool_]]
+) -> Array:
+    scaled, _, sensitive = known
+    stated = np.array([model.parameters[n].stderr for n in free])[sensitive]
+    unit = np.where(np.isfinite(stated), stated, 0.0)
+    unit = unit / np.sqrt(np.maximum(np.diag(scaled), 1e-300))
+    covariance = np.zeros((len(free), len(free)))
+    covariance[np.ix_(sensitive, sensitive)] = scaled * np.outer(unit, unit)
+    return covariance
