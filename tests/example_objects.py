@@ -31,6 +31,7 @@ BODY = td.Body(
 )
 LAW = td.controller("smoothed_coulomb", {"level": 0.4, "smoothing_velocity": 0.02})
 LOW = td.controller("low_pass", {"bandwidth": 20.0})
+COVARIANCE = frequency.ParameterCovariance(("Z_M.inertia", "Z_M.coulomb.level"), np.eye(2) * 1e-4)
 HAND = td.hand(mass=0.2, damping=4.0, stiffness=300.0)
 
 
@@ -100,6 +101,10 @@ QUICK: Mapping[str, Callable[[], Any]] = {
     "strokes": lambda: passivity.Strokes((0.01, -0.01), 0.1),
     "force over velocity": lambda: simulate.force_velocity({"one": simulation()}),
     "frequency response": _response,
+    "parameter covariance": lambda: COVARIANCE,
+    "response band": lambda: (
+        td.bode(diagram(), frequency=np.array([1.0, 10.0]), covariance=COVARIANCE).band
+    ),
     "two-port functions": lambda: derive.two_port_functions(diagrams.load_shipped("teleoperator")),
     "proved claim": lambda: td.positive_real(0.15 * sp.Symbol("s") + 4),
     "refuted claim": _refuted,

@@ -48,12 +48,14 @@ def recorded_response(
     input_signal, output_signal: stretches of (n,) each
     sample_time: s;  up_to: highest frequency, Hz; None: a quarter of the sample rate
     output, input: names of the signals;  unit: of output per input
-    raises ModelError: signals of different lengths, or too short for six windows
+    raises ModelError: signals of different lengths, too short for six windows, or at rest
     """
     windows, f, spectra = _spectra(input_signal, output_signal, sample_time)
     # the two lowest lines hold what is left of the trend
     used = (f >= 2 * f[1]) & (f <= (up_to or 0.25 / sample_time)) & (np.abs(spectra[:2]) > 0).all(0)
     f, spectra = f[used], spectra[:, used]
+    if not len(f):
+        raise ModelError("recorded_response: found no frequency at which both signals move")
     band = np.floor(BANDS * np.log10(f / f[:1])).astype(int)
     _, first, lines = np.unique(band, return_index=True, return_counts=True)
     at = np.add.reduceat(f, first) / lines
