@@ -44,6 +44,7 @@ HIDDEN = [
     ("hardening_spring", "Z_H", 1.5e6), ("viscous_asymmetry", "Z_H", 0.6),
     ("delay", "P", 0.003), ("gain", "P", 1.05), ("velocity_filter", "C_m", 0.005),
     ("lag", "C_s", 0.004),
+    ("quadratic_drag", "Z_m", 6.0), ("quadratic_drag", "Z_s", 6.0), ("bias", "Z_s", 0.12),
 ]  # fmt: skip
 #: weak sizes that are no quarter: a limit below the largest output, and more than one row of delay,
 #: because a shift of a row belongs to the record
@@ -65,7 +66,7 @@ def cases(level):
         less = absent + size * (value - absent)
         if level == "weak":
             less = WEAK.get((effect, at), less)
-        made.append(({(effect, at): less}, at in ("P", "C_m", "C_s")))
+        made.append(({(effect, at): less}, at in ("P", "C_m", "C_s", "Z_m", "Z_s")))
     return made
 
 
