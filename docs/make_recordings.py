@@ -23,6 +23,8 @@ DOCS = Path(__file__).resolve().parent
 PAGE = DOCS / "recordings.md"
 COPIES = DOCS / "_static" / "recordings"
 ROWS = "recordings.json"
+#: what "less likely than not" means, said once on the page
+UNEXPLAINED = re.compile(r"; the force that [^.]* counts as unexplained")
 #: pixels, of a picture on the page: those of a study are for print
 WIDEST = 1000
 sys.path.insert(0, str(DOCS.parent / "studies"))
@@ -37,10 +39,11 @@ def sections(rows: Mapping[str, Mapping[str, Any]]) -> str:
         if "skipped" in row:
             continue
         verdict = row["text"].rpartition("\nverdict: ")[2].strip()
-        parts.append(f"### {name}\n\n{verdict}\n")
+        more = UNEXPLAINED.sub("", verdict).partition(". ")[2]  # the names stand in the table
+        parts.append(f"### {name}\n\n{more}\n" if more else f"### {name}\n")
         if (COPIES / f"{name}.png").is_file():
             picture = f"_static/recordings/{name}.png"
-            parts.append(f"![Forces, residuals and ladder of {name}]({picture})\n")
+            parts.append(f"![Forces and ladder of {name}]({picture})\n")
     return "\n".join(parts)
 
 
