@@ -70,16 +70,23 @@ class GrowingWave(AbstractRecord):
         z, v = self.value, np.array(self.velocity)
         return float(-((v.conj() @ z @ v).real / self.s.real + (v @ z @ v / self.s).real) / 4)
 
-    def replay(self) -> float:
-        """Energy released, J: minus the integral of force times velocity over `last_part`.
+    def samples(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The last part of the wave: time (n,), s; velocities and forces (n, ports), m/s and N.
 
         If all poles decay, or grow slower than the wave, the force is also that of a motion that
-        started from rest, after its transient. 0 where the sum is no larger than the rounding of
-        its terms, because it then shows nothing.
+        started from rest, after its transient.
         """
-        t, weights = last_part(self.s)
+        t, _ = last_part(self.s)
         wave = np.exp(self.s * t)[:, None] * np.array(self.velocity)
-        terms = weights * (wave.real * (wave @ self.value.T).real).sum(axis=1)
+        return t, wave.real, (wave @ self.value.T).real
+
+    def replay(self) -> float:
+        """Energy released, J: minus the integral of force times velocity over `samples`.
+
+        0 where the sum is no larger than the rounding of its terms, because it then shows nothing.
+        """
+        _, velocity, force = self.samples()
+        terms = last_part(self.s)[1] * (velocity * force).sum(axis=1)
         total = float(terms.sum())
         return -total if abs(total) > ROUNDING * float(np.abs(terms).sum()) else 0.0
 
