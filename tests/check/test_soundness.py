@@ -7,16 +7,25 @@ import numpy as np
 import pytest
 from check.made_channels import (
     ask,
+    channel,
+    clock_errors,
+    interruptions,
+    record_of,
+    strange_velocity,
+    swing,
 )
+from clock import takes_less_than
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shared_data import shared_folder
 
 from teleopdesign import example, load_experiment
 from teleopdesign.check import CheckedRecording, findings_of
+from teleopdesign.check.flat_channels import visits
 from teleopdesign.check.outliers import jumps, lone_samples
-from teleopdesign.check.velocity import shift_and_factor
+from teleopdesign.check.velocity import factor_cause, shift_and_factor
 from teleopdesign.measurement.encoder import sampling_jitter
+from teleopdesign.measurement.reading import ReadingStep
 from teleopdesign.measurement.repeated_rows import repeats, stuck_stretches
 
 RATE = 1000.0
@@ -113,6 +122,16 @@ def test_a_lone_position_sample_of_ten_sigma_is_detected_where_it_is(rod):
     assert "one sample lies" in finding.sentence
 
 
+def test_several_lone_samples_are_counted_in_the_sentence(rod):
+    def two(x):
+        x = x.copy()
+        x[[3000, 5000]] += 10 * 7.2e-6
+        return x
+
+    finding = the_only(spoilt(rod, "position", two), "outliers")
+    assert finding.numbers["count"] == 2 and "2 samples lie" in finding.sentence
+
+
 def test_steps_and_kinks_are_no_outliers():
     rng = np.random.default_rng(1)
     noise = 0.01 * rng.standard_normal(len(T))
@@ -162,6 +181,17 @@ def test_lost_samples_are_counted_where_a_position_leaps(rod):
     assert findings[0].numbers["time"] == pytest.approx(fastest / 1000, abs=2e-3)
 
 
+def test_a_wrapped_angle_is_called_a_whole_turn():
+    turning = load_experiment(example("rod"))
+    bodies = {n: replace(b, axis="revolute") for n, b in turning.bodies.items()}
+    unwrapped = 4.0 * T + 0.2 * np.sin(9 * T)
+    wrapped = np.angle(np.exp(1j * unwrapped))
+    spoiled = spoilt(replace(turning, bodies=bodies), "position", lambda x: wrapped)
+    findings = warnings(spoiled, "jumps")
+    assert "unwrap" in findings[0].sentence
+    assert abs(findings[0].numbers["size"]) == pytest.approx(2 * np.pi, rel=0.01)
+
+
 def test_a_clipped_force_sensor_is_detected_with_its_limit_and_share(rod):
     x = rod.records[0].signals["device.interaction_force"]
     limit = float(np.round(np.quantile(x, 0.97), 4))
@@ -180,6 +210,24 @@ def test_a_clipped_position_is_detected_but_a_body_that_rests_is_not(rod):
     resting = np.repeat(np.tile([0.0, 0.01], 6), 1000)  # held at its ends, moved gently
     smooth = np.convolve(resting, np.hanning(400) / np.hanning(400).sum(), mode="same")
     assert warnings(spoilt(rod, "position", lambda x: read(smooth)), "clipped channels") == []
+
+
+@pytest.mark.parametrize("quantity", ["position", "interaction_force"])
+def test_a_channel_that_sticks_is_detected_from_when_to_when(rod, quantity):
+    x = rod.records[0].signals["device.position"]
+    speed = np.abs(np.gradient(x))
+    start = 2000 + int(np.argmax(speed[2000:6000]))
+    spoiled = spoilt(rod, quantity, put(slice(start, start + 600), lambda x: x[start]))
+    findings = [f for f in warnings(spoiled, "stuck channels")]
+    assert len(findings) == 1
+    assert findings[0].numbers["from"] == pytest.approx(start / RATE, abs=2e-3)
+    assert findings[0].numbers["duration"] == pytest.approx(0.6, abs=2e-3)
+
+
+def test_a_channel_that_never_changes_is_named(rod):
+    findings = warnings(spoilt(rod, "interaction_force", lambda x: 0 * x), "stuck channels")
+    assert findings[0].numbers["value"] == 0.0
+    assert "throughout" in findings[0].sentence
 
 
 def test_an_averaged_log_of_a_coarse_encoder_neither_repeats_samples_nor_runs_flat(rod):
@@ -204,6 +252,25 @@ def test_an_averaged_log_of_a_coarse_encoder_neither_repeats_samples_nor_runs_fl
         | {"device.position": channel},
     )
     assert [f for f in check_signals(experiment) if f.concern == "warning"] == []
+
+
+def test_samples_that_repeat_while_the_body_goes_on_are_counted():
+    rng = np.random.default_rng(3)
+    x = read(5 * motion())
+    held = np.sort(rng.choice(np.arange(20, 11_900, 5), 200, replace=False))
+    spoiled = x.copy()
+    spoiled[held] = x[held - 1]
+    rows = repeats(spoiled, STEP)
+    assert set(rows) <= set(held)
+    # where it moves less than six steps a sample, a repeat may be the encoder's
+    fast = held[np.abs(x[held + 8] - x[held - 8]) / 16 > 6 * STEP]
+    assert len(set(fast) - set(rows)) <= 0.05 * len(fast)
+
+
+def test_a_force_sampled_at_a_tenth_of_the_rate_is_noticed(rod):
+    spoiled = spoilt(rod, "interaction_force", lambda x: np.repeat(x[::10], 10))
+    findings = warnings(spoiled, "held samples")
+    assert findings[0].numbers["rate"] == pytest.approx(100.0)
 
 
 def rounded(part):
@@ -231,6 +298,13 @@ def test_fine_steps_and_a_relay_are_no_coarse_steps(rod):
     for levels in (relay, np.sign(relay)):
         experiment = spoilt(rod, "actuator_force", lambda x, y=levels: np.resize(y, len(x)))
         assert warnings(experiment, "force steps") == []
+
+
+def test_fine_steps_of_a_smooth_force_are_no_coarse_steps(rod):
+    """Every level is passed through, and still nothing is lost."""
+    smooth = np.round(np.sin(2 * np.pi * 0.5 * T), 2)
+    experiment = spoilt(rod, "interaction_force", lambda x: np.resize(smooth, len(x)))
+    assert warnings(experiment, "force steps") == []
 
 
 def test_a_lone_sample_on_a_fast_motion_is_detected_though_it_is_less_than_a_step_of_the_motion():
@@ -293,6 +367,13 @@ def test_a_clock_that_jitters_is_reported_with_its_size_in_time_and_place(rod):
     assert "rms early or late" in finding.sentence
 
 
+def test_clocks_in_order_say_whether_stamps_or_samples_are_counted(rod):
+    (stamped,), (counted,) = ask("sample_clock", rod), clock_errors(record_of(100))
+    assert stamped.sentence.startswith("the time stamps are uniform, 1000 Hz")
+    assert counted.sentence.startswith("samples are counted at the stated rate, 1000 Hz")
+    assert stamped.numbers == {"rate": pytest.approx(1000.0)}
+
+
 def rewritten(folder, stamps):
     """The rod in a folder of its own, its first record with these time stamps."""
     import gzip
@@ -344,6 +425,18 @@ def test_factor_and_lag_of_a_velocity_channel_are_reported(factor, shift):
 
 
 @pytest.mark.slow
+def test_an_hour_at_a_kilohertz_is_checked_in_bounded_time(rod):
+    n = 3_600_000
+    first = rod.records[0]
+    signals = {k: np.resize(np.concatenate([v, v[::-1]]), n) for k, v in first.signals.items()}
+    record = replace(
+        first, file="long", time=np.arange(n) / RATE, segments=(slice(0, n),), signals=signals
+    )
+    with takes_less_than(60.0):  # s; about 6 on a free core
+        check_signals(replace(rod, records=(record,)))
+
+
+@pytest.mark.slow
 def test_the_known_oddities_of_real_recordings_are_detected_and_no_others():
     """What their READMEs say: jitter of psm and mtm, rows twice in mtm, a finer emps file."""
     data = shared_folder("data")
@@ -368,3 +461,79 @@ def test_the_known_oddities_of_real_recordings_are_detected_and_no_others():
 def test_simulated_measurements_raise_no_warning():
     cases = shared_folder("hidden/cases")
     assert {f.name: w for f in sorted(cases.iterdir()) if (w := warnings(load_experiment(f)))} == {}
+
+
+@pytest.mark.parametrize(("size", "concern"), [(0.02, "note"), (0.021, "warning")])
+def test_a_step_of_reading_that_adds_over_two_percent_to_the_force_error_needs_care(
+    rod, size, concern
+):
+    step = ReadingStep("fit.csv", "3 rows are lost", "filled", "none", size=size, topic="gaps")
+    with_effect = replace(step, effect="0.3 N at most")
+    record = replace(rod.records[0], reading=(step, with_effect))
+    first, second = ask("log_reading", replace(rod, records=(record,)))
+    assert (first.concern, first.topic) == (concern, "gaps")
+    assert first.sentence == "3 rows are lost: filled."
+    assert second.sentence == "3 rows are lost: filled (0.3 N at most)."
+
+
+def test_a_body_that_rests_is_not_held_against_its_velocity_channel():
+    position = channel(np.zeros(2000))
+    assert strange_velocity(position, channel(np.sin(np.arange(2000)), "velocity")) == []
+
+
+@pytest.mark.parametrize(("lasts", "stays"), [(2, 0), (3, 6)])
+@pytest.mark.parametrize("noisy", [False, True])
+def test_a_stay_at_a_limit_lasts_three_samples_after_four_of_approach(lasts, stays, noisy):
+    once = [0.0, 1.0, 2.0, 3.0, *[4.0] * lasts]
+    assert visits(np.array(once * 6), 4.0, 0.1, noisy=noisy) == stays
+
+
+@pytest.mark.parametrize(
+    ("approach", "stays"), [([0.0, 2.0, 2.6, 3.0], 0), ([3.0, 2.0, 1.0, 0.0], 0), ([0, 1, 2, 3], 1)]
+)
+@pytest.mark.parametrize("unit", [1.0, 1e3, 1e-3])
+def test_a_signal_that_comes_to_rest_or_turned_away_did_not_run_into_a_limit(approach, stays, unit):
+    x = unit * np.array([*approach, 4.0, 4.0, 4.0], dtype=float)
+    assert visits(x, unit * 4.0, unit * 0.1, noisy=False) == stays
+
+
+@pytest.mark.parametrize(
+    ("axis", "factor", "cause"),
+    [
+        ("prismatic", 1000.0, "the time is in ms"),
+        ("prismatic", 1000.0, "the velocity is in mm/s"),
+        ("prismatic", 1e6, "the time is in us"),
+        ("prismatic", 0.001, "the position is in mm"),
+        ("revolute", 2 * np.pi, "the position is in turns"),
+        ("revolute", np.pi / 180, "the position is in deg"),
+        ("revolute", 180 / np.pi, "the velocity is in deg/s"),
+        ("revolute", 30 / np.pi, "the velocity is in rpm"),
+        ("revolute", -30 / np.pi, "the velocity is in rpm"),
+        ("prismatic", -1.0, "one of the two is turned"),
+        ("prismatic", 3.0, "units, sign or clock disagree"),
+    ],
+)
+def test_a_factor_of_a_velocity_names_the_unit_that_makes_it(rod, axis, factor, cause):
+    position = replace(channel(swing()), axis=axis)
+    sentence = factor_cause(factor, position, replace(position, name="velocity"))
+    assert cause in sentence
+    assert ("sign = -1" in sentence) == (factor < 0)
+
+
+def test_segments_of_which_over_a_tenth_is_too_short_need_care(rod):
+    segments = tuple(slice(k, k + 100) for k in range(0, 2000, 100))
+    record = replace(rod.records[0], segments=(*segments, slice(2000, 12_000)))
+    (finding,) = interruptions(record)
+    assert finding.concern == "warning" and finding.numbers["left_out"] == pytest.approx(2.0)
+
+
+def test_what_is_in_order_is_reported_beside_what_is_not_and_never_of_the_same(rod, tmp_path):
+    def topics(experiment):
+        return sorted((f.topic, f.concern) for f in check_signals(experiment))
+
+    assert topics(rod) == [("channels", "fine"), ("sample clock", "fine")]
+    lone = spoilt(rod, "position", put(5000, lambda x: x[5000] + 3e-4))
+    assert topics(lone) == [("outliers", "warning"), ("sample clock", "fine")]
+    jitter = 1e-4 * np.random.default_rng(5).uniform(-0.9, 0.9, 12_000)
+    late = rewritten(tmp_path, np.arange(12_000) / RATE + jitter)
+    assert topics(late) == [("channels", "fine"), ("sample clock", "note")]

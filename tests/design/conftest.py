@@ -4,6 +4,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.blocks import Value
+from teleopdesign.design import felt_impedance, verdict
 from teleopdesign.diagnose import Diagnosis, LadderRow
 from teleopdesign.diagnose.noise_floor import NoiseFloor
 from teleopdesign.diagnose.recording import DiagnosedRecording
@@ -16,6 +17,16 @@ ROD = {
     "device.stribeck.extra_static_level": (0.197, 4e-3),
     "device.stribeck.stribeck_velocity": (0.0225, 3e-4),
 }
+
+
+@pytest.fixture(scope="session", autouse=True)
+def few_motions():
+    """A design looks at fewer motions, the ends of the grid among them: half of its time."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(verdict, "SIZES", (0.1, 1.0))
+        patch.setattr(verdict, "FREQUENCIES", (1.0, 3.0, 30.0))
+        patch.setattr(felt_impedance, "MULTIPLES", (1.0, 10.0))
+        yield
 
 
 @pytest.fixture(scope="session")

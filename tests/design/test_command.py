@@ -101,7 +101,7 @@ def test_each_body_of_a_teleoperator_is_a_separate_device(few, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["hsm150", "psm_insertion"])
+@pytest.mark.parametrize("name", ["emps", "hsm150", "mtm_wrist", "psm_insertion"])
 def test_a_real_recording_leads_to_a_design(name, choose_from, tmp_path):
     """Among effects that a drive may have; tests of `diagnose` choose from all."""
     choose_from((*FEW, "presliding", "bias", "coulomb_asymmetry"))

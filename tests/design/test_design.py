@@ -1,12 +1,14 @@
 """A design: sure to be passive, predictions that agree where they should, answers read back."""
 
+import json
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.base.errors import ModelError
+from teleopdesign.base.errors import ExperimentError, ModelError
 from teleopdesign.blocks import Body, Value
 from teleopdesign.design import Assumptions, design
 from teleopdesign.design.other_effects import with_forces
@@ -45,6 +47,32 @@ def test_late_force_feedback_gives_out_energy(designed):
         assert (claim.verdict.margin > 0) is holds
 
 
+def test_the_first_lines_say_what_to_build_what_to_expect_and_whether_it_is_passive(designed):
+    text = " ".join(str(designed).split("\n\n")[0].split())
+    assert text.startswith("build C = dahl") and "H, with the force sensor" in text
+    assert "not compensated: viscous (it damps)" in text
+    e = designed.expected
+    assert 0 < e.low <= designed.prediction.cases["hybrid"].simulated <= e.high < e.without
+    assert "passive with C alone: proved" in text and "passive with C and H: no" in text
+
+
+def test_without_a_force_sensor_the_first_line_has_no_force_feedback(designed):
+    blind = replace(designed.reach, measures_force=False)
+    text = str(
+        replace(designed, reach=blind, expected=replace(designed.expected, case="MBC"))
+    ).split("\n\n")[0]
+    assert "H," not in text and "with C and H" not in text
+    assert "resting on" in text and "without a force sensor" in text
+
+
+def test_every_number_has_its_reason_and_unit(designed):
+    for chosen in (designed.cancellation, designed.force_feedback):
+        assert {r.parameter for r in chosen.reasons} == set(chosen.controller.names())
+        for reason in chosen.reasons:
+            assert reason.value == chosen.controller.names()[reason.parameter]
+            assert len(reason.why) > 10 and reason.unit
+
+
 def test_compensation_leaves_less_force_error_in_this_order(designed):
     left = {case: p.simulated for case, p in designed.prediction.cases.items()}
     assert left["hybrid"] < left["FF"] < left["none"]
@@ -58,6 +86,12 @@ def test_predictions_agree_where_nothing_is_compensated(designed):
     assert none.simulated == pytest.approx(none.quasi_static, rel=0.005)
     # a damper of equal loss has no third harmonic: 1/sqrt(1 + 1/9 + ..) = 0.90 of Coulomb's rms
     assert 0.85 < none.linear / none.simulated < 1.0
+
+
+def test_the_text_says_where_predictions_differ(designed):
+    assert any(n.startswith("hybrid: simulation and slow motion") for n in designed.notes)
+    assert "near reversals" in " ".join(designed.notes)
+    assert all(len(line) <= 100 for line in repr(designed).splitlines())
 
 
 def test_the_quasi_static_error_is_p13_for_coulomb_friction():
@@ -125,6 +159,26 @@ def test_what_is_proposed_is_a_diagram_file(designed, tmp_path):
     assert "# " + str(designed.cancellation.reasons[0]) in path.read_text(encoding="utf-8")
 
 
+def test_the_json_is_strict_and_holds_what_was_proposed(designed, tmp_path):
+    designed.to_json(tmp_path / "design.json")
+
+    def refuse(constant):
+        raise AssertionError(constant)
+
+    content = json.loads((tmp_path / "design.json").read_text(), parse_constant=refuse)
+    laws = [stage.law.name for stage in designed.cancellation.controller.stages]
+    assert content["cancellation"]["laws"] == laws
+    assert content["passivity"]["MBC"][0]["status"] == "proved"
+    assert content["diagram_toml"] == designed.to_toml()
+
+
+def test_the_figure_has_units_on_every_axis(designed):
+    figure = designed.plot()
+    labels = [t for a in figure.axes for t in (a.get_xlabel(), a.get_ylabel())]
+    assert len(labels) == 6
+    assert all("(" in t for t in labels)
+
+
 def test_a_motion_beyond_the_records_is_refused(rod):
     with pytest.raises(ModelError, match="leaves the recorded travel"):
         design(rod, assumptions=Assumptions(amplitude=1.0))
@@ -138,6 +192,44 @@ def test_a_motion_beyond_the_records_is_refused(rod):
 def test_an_assumption_without_sense_is_refused(name, value):
     with pytest.raises(ModelError, match=f": {name}: found"):
         Assumptions(**{name: value})
+
+
+def test_an_answer_gives_the_model_that_the_diagnosis_ended_with(experiment, tmp_path):
+    from teleopdesign.diagnose.answer import write_answer
+    from teleopdesign.effects import EFFECTS
+
+    known = {n: EFFECTS[n] for n in ("coulomb", "viscous", "stribeck", "bias")}
+    diagnosis = td.find_missing(experiment, td.Model.from_experiment(experiment, known))
+    write_answer(diagnosis, tmp_path / "answer.json")
+    read = td.load_answer(tmp_path / "answer.json", experiment=experiment)
+    assert read.model.effects == diagnosis.model.effects
+    for name, value in diagnosis.model.parameters.items():
+        other = read.model.parameters[name]
+        assert (other.value, other.stderr, other.fixed) == pytest.approx(
+            (value.value, value.stderr, value.fixed)
+        )
+    assert read.left == pytest.approx(diagnosis.left)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("not json", "line 1: no JSON"),
+        ("{}", "expected an answer of"),
+        (
+            '{"ladder": [{"added": null, "fit_error": 1, "check_error": 1}], "candidates": [], '
+            '"verdict": "undecided", "missing": [], "noise_floor": 1, "indistinguishable": [], '
+            '"model_parameters": {"master.inertia": {"value": 1, "stderr": 1, "unit": "kg"}}}',
+            "is not an answer to rod but to another experiment",
+        ),
+    ],
+)
+def test_a_file_that_is_no_answer_is_named_in_one_line(experiment, tmp_path, text, message):
+    path = tmp_path / "answer.json"
+    path.write_text(text)
+    with pytest.raises(ExperimentError, match=message) as error:
+        td.load_answer(path, experiment=experiment)
+    assert str(error.value).startswith(str(path))
 
 
 def test_a_dahl_cancellation_equals_a_damper_in_linear_theory():
@@ -163,6 +255,12 @@ def test_through_a_compliant_transmission_the_cancellation_is_proved_too(rod):
     # the tip is led: at 3 Hz the transmission gives by 1 N on 20 N/mm, far below the motion
     none = made.prediction.cases["none"]
     assert none.simulated == pytest.approx(none.quasi_static, rel=0.2)
+
+
+def test_friction_that_no_record_has_shown_backward_is_reported(designed):
+    one_way = replace(designed, reach=replace(designed.reach, both_ways=False))
+    assert not any("in one direction only" in n for n in designed.notes)
+    assert any("in one direction only" in n for n in one_way.notes)
 
 
 def test_the_impedance_that_a_hand_feels_is_predicted_and_lowered(designed):

@@ -28,11 +28,18 @@ def test_without_the_command_the_compensator_and_the_device_are_listed_together(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("fault", "way"), [(fault, WAYS[1 + k % 2]) for k, fault in enumerate(FAULTS)]
-)
+@pytest.mark.parametrize("way", WAYS[1:])
+@pytest.mark.parametrize("fault", FAULTS)
 def test_a_planted_fault_is_in_a_group_where_the_command_was_not_recorded(fault, way):
     assert is_right(fault, named(fault, 1, way))
+
+
+@pytest.mark.slow
+def test_a_recording_with_the_compensation_off_tells_a_changed_device():
+    (group,) = named("friction", 1, WAYS[2]).deviations
+    assert [f"{one.at}: {one.parameter}" for one in group] == ["Z_M: coulomb.level"]
+    (one,) = group
+    assert one.value == pytest.approx(1.4 * one.designed, rel=0.03)
 
 
 def test_a_law_that_reads_the_command_runs_along_a_recording():

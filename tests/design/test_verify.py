@@ -88,6 +88,12 @@ def test_a_device_or_a_zero_that_changed_is_outside(changed):
     assert not wrong.holds and "outside" in str(wrong)
 
 
+def test_before_and_after_are_drawn_on_one_scale(right):
+    before, after = right.plot().axes
+    assert before.get_ylim() == after.get_ylim()
+    assert len(after.lines) == 2
+
+
 @pytest.mark.slow
 def test_the_file_of_a_design_holds_the_plan(designed, tmp_path):
     designed.to_json(tmp_path / "design.json")
