@@ -30,15 +30,19 @@ PIECE, LAST = 500, 16
 def find_wrong_accuracy(recording: CheckedRecording) -> Iterator[Finding]:
     """Channels whose readings have other steps, or other noise, than stated."""
     for signal in recording.varying:
-        yield from check_steps(signal)
-        yield from check_noise(signal, recording.beside(signal))
+        others = recording.beside(signal)
+        yield from check_steps(signal, others)
+        yield from check_noise(signal, others)
 
 
 CHECK = RecordingCheck(order=70, find=find_wrong_accuracy, in_order="steps and noise as stated")
 
 
-def check_steps(signal: Signal) -> Iterator[Finding]:
-    """Compare the stated resolution of a channel with its readings."""
+def check_steps(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
+    """Compare the stated resolution of a channel with its readings.
+
+    others: channels of the same record, one of which may have the stated steps instead
+    """
     stated, read_step = signal.channel.resolution, signal.step
     if stated is None or not read_step or (step := true_step(signal.values, stated)) == stated:
         return
@@ -47,6 +51,7 @@ def check_steps(signal: Signal) -> Iterator[Finding]:
     )
     if step is None and read_step < stated and is_between:
         return  # the readings have steps; the interpolated samples have none
+    swapped = [o.name for o in others if step is None and _shares_steps(o, stated)]
     concern: Concern = "warning"
     text = f" is not read in steps of the stated {stated:.4g} {signal.unit}"
     if step is not None:
@@ -55,6 +60,8 @@ def check_steps(signal: Signal) -> Iterator[Finding]:
             f"{stated:.4g}: the encoder is coarser than stated; write resolution = "
             f"{_as_written(signal, step):.4g} at channels.{signal.name}."
         )
+    elif swapped:
+        text += f", but {swapped[0]} is: are the two columns swapped?"
     elif read_step < stated:
         concern, text = "note", f"{text}, but in finer ones."
     else:
@@ -110,6 +117,12 @@ def _as_written(signal: Signal, step: float) -> float:
         return step / abs(channel.conversion.factor)
     factor = si_factor(channel.unit, quantity=BODY_QUANTITIES[channel.quantity], axis=signal.axis)
     return step / factor
+
+
+def _shares_steps(other: Signal, stated: float) -> bool:
+    """Whether another channel moves in the stated steps; a much finer step would fit by chance."""
+    alike = 0.5 < other.step / stated < 2.0 * MULTIPLES.stop
+    return alike and is_on_grid(other.values, stated)
 
 
 def measured_noise(signal: Signal) -> float:

@@ -156,3 +156,16 @@ def test_the_tick_of_a_microcontroller_is_the_time_beside_a_counter_of_steps():
     wheel = {"t": T, "left_tick": np.round(5000 * Q), "current": U}
     survey = survey_log(log_of(wheel), "log", Choices())
     assert survey.channels["position"]["column"] == "left_tick"
+
+
+def test_a_velocity_that_contradicts_a_guessed_unit_of_time_says_which_one_it_needs(tmp_path):
+    t = 1e-3 * np.arange(4000)
+    x = 0.05 * np.sin(4.4 * t) + 0.02 * np.sin(11.9 * t + 1)
+    v = np.gradient(x, t)
+    path = tmp_path / "log.csv"
+    table = np.c_[2e3 * t, x, v, 0.4 * np.gradient(v, t) + 2 * v + 0.5 * np.sign(v)]
+    names = "time,position_m,velocity_m_s,force_N"  # a count of half milliseconds
+    np.savetxt(path, table, delimiter=",", header=names, comments="", fmt="%.9g")
+    survey = survey_log(open_log(path, "log.csv"), "log.csv", Choices(axis="prismatic"))
+    assert "requires steps of 0.001 s" in survey.guesses["channels.time.unit"]
+    assert "--unit 'time=500 us'" in survey.guesses["channels.time.unit"]

@@ -218,6 +218,29 @@ def describe_position(
             )
             more |= describe_code(survey, velocity, "velocity")
             survey.channels["velocity"] = {"column": velocity, "unit": velocity_unit, **more}
+            _hold_time_against(survey, column, velocity)
+
+
+def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) -> None:
+    """Check a guessed unit of time: a position and its velocity show the true time step."""
+    why = survey.guesses.get("channels.time.unit")
+    unit, velocity_unit = (survey.channels[key]["unit"] for key in ("position", "velocity"))
+    if why is None or unit == "counts" or "channels.position.unit" in survey.guesses:
+        return
+    h = sample_time_of(survey)
+    whole = unwrap_column(column.values, wrap_of(column.values))
+    factor, agree = derivative_factor(whole, survey.columns[velocity].values, h)
+    slower = factor * si_factor(velocity_unit, quantity="velocity", axis=survey.axis)
+    slower /= si_factor(unit, quantity="position", axis=survey.axis)
+    if agree < DERIVATIVE or slower <= 0 or abs(slower - 1.0) < SAME:
+        return
+    clock = survey.channels["time"]
+    tick = 1e6 * si_factor(clock["unit"], quantity="time") / slower
+    stated = f"{clock['column']}={float(f'{tick:.3g}'):g} us"
+    survey.guesses["channels.time.unit"] = (
+        f"{why}; but {velocity!r} in {velocity_unit} requires steps of {h / slower:.3g} s: "
+        f"--unit {stated!r}"
+    )
 
 
 def _step_of_readings(values: Array) -> float:
