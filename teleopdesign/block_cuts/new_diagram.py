@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from ..base.errors import ExperimentError
 from ..base.files import write_text
 from ..base.toml import comment_text, string_text
-from ..measurement.new_folder import FitAndCheck, check_spans, copy_logs, records_text, toml_table
+from ..measurement.new_folder import (
+    FitAndCheck,
+    check_spans,
+    copy_logs,
+    records_of,
+    records_text,
+    toml_table,
+)
 from ..measurement.survey import spans_of
 from .channel_proposal import ChannelProposal
 
@@ -36,9 +42,7 @@ def make_diagram_folder(
     names = [log.name for log in logs]
     if spans is not None:
         check_spans(spans, proposal.duration, names)
-    records: list[dict[str, Any]] = [
-        {"file": n, "use": "check" if n == names[-1] else "fit"} for n in names
-    ]
+    records = records_of(names)
     if len(names) == 1:
         parts = zip(("fit", "check"), spans or spans_of(proposal.duration), strict=True)
         records = [{"file": names[0], "use": use, "span": part} for use, part in parts]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
 from ..base.finding import Concern, Finding, Graph, Series
+from ..base.folders import Shelf
 from ..base.units import unit_of
 from ..measurement.channel import BODY_QUANTITIES, Channel
 from ..measurement.description import ONE_BODY
@@ -20,15 +22,6 @@ from ..measurement.experiment import Experiment, excerpt
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, prepare
 from ..measurement.record import Record
-
-if TYPE_CHECKING:
-    from ..model import Model
-
-
-from pathlib import Path
-from typing import TYPE_CHECKING
-
-from ..base.folders import Shelf
 
 if TYPE_CHECKING:
     from ..model import Model
