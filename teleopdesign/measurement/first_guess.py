@@ -43,6 +43,9 @@ _BOTH_WAYS = 0.1
 #: supply current of a servo; 0.99 of a constant force with noise. Sizes of dry friction alone are
 #: constant in motion, and reach 0.9
 SURELY_LESS = 0.8
+#: least part of a signal that a relation is taken to leave: what is nearer is as good, since
+#: filters, delays and digits of a log leave a hundredth
+LEAST_LEFT = 0.01
 #: a force that depends on position counts only if it leaves less than this part of the squares
 MOSTLY = 0.5
 
@@ -125,6 +128,32 @@ def explain_forces(pairs: Sequence[tuple[Array, Array]], sample_time: float) -> 
     m, c, b = solution[:3].tolist()
     of_each = float(errors[0]), float(errors[1]), float(errors[2])
     return FirstGuess(m, c, b, explained, of_each, left)
+
+
+def left_in_turn(force: Array, position: Array, sample_time: float) -> tuple[float, float]:
+    """Part of a force (n,) that its place leaves, and part of that which the motion leaves.
+
+    Place: a cubic of the position, which a spring, a weight or a second reading of the position
+    follows. Motion: inertia, friction and damping beside it. Where the place leaves less than a
+    hundredth, friction must be certain, and brake where the place pulls back: a reading that is
+    late has friction of the other sign.
+    """
+    stretch = _stretch((force, position), position, sample_time)
+    if stretch is None:
+        return 1.0, 1.0
+    columns, (target, place) = stretch
+    place = (place - place.mean()) / max(float(np.ptp(place)), np.finfo(float).tiny)
+    powers = np.stack([columns[3], place, place**2, place**3])
+    of_place = _least_squares(powers, target, sample_time)
+    of_all = _least_squares(np.vstack([columns[:3], powers]), target, sample_time)
+    whole = float(np.var(target))
+    if of_place is None or of_all is None or not of_place[2] * whole > 0.0:
+        return 1.0, 1.0
+    (factors, errors, left), beside = of_all, of_place[2]
+    brakes = factors[1:3] * np.sign(target @ place) > SURELY * errors[1:3]
+    share = beside**2 / whole
+    is_place = share < LEAST_LEFT and not brakes.any()
+    return min(share, 1.0), 1.0 if is_place else min(left / beside, 1.0) ** 2
 
 
 def is_turned(force: Array, position: Array, sample_time: float) -> bool:

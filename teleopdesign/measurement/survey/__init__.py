@@ -95,10 +95,10 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     survey.is_stated = choices.states_all
     name_trials(survey, raw)
     survey.columns = longest_trial(survey)
-    position, velocity = find_position(survey, time_name, choices, file)
+    position, velocity = find_position(survey, choices, file)
     survey.axis = axis_of(survey, position, choices)
     describe_position(survey, position, velocity, choices)
-    describe_forces(survey, position, velocity, time_name, choices, file)
+    describe_forces(survey, position, velocity, choices, file)
     _units_in_use(survey, choices, file)
     survey.unused = unused_columns(log, raw, survey)
     survey.columns = columns

@@ -7,7 +7,7 @@ at least, each with the same words for its quantities. So "actual" and "desired"
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from functools import lru_cache
 
 from ..column_names import bare_name, is_wanted, likeness, words_of
@@ -15,12 +15,6 @@ from .content import SURE_NAME
 
 Words = tuple[str, ...]
 
-#: score for a force in the same struct or joint as the position: more than the difference between
-#: similar names ("current" 0.98, "effort" 0.9), and less than that of a name of a commanded value
-BESIDE = 0.2
-#: loss of score for a force whose name has another axis number than the position: as much as
-#: physics can add, because two axes that move alike explain each other's forces
-ANOTHER_AXIS = 1.0
 #: words for the two sides of a teleoperator, or of a device for both hands
 _SIDES = (
     ("master", "slave"), ("leader", "follower"), ("local", "remote"), ("mtm", "psm"),
@@ -38,10 +32,6 @@ _COLUMNS = frozenset(
     ("column", "col", "channel", "chan", "ch", "var", "signal", "data", "value")
     + ("spalte", "kanal", "wert")
 )
-#: times the travel of a joint from which another joint of the log moves, and this one rests: a
-#: motor that only holds its place gives way by a hundredth of a motion. Lower: another of several
-#: joints that all move is taken
-MOVES = 30.0
 #: words that tell apart two columns of one joint: how a value was measured or computed, and at
 #: which end of a gear
 _OF_ONE_JOINT = frozenset(
@@ -78,21 +68,6 @@ def same_but_axis(one: str, other: str) -> bool:
     numbers = {_axis_numbers(name) for name in (one, other)}
     stems = {_NUMBERS.sub("#", _SPACE.sub("#", bare_name(name))) for name in (one, other)}
     return len(numbers) == 2 and () not in numbers and len(stems) == 1
-
-
-def axis_that_moves(
-    name: str, others: Collection[str], travels: Mapping[str, float], names: Collection[str] = ()
-) -> str:
-    """The column, or that of the others which is the same at another axis, if it rests beside it.
-
-    travels: column -> range of its values;  names: all columns of the log
-    """
-    at_others = (
-        n for n in others if same_but_axis(n, name) or same_at_another_joint(n, name, names)
-    )
-    alike = [name, *at_others]
-    most = max(alike, key=lambda n: travels[n])
-    return most if travels[most] > MOVES * travels[name] else name
 
 
 def of_another_axis(one: str, other: str, names: Collection[str] = ()) -> bool:
@@ -180,9 +155,3 @@ def of_another_joint(one: str, other: str, names: Collection[str]) -> bool:
     if first == second or first not in joints or second not in joints:
         return False
     return quantity in joints[second] and quantity_2 in joints[first]
-
-
-def same_at_another_joint(one: str, other: str, names: Collection[str]) -> bool:
-    """Whether two columns hold the same quantity of two joints that are called by words."""
-    same = _joint_and_quantity(one)[1] == _joint_and_quantity(other)[1]
-    return same and of_another_joint(one, other, names)

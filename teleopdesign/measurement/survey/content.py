@@ -24,9 +24,6 @@ Array = NDArray[np.float64]
 SURE_NAME = 0.75
 #: units of a sensor that a scope or an analog input has read, as the package writes them
 OF_SENSORS = ("V", "mV")
-#: columns whose scores differ by less are equally likely, as of several joints in one log: the part
-#: of a score that comes from physics is known no better
-AS_LIKELY = 0.05
 #: in place of a column's name: the log has none of that quantity
 NONE = "none"
 
@@ -159,11 +156,6 @@ def rises(x: Array) -> bool:
 def sample_time_of(survey: Survey) -> float:
     """Time between two rows of the survey's grid, s."""
     return float(np.median(np.diff(survey.time)))
-
-
-def as_likely(scores: Mapping[str, float], best: str) -> list[str]:
-    """The other columns whose score is less than `AS_LIKELY` below that of the best one."""
-    return [n for n, s in scores.items() if n != best and s > scores[best] - AS_LIKELY]
 
 
 def reasons(unread: Mapping[str, str], most: int = 3) -> str:

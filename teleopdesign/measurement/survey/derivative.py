@@ -32,6 +32,8 @@ USUAL_COUNTS = tuple(
     )
 )
 NEAR_USUAL = 0.02
+#: part of its range over which a column leaps
+LEAP = 0.6
 #: usual steps from row to row that a leap of a wrap is longer than: a fifth of a turn in a row
 UNLIKE = 5.0
 #: lengths of a turn in units of angle; fewest counts of a turn, below which a number of counts may
@@ -53,7 +55,7 @@ def wrap_of(x: Array) -> float | None:
     reach = float(np.ptp(x))
     steps = np.diff(x)
     usual = float(np.quantile(np.abs(steps), 0.95))
-    is_jump = np.abs(steps) > max(0.6 * reach, UNLIKE * usual)
+    is_jump = np.abs(steps) > max(LEAP * reach, UNLIKE * usual)
     if reach == 0.0 or not is_jump.any():
         return None
     jumps = np.abs(steps[is_jump])
@@ -70,6 +72,11 @@ def wrap_of(x: Array) -> float | None:
     period = min(periods, key=lambda one: abs(one - turn))
     near = abs(period - turn) < NEAR_USUAL * period
     return period if near and reach <= 1.001 * period else None
+
+
+def leaps(x: Array) -> bool:
+    """Whether a column leaps over most of its range from one row to the next, as a command may."""
+    return bool(np.max(np.abs(np.diff(x)), initial=0.0) > LEAP * np.ptp(x))
 
 
 def turn_of(x: Array) -> str | None:

@@ -6,23 +6,19 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from ...base.units import si_factor
-from ..column_names import is_wanted, likeness
+from ..column_names import likeness
 from ..doors._log import join_names
-from ..encoder import SURELY
 from ..first_guess import (
+    LEAST_LEFT,
     SURELY_LESS,
-    FirstGuess,
     explain_force,
-    goes_one_way,
     is_turned,
     left_by_motion,
-    motion_columns,
+    left_in_turn,
 )
 from ..law_of_readings import law_of_readings, spring_of_copy
-from .axes import ANOTHER_AXIS, BESIDE, of_another_axis, stand_together
+from .axes import of_another_axis, stand_together
 from .balance import current_that_acted, hand_by_balance, scale_by_balance
 from .content import (
     NONE,
@@ -31,64 +27,46 @@ from .content import (
     Choices,
     Survey,
     SurveyedColumn,
-    as_likely,
     explain_ambiguity,
-    is_unit_of,
     sample_time_of,
 )
 from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si, state_scatter
 from .refusals import (
     error_of_chance,
-    error_of_place,
     error_without_force,
     explain_other_roles,
     tells_forces,
 )
 from .relations import possible_forces, relations_of
-from .words import says, says_only
+from .roles import as_likely, is_named_force, score_of
+from .words import says
 
 #: part of a column that the motion may explain by chance; a column with less counts as a force only
 #: with the name or unit of a force
 CHANCE = 0.1
-#: score for a current if a motor constant is stated: more than any name adds
-OF_CURRENT = 2.0
 #: part of a column that the motion explains, from which physics shows that the column is the force
 DRIVES = 0.3
 
-#: coefficients of a cubic: one position as a function of another bends at both ends at most; and
-#: the part of the squares of a position that it leaves
-POWERS, OF_A_POSITION = 4, 0.01
-
 
 def describe_forces(
-    survey: Survey,
-    position: str,
-    velocity: str | None,
-    time_name: str | None,
-    choices: Choices,
-    file: str,
+    survey: Survey, position: str, velocity: str | None, choices: Choices, file: str
 ) -> None:
-    """Set the channels of the actuator force and of the measured force, with units and signs."""
+    """Set the channels of the actuator force and of the measured force, with units and signs.
+
+    raises ExperimentError: no column may be the force
+    """
     h = sample_time_of(survey)
     entry = survey.channels["position"]
     x = unwrap_column(survey.columns[position].values, wrap_of(survey.columns[position].values))
-    if choices.states_all:
-        free = {}
-    else:
+    free: dict[str, SurveyedColumn] = {}
+    scores: dict[str, float] = {}
+    if not choices.states_all:
         survey.relations = dict(relations_of(survey, position, velocity, x))
-        free = possible_forces(survey, position, velocity, time_name)
-    physics = {n: explain_force(c.values, x, h) for n, c in free.items()}
-    sizes = _sizes_beside_signed(free, position, survey)
-    scores = {
-        n: _score_force(c, physics[n])
-        - OF_CURRENT * (n in sizes)
-        + BESIDE * stand_together(n, position)
-        - ANOTHER_AXIS * of_another_axis(n, position, survey.columns)
-        + OF_CURRENT * (choices.torque_constant is not None and _is_for_constant(c))
-        for n, c in free.items()
-    }
-    force, measured = _find_driving_force(survey, free, physics, scores, choices, (file, velocity))
+        free = possible_forces(survey, position, velocity)
+        survey.explained = {n: 1.0 - left_in_turn(c.values, x, h)[1] for n, c in free.items()}
+        scores = _score_forces(survey, position, free, choices.torque_constant is not None)
+    force, measured = _find_driving_force(survey, free, scores, choices, (file, velocity))
     survey.channels["actuator_force"] = describe_force(survey, force, "actuator_force", choices)
     if measured:
         survey.channels["actuator_force"]["measured"] = True
@@ -108,13 +86,46 @@ def describe_forces(
     scale_by_balance(survey, motion, choices)
     # now in SI, and behind the guessed gear
     _choose_signs(survey, (x * _position_to_si(survey), h), force, hand)
-    survey.explained.update({n: guess.explained for n, guess in physics.items()})
+
+
+def score_beside(survey: Survey, position: str, velocity: str | None, x: Array) -> float:
+    """The score of the other columns beside a position x (n,): one is a force, others its place."""
+    h = sample_time_of(survey)
+    trial = replace(survey, relations=dict(relations_of(survey, position, velocity, x)))
+    free = possible_forces(trial, position, velocity)
+    left = {n: left_in_turn(c.values, x, h) for n, c in free.items()}
+    trial.explained = {n: 1.0 - by_motion for n, (_, by_motion) in left.items()}
+    forces = _score_forces(trial, position, free, False)
+    places = [
+        math.log(max(by_place, LEAST_LEFT))
+        for n, (by_place, _) in left.items()
+        if not is_named_force(free[n]) and not of_another_axis(n, position, survey.columns)
+    ]
+    return max(forces.values(), default=-math.inf) - sum(places)
+
+
+def _score_forces(
+    survey: Survey, position: str, free: Mapping[str, SurveyedColumn], is_current: bool
+) -> dict[str, float]:
+    """The score of each column that may be the force;  is_current: the user says that it is one."""
+    sizes = _sizes_beside_signed(free, position, survey)
+    return {
+        n: score_of(
+            "actuator_force",
+            c,
+            left=1.0 - survey.explained[n],
+            its_constant_is_stated=is_current and _is_for_constant(c),
+            size_beside_a_signed_one=n in sizes,
+            beside_the_position=stand_together(n, position),
+            of_another_axis=of_another_axis(n, position, survey.columns),
+        )
+        for n, c in free.items()
+    }
 
 
 def _find_driving_force(
     survey: Survey,
     free: Mapping[str, SurveyedColumn],
-    physics: Mapping[str, FirstGuess],
     scores: Mapping[str, float],
     choices: Choices,
     messages: tuple[str, str | None],
@@ -137,52 +148,19 @@ def _find_driving_force(
             f"{force!r} is read as the actuator's force: the command {wanted!r} leaves "
             f"{apart:.0%} of it unexplained, more than noise"
         )
-    elif likeness(force, "actuator_force") < SURE_NAME or not _is_named(free[force]):
-        share = physics[force].explained
-        if not _is_named(free[force]):
+    elif likeness(force, "actuator_force") < SURE_NAME or not is_named_force(free[force]):
+        share = survey.explained[force]
+        if not is_named_force(free[force]):
             named = f"{join_names(free)}{explain_other_roles(survey, velocity)}"
             error = error_of_chance(survey, file, (force, share), named)
             if share < CHANCE or not tells_forces(survey):
                 raise error
-            if follows_place(survey, force):
-                raise error_of_place(survey, file, force)
         why = f"{force!r} is read as the actuator's force: the motion explains {share:.0%} of it"
     elif others := as_likely(scores, force):
         why = explain_ambiguity(force, others, "the actuator's force")
     if why is not None:
         survey.guesses["channels.actuator_force.column"] = why
     return force, acted is not None
-
-
-def _is_named(column: SurveyedColumn) -> bool:
-    """Whether unit or name are those of a force; "motor" is the name of what has one."""
-    named = likeness(column.name, "actuator_force") > 0 and not says_only(column.name, "part")
-    return named or is_unit_of(column.unit, "force")
-
-
-def follows_place(survey: Survey, name: str) -> bool:
-    """Whether a column follows the position, or this the column, as a second position does.
-
-    A cubic of the one then leaves next to nothing of the other, in which no friction is certain:
-    that is part of a force. Along a motion one way everything that rises is a function of the
-    position, and nothing is said.
-    """
-    x = survey.columns[survey.channels["position"]["column"]].values
-    pair, h = (unwrap_column(x, wrap_of(x)), survey.columns[name].values), sample_time_of(survey)
-    return _is_function_of(*pair, h) or _is_function_of(*pair[::-1], h)
-
-
-def _is_function_of(position: Array, column: Array, h: float) -> bool:
-    if goes_one_way(motion_columns(position, h)[2]):
-        return False
-    place = (position - position.mean()) / max(float(np.ptp(position)), np.finfo(float).tiny)
-    powers = np.vander(place, POWERS)
-    rest = column - powers @ np.linalg.lstsq(powers, column, rcond=None)[0]
-    if np.var(rest) >= OF_A_POSITION * np.var(column):
-        return False
-    guess = explain_force(rest, position, h)
-    brakes = zip((guess.level, guess.damping), guess.errors[1:], strict=True)
-    return not any(abs(value) > SURELY * error for value, error in brakes)
 
 
 def _pulls_back(command: Array, position: Array, h: float) -> bool:
@@ -210,20 +188,6 @@ def _sizes_beside_signed(
     ):
         return set()
     return {n for n, c in free.items() if c.code is None and c.readings.min() >= 0}
-
-
-def _score_force(column: SurveyedColumn, guess: FirstGuess) -> float:
-    score = likeness(column.name, "actuator_force") + max(guess.explained, 0.0)
-    # the load that a servo on a bus reports is that of its motor
-    score -= 0.7 * (likeness(column.name, "interaction_force") >= SURE_NAME and not column.code)
-    score -= 0.7 * (likeness(column.name, "velocity") >= SURE_NAME)  # "commanded_velocity"
-    score -= 0.7 * says(column.name, "difference")  # "torque_error"
-    score -= 0.2 * says(
-        column.name, "voltage"
-    )  # beside a current, which is in proportion to torque
-    # the command is preferred to the value that a drive reports as reached
-    score += 0.3 * is_wanted(column.name) + 0.5 * is_unit_of(column.unit, "force")
-    return score - 0.6 * (likeness(column.name, "position") >= SURE_NAME)
 
 
 def _is_for_constant(column: SurveyedColumn) -> bool:

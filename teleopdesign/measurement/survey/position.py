@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import permutations
 from typing import Any
 
 import numpy as np
 
-from ...base.units import is_unit, measures, si_factor
+from ...base.units import measures, si_factor
 from ..column_names import (
-    is_another_quantity,
-    is_wanted,
     likeness,
     why_no_unit,
 )
 from ..encoder import ENOUGH, grid_of, reading_step
-from .axes import axis_that_moves
 from .axis_kind import MOST_ANGLE, drives_in_turns, guess_counts_per_turn, is_counter
 from .content import (
     OF_SENSORS,
@@ -25,11 +23,9 @@ from .content import (
     Choices,
     Survey,
     SurveyedColumn,
-    as_likely,
     columns_in_use,
     explain_ambiguity,
     is_unit_of,
-    kinds_of,
     moves,
     sample_time_of,
 )
@@ -41,6 +37,7 @@ from .derivative import (
     follows_direction,
     is_no_velocity,
     is_velocity,
+    leaps,
     may_be_position,
     rate_agreement,
     turn_of,
@@ -48,76 +45,93 @@ from .derivative import (
     wrap_of,
 )
 from .force_entry import describe_code
+from .forces import score_beside
 from .refusals import error_without_position, has_only_speeds
-from .set_point import followed_columns, may_be_set_point, most_explained
-from .words import says
+from .roles import as_likely, first_of, is_no_position, score_of
+from .set_point import lags, may_be_set_point
 
-#: correlation that a matching name counts for: the error of a controller also follows the velocity
-BY_NAME = 0.1
 #: part of a step by which readings at the end of a range may lie beside a grid of rounded steps
 OFF_GRID = 0.1
 
 
-def find_position(
-    survey: Survey, time_name: str | None, choices: Choices, file: str
-) -> tuple[str, str | None]:
-    """The column of the position, and that of its velocity or None."""
-    h = sample_time_of(survey)
-    free = {n: c for n, c in survey.columns.items() if moves(c) and n not in columns_in_use(survey)}
-    chosen = choices.position
+def find_position(survey: Survey, choices: Choices, file: str) -> tuple[str, str | None]:
+    """The column of the position, and that of its velocity or None.
+
+    raises ExperimentError: no column may be the position
+    """
+    chosen, h = choices.position, sample_time_of(survey)
+    columns, used = survey.columns, columns_in_use(survey)
+    moving = {n: c for n, c in columns.items() if moves(c) and n not in used}
     if choices.states_all:  # only its velocity is looked for, among the columns that are called so
-        free = {n: c for n, c in free.items() if n == chosen or is_velocity(c)}
-    moving = {n: c for n, c in free.items() if n == chosen or may_be_position(n, survey.columns, h)}
+        moving = {n: c for n, c in moving.items() if n == chosen or is_velocity(c)}
+    moving = {n: c for n, c in moving.items() if n == chosen or may_be_position(n, columns, h)}
     flat = {n: unwrap_column(c.values, wrap_of(c.values)) for n, c in moving.items()}
-    followed = followed_columns(_without_names(moving, flat))
-    derivative: dict[str, tuple[str, float]] = {}
-    scores: dict[str, float] = {}
-    for name, column in moving.items():
-        is_set_point = is_wanted(name) or name in followed.values()
-        score = likeness(name, "position") - 0.8 * is_set_point + 0.4 * (name in followed)
-        score -= 1.2 * says(name, "difference")  # below a column whose name says nothing
-        kinds = kinds_of(column)
-        score += 0.5 * ("position" in kinds) - 0.8 * bool(kinds and "position" not in kinds)
-        score -= 0.4 * max(likeness(name, "velocity"), likeness(name, "actuator_force"))
-        for other, column_2 in moving.items():
-            if other == name or is_no_velocity(column_2):
-                continue
-            agree = rate_agreement(flat[name], column_2.values, h)
-            if not is_velocity(column_2) and follows_direction(flat[name], column_2.values, h):
-                continue
-            # a desired velocity agrees with the position as well, and better where it is smooth
-            sure = agree + BY_NAME * likeness(other, "velocity") - 2.0 * BY_NAME * is_wanted(other)
-            if agree > DERIVATIVE and sure > derivative.get(name, ("", 0.0))[1]:
-                derivative[name] = (other, sure)
-        scores[name] = score + 0.4 * (name in derivative)
-    # a column whose name or unit is of something else is never a position
-    known = choices.units  # except with a chosen unit: a wrong choice is refused with its name
-    scores = {n: s for n, s in scores.items() if n in known or not _is_another(moving[n])}
-    if choices.position is not None:
-        best = choices.position
-    elif scores:
-        best = max(scores, key=lambda n: scores[n])
-        if likeness(best, "position") == 0:
-            best = most_explained([best, *as_likely(scores, best)], flat, h)
-        travels = {n: float(np.ptp(x)) for n, x in flat.items()}
-        best = axis_that_moves(best, as_likely(scores, best), travels, survey.columns)
-        shown = best in derivative or best in followed
+    # a wrong unit that is stated is refused later, with its name
+    may_be = [n for n, c in moving.items() if n in choices.units or not is_no_position(c)]
+    may_be = may_be if chosen is None else [chosen]
+    velocities = {n: _velocity_of(n, moving, flat, h) for n in may_be}
+    if chosen is None:
+        followed = {} if len(may_be) < 2 else _followed_columns(may_be, moving, flat)
+        scores = {
+            n: score_of(
+                "position",
+                moving[n],
+                its_velocity_is_logged=velocities[n] is not None,
+                it_follows_a_column=n in followed,
+                a_column_follows_it=n in followed.values(),
+                it_leaps=likeness(n, "position") < SURE_NAME and leaps(flat[n]),
+            )
+            for n in may_be
+        }
+        best = max(scores, key=lambda n: scores[n], default=None)
+        if best is None:
+            raise error_without_position(survey, moving, file)
+        if alike := as_likely(scores, best):
+            motions = ((n, velocities[n], flat[n]) for n in (best, *alike))
+            best = first_of({n: score_beside(survey, n, v, x) for n, v, x in motions})
+        shown = velocities[best] is not None or best in followed
         if not shown and has_only_speeds(moving[best], moving):
             raise error_without_position(survey, moving, file, best)
-        _note_choice(survey, best, scores, derivative, followed)
+        _note_choice(survey, best, scores, velocities[best], followed)
     else:
-        raise error_without_position(survey, moving, file)
-    velocity = derivative.get(best, (None, 0.0))[0]
+        best = chosen
+    velocity = velocities[best]
     if velocity is not None:
         survey.notes.append(f"{velocity!r} is the derivative of {best!r}")
     return best, velocity
+
+
+def _velocity_of(
+    name: str, moving: Mapping[str, SurveyedColumn], flat: Mapping[str, Array], h: float
+) -> str | None:
+    """The most likely column that is the derivative of another one; None: there is none."""
+    scores: dict[str, tuple[float, float]] = {}
+    for other, column in moving.items():
+        if other == name or is_no_velocity(column):
+            continue
+        agree = rate_agreement(flat[name], column.values, h)
+        if agree < DERIVATIVE:
+            continue
+        if is_velocity(column) or not follows_direction(flat[name], column.values, h):
+            scores[other] = score_of("velocity", column, left=1.0 - agree), agree
+    return max(scores, key=lambda n: scores[n], default=None)
+
+
+def _followed_columns(
+    may_be: Sequence[str], moving: Mapping[str, SurveyedColumn], flat: Mapping[str, Array]
+) -> dict[str, str]:
+    """Column -> the column that it follows as a position its set point, where no name tells."""
+    free = [
+        n for n in may_be if likeness(n, "position") < SURE_NAME and may_be_set_point(moving[n])
+    ]
+    return {n: m for n, m in permutations(free, 2) if lags(flat[n], flat[m])}
 
 
 def _note_choice(
     survey: Survey,
     best: str,
     scores: Mapping[str, float],
-    derivative: Mapping[str, object],
+    velocity: str | None,
     followed: Mapping[str, str],
 ) -> None:
     """Mark the chosen column as a guess, with the reason, where its name alone does not decide."""
@@ -126,49 +140,17 @@ def _note_choice(
         if others:
             survey.guesses[key] = explain_ambiguity(best, others, "the position")
         return
-    unit = survey.columns[best].unit
     if best in followed:
         why = f"it follows {followed[best]!r}, as a position follows its set point"
-    elif best in derivative:
+    elif velocity is not None:
         why = "another column is its derivative"
-    elif likeness(best, "position") > 0 or is_unit_of(unit, "position"):
+    elif likeness(best, "position") > 0 or is_unit_of(survey.columns[best].unit, "position"):
         why = "name or unit suggest a position"
     elif others:
         why = "its motion explains more of another column than those of other columns do"
     else:
         why = "it is the first column that moves"
     survey.guesses[key] = f"{best!r} is read as the position: {why}"
-
-
-def _without_names(
-    moving: Mapping[str, SurveyedColumn], flat: Mapping[str, Array]
-) -> dict[str, Array]:
-    """The columns that may be a position or its set point, and whose names do not say which."""
-    return {
-        name: flat[name]
-        for name, column in moving.items()
-        if likeness(name, "position") < SURE_NAME
-        and not _is_another(column)
-        and may_be_set_point(column)
-    }
-
-
-def _is_another(column: SurveyedColumn) -> bool:
-    """Whether a column is no position, by its unit or, without a unit, by its name.
-
-    A potentiometer may be logged in mV, a valve in per cent of its stroke, and the last letters of
-    a name may be no unit: "q_ms".
-    """
-    if is_unit_of(column.unit, "position") or is_unit_of(column.unit, "time"):
-        return False
-    named = likeness(column.name, "position")
-    if column.unit is not None and is_unit(column.unit):
-        return not (named >= SURE_NAME and column.unit in ("mV", "%"))
-    if named == 0:
-        others = ("velocity", "actuator_force", "interaction_force")
-        no_position = max(likeness(column.name, other) for other in others) >= SURE_NAME
-        return no_position or is_another_quantity(column.name)
-    return False
 
 
 def describe_position(

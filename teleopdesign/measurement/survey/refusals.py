@@ -110,15 +110,6 @@ def error_of_chance(
     )
 
 
-def error_of_place(survey: Survey, file: str, name: str) -> ExperimentError:
-    """The error where the likeliest column without the name of a force follows the position."""
-    position = survey.channels["position"]["column"]
-    return ExperimentError(
-        f"{file}: found no force: {name!r} follows {position!r} as a second position or a spring "
-        f"does, and its name states no force; --force {name!r} if it is one"
-    )
-
-
 def explain_other_roles(survey: Survey, velocity: str | None) -> str:
     """Which columns without a unit, taken for something else, may be the force, for a message."""
     others = {n: why for n, why in survey.relations.items() if survey.columns[n].unit is None}

@@ -36,7 +36,7 @@ from .derivative import (
     unwrap_column,
     wrap_of,
 )
-from .set_point import follows, has_numbers_of, is_sent_to_places, may_be_set_point
+from .set_point import has_numbers_of, is_sent_to_places, may_be_set_point
 from .words import says
 
 #: correlation from which one column is the derivative of another to its digits, as of a planned
@@ -74,8 +74,6 @@ def _relation(column: SurveyedColumn, position: str, x: Array, speed: Array | No
     if likeness(name, "actuator_force") == 0 and same_but_axis(name, position):
         return f"a column of another axis than {position!r}: --position chooses the axis"
     if may_be_set_point(column) and has_numbers_of(values, x):
-        if follows(x, values):
-            return f"a set point: {position!r} follows it"
         return f"a set point, or a reading once more: it has the numbers of {position!r}"
     if is_sent_to_places(x, column):
         return f"a set point: {position!r} rests at a place of its own for each of its values"

@@ -6,14 +6,12 @@ a force, whatever its name: "r" beside "y", "SV" beside "PV", "reference" beside
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..column_names import WANTED, likeness, words_of
-from ..first_guess import explain_force
-from ..law_of_readings import is_copy
 from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of
 from .derivative import DERIVATIVE
 
@@ -34,30 +32,6 @@ NEVER_ZERO = 0.15
 #: likeness of a name to that of a force, from which it is no set point whatever the numbers are:
 #: "torque", "current", "effort". "pwm", "u" and "cmd" name pulses of a set point as well
 FORCE_NAME = 0.85
-
-
-def followed_columns(flat: Mapping[str, Array]) -> dict[str, str]:
-    """Column -> the column that it follows: the set point of a position.
-
-    flat: values (n,) of the columns that may be positions, by name
-    """
-    followed: dict[str, str] = {}
-    for name, values in flat.items():
-        for other, earlier in flat.items():
-            if name != other and follows(values, earlier):
-                followed[name] = other
-                break
-    return followed
-
-
-def follows(column: Array, other: Array) -> bool:
-    """Whether a column has the numbers of another one, only later."""
-    if not _are_alike(column, other):
-        return False
-    at_once = _apart(column, other, 0)
-    later = min(_apart(column, other, k) for k in _delays(len(column)))
-    earlier = min(_apart(other, column, k) for k in _delays(len(column)))
-    return later < min(at_once, earlier, APART)
 
 
 def lags(column: Array, other: Array) -> bool:
@@ -141,29 +115,3 @@ def _apart(late: Array, early: Array, delay: int) -> float:
     rows = len(late) - delay
     whole = float(np.var(late))
     return float(np.mean((late[delay:] - early[:rows]) ** 2)) / whole if whole > 0 else np.inf
-
-
-def most_explained(names: list[str], flat: Mapping[str, Array], h: float) -> str:
-    """That of equally likely positions whose motion explains most of any other column.
-
-    Of two with the same numbers it is the later one: the earlier one is the path that was planned.
-    A set point is no such column: friction alone explains the steps of a set point that the
-    position reaches.
-
-    flat: values (n,) of the columns, by name;  h: time between two rows
-    """
-    if len(names) == 1:
-        return names[0]
-    shares = {
-        name: max(
-            (
-                explain_force(f, flat[name], h).explained
-                for n, f in flat.items()
-                if n != name and not is_copy(f, flat[name]) and not has_numbers_of(f, flat[name])
-            ),
-            default=0.0,
-        )
-        for name in names
-    }
-    best = max(shares, key=lambda name: shares[name])
-    return next((name for name in names if lags(flat[name], flat[best])), best)
