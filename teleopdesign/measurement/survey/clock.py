@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -28,8 +29,6 @@ from ..stamps import seconds_since_first, unit_in_place_of, unit_of_steps, unwra
 from .candidate_clocks import (
     ASSUMED,
     busiest_clock,
-    clock_of_position,
-    clock_without_name,
     counts_rows,
     position_by_name,
     rate_of_velocity,
@@ -45,6 +44,7 @@ from .content import (
     unit_in_log,
 )
 from .remarks import sample_rate_in
+from .roles import score_of
 from .words import says, says_only
 
 #: quantities whose units are not those of a time
@@ -118,33 +118,23 @@ def time_column(
     """The name of the time column, None if there is none, and its unit."""
     if choices.sample_rate is not None:
         return None, "s"
-    rising = {n: x for n, x in raw.items() if rises(x) or _rises_as_clock(n, x, log)}
-    rising = rising or {n: x for n, x in raw.items() if _is_coarse_time(n, x, log)}
     if choices.time is not None:
         name = choices.time
     elif log.clocks:
         name = busiest_clock(log, raw, choices)
     else:
-        scores = {n: max(likeness(n, "time"), SURE_NAME * _is_called_clock(n)) for n in rising}
-        if not any(scores.values()):
-            rising = {n: x for n, x in rising.items() if not _names_signal(n, log, choices)}
-            scores = dict.fromkeys(rising, 0.0)
+        scores = _score_times(raw, log, choices)
         if not scores:
             guesses["sample_rate"] = (
                 f"no column rises as a time does: the sample rate is assumed to be {ASSUMED:g} Hz"
             )
             return None, "s"
         name = max(scores, key=lambda n: scores[n])
-        if scores[name] == 0.0:
-            name, why = clock_without_name(rising, len(raw))
-            if name not in choices.units and counts_rows(raw[name]) and sample_rate_in(log.remarks):
-                return None, "s"
-            guesses["channels.time.column"] = f"{name!r} is read as the time: it is {why}"
-        elif (near := clock_of_position(name, scores, raw, choices)) is not None:
-            name, (first, beside) = near, (name, position_by_name(raw, choices))
-            guesses["channels.time.column"] = (
-                f"{name!r} is read as the time: of two clocks, {first!r} has no word of {beside!r}"
-            )
+        counted = name not in choices.units and counts_rows(raw[name])
+        if not _is_called_time(name) and counted and sample_rate_in(log.remarks):
+            return None, "s"
+        if why := _why_time(name, list(scores), raw, choices):
+            guesses["channels.time.column"] = f"{name!r} is read as the time: {why}"
     unit = choices.units.get(name) or _unit_of_time(name, log)
     if name in choices.units and is_several_times(choices.units[name]):
         return name, choices.units[name]
@@ -185,12 +175,57 @@ def rate_without_time(
     return rate_of_velocity(raw, {n: u for n, u in known.items() if u is not None})
 
 
-def _rises_as_clock(name: str, values: Array, log: Log) -> bool:
-    """Whether a time by its name or unit rises once its wraps and its order are mended."""
-    if not is_unit_of(log.units.get(name), "time") and likeness(name, "time") == 0:
-        return False
-    stamps = unwrap_stamps(values[np.isfinite(values)])[0]
-    return rises(stamps) or are_out_of_order(stamps)
+def _score_times(raw: Mapping[str, Array], log: Log, choices: Choices) -> dict[str, float]:
+    """The score of each column that may be the time; a time by its name or unit may also wrap."""
+    position = set(words_of(position_by_name(raw, choices)))
+    scores: dict[str, float] = {}
+    for name, values in raw.items():
+        is_called = _is_called_time(name)
+        unit = choices.units.get(name) or _unit_of_time(name, log)
+        stamps = values[np.isfinite(values)]
+        rising = rises(stamps)
+        if not rising and (is_called or is_unit_of(unit, "time")):
+            stamps = unwrap_stamps(stamps)[0]
+            rising = rises(stamps) or are_out_of_order(stamps)
+        if rising or _is_coarse_time(name, stamps, log):
+            scores[name] = score_of(
+                "time",
+                SurveyedColumn(name, stamps, stamps, unit),
+                left=1.0 if is_called else _unevenness(stamps),
+                is_called_a_clock=_is_called_clock(name),
+                is_called_a_signal=not is_called and _names_signal(name, log, choices),
+                rows_share_a_stamp=not rising,
+                counts_the_rows=counts_rows(stamps),
+                is_the_first=not scores,
+                has_words_of_the_position=is_called and not position.isdisjoint(words_of(name)),
+            )
+    return {name: score for name, score in scores.items() if score > -math.inf}
+
+
+def _why_time(name: str, columns: Sequence[str], raw: Mapping[str, Array], choices: Choices) -> str:
+    """Why a column is the time, where its name alone does not say so; else "".
+
+    columns: all that may be the time
+    """
+    first = columns[0]
+    if not _is_called_time(name):
+        most = "the column that rises most evenly"
+        return f"it is {'the first column that always rises' if name == first else most}"
+    before = columns[: columns.index(name)]
+    alike = [n for n in before if likeness(n, "time") == likeness(name, "time") > 0]
+    beside = position_by_name(raw, choices)
+    return f"of two clocks, {alike[0]!r} has no word of {beside!r}" if alike else ""
+
+
+def _is_called_time(name: str) -> bool:
+    return likeness(name, "time") > 0 or _is_called_clock(name)
+
+
+def _unevenness(x: Array) -> float:
+    """Median deviation of a column's steps from their median, over it; 1 where that is zero."""
+    steps = np.diff(x)
+    usual = float(np.median(steps))
+    return float(np.median(np.abs(steps - usual))) / usual if usual > 0 else 1.0
 
 
 def _is_coarse_time(name: str, values: Array, log: Log) -> bool:

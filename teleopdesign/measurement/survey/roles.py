@@ -49,7 +49,7 @@ def score_of(role: str, column: SurveyedColumn, *, left: float = 1.0, **more: fl
 def _said_by(column: SurveyedColumn) -> dict[str, float]:
     """What name and unit of a column say, by the keys of `roles.toml`: 0 to 1."""
     name, kinds = column.name, kinds_of(column)
-    quantities = ("position", "velocity", "actuator_force", "interaction_force")
+    quantities = ("time", "position", "velocity", "actuator_force", "interaction_force")
     said = {f"name of {_noun(q)}": likeness(name, q) for q in quantities}
     if says_only(name, "part"):
         said["name of an actuator force"] = 0.0
