@@ -104,13 +104,6 @@ def explain_force(force: Array, position: Array, sample_time: float) -> FirstGue
     return explain_forces([(force, position)], sample_time)
 
 
-def left_by_motion(force: Array, position: Array, sample_time: float) -> float:
-    """The rms of a force (n,) that inertia, friction and damping leave; no force of the place."""
-    stretch = _stretch((force,), position, sample_time)
-    fit = None if stretch is None else _least_squares(stretch[0], stretch[1][0], sample_time)
-    return 0.0 if fit is None else fit[2]
-
-
 def explain_forces(pairs: Sequence[tuple[Array, Array]], sample_time: float) -> FirstGuess:
     """As `explain_force`, over several stretches; pairs: (force, position) of each stretch."""
     all_of_them = [_stretch((force, place), place, sample_time) for force, place in pairs]

@@ -17,7 +17,7 @@ from ...base.toml import Table
 from ...base.units import is_unit, measures, unit_of
 from ..column_names import is_wanted, unit_in_name, why_no_unit
 from ..conversion import conversion_of
-from ..encoder import CHANGES_OF_FORCE, FEWEST_STEPS, reading_noise, update_period
+from ..encoder import CHANGES_OF_FORCE, reading_noise, update_period
 from ..signed_numbers import SIGN_BIT
 from .content import Array, Choices, Survey
 from .remarks import torque_constant_in
@@ -39,20 +39,6 @@ LEAST = 1e-3
 MOST = 0.3
 
 
-def _steps_of_driver(survey: Survey, name: str, unit: str) -> str:
-    """What whole numbers without a unit say of a current or a voltage: a driver's steps of it.
-
-    unit: the small unit in which drives write whole numbers
-    """
-    values = survey.columns[name].readings[np.isfinite(survey.columns[name].readings)]
-    if np.any(values != np.round(values)) or np.ptp(values) < FEWEST_STEPS:
-        return ""
-    return (
-        f"; but it holds whole numbers from {values.min():g} to {values.max():g}, as {unit} or the "
-        "steps of a driver are: then state this unit, or the constant of one step"
-    )
-
-
 def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dict[str, Any]:
     """The channel table of a force: column, unit, and the motor constant of a current or the lever
     arm of a force beside an angle.
@@ -71,14 +57,11 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
     if unit is None and choices.torque_constant is not None and key == "actuator_force":
         if not (says(name, "torque") and not says(name, "current")):
             unit = choices.torque_constant[1].rpartition("/")[2]
-    if unit is None and says(name, "current"):
-        unit = "A"
-        why = f"A: the name {name!r} is that of a current"
-        survey.guesses[f"channels.{key}.unit"] = why + _steps_of_driver(survey, name, "mA")
-    if unit is None and says(name, "voltage"):
-        unit = "V"
-        why = f"V: the name {name!r} is that of a voltage"
-        survey.guesses[f"channels.{key}.unit"] = why + _steps_of_driver(survey, name, "mV")
+    for kind, usual in (("current", "A"), ("voltage", "V")):
+        if unit is None and says(name, kind):
+            unit = usual
+            why = f"{unit}: the name {name!r} is that of a {kind}"
+            survey.guesses[f"channels.{key}.unit"] = why
     if unit in ("A", "mA", "V"):
         entry["unit"] = unit
         constant = _motor_constant(survey, key, unit, choices)

@@ -8,16 +8,13 @@ from dataclasses import replace
 
 from ...base.units import si_factor
 from ..column_names import likeness
-from ..doors._log import join_names
 from ..first_guess import (
     LEAST_LEFT,
     SURELY_LESS,
     explain_force,
     is_turned,
-    left_by_motion,
     left_in_turn,
 )
-from ..law_of_readings import law_of_readings, spring_of_copy
 from .axes import of_another_axis, stand_together
 from .balance import current_that_acted, hand_by_balance, scale_by_balance
 from .content import (
@@ -33,9 +30,7 @@ from .content import (
 from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si, state_scatter
 from .refusals import (
-    error_of_chance,
     error_without_force,
-    explain_other_roles,
     tells_forces,
 )
 from .relations import possible_forces, relations_of
@@ -151,29 +146,14 @@ def _find_driving_force(
     elif likeness(force, "actuator_force") < SURE_NAME or not is_named_force(free[force]):
         share = survey.explained[force]
         if not is_named_force(free[force]):
-            named = f"{join_names(free)}{explain_other_roles(survey, velocity)}"
-            error = error_of_chance(survey, file, (force, share), named)
             if share < CHANCE or not tells_forces(survey):
-                raise error
+                raise error_without_force(survey, file, velocity, force)
         why = f"{force!r} is read as the actuator's force: the motion explains {share:.0%} of it"
     elif others := as_likely(scores, force):
         why = explain_ambiguity(force, others, "the actuator's force")
     if why is not None:
         survey.guesses["channels.actuator_force.column"] = why
     return force, acted is not None
-
-
-def _pulls_back(command: Array, position: Array, h: float) -> bool:
-    """Whether a controller computes a command from the position so that it pulls back.
-
-    Where a hand moves a device against such a law, the damper of the controller drives as friction
-    with a wrong sign would.
-
-    h: time between two rows
-    """
-    law = spring_of_copy(command, position)
-    law = law or law_of_readings(command, position, [slice(0, len(command))], sample_time=h)
-    return law is not None and law.stiffness > 0.0
 
 
 def _sizes_beside_signed(
@@ -216,15 +196,8 @@ def _position_to_si(survey: Survey) -> float:
 
 
 def _sign_of_hand(u: Array, f: Array, x: Array, h: float) -> tuple[float, str | None]:
-    """The sign with which a measured force (n,) adds to that of the actuator; -1 with the reason.
-
-    With a spring at the output both sums leave the same: that with the wrong sign holds the spring
-    twice. Then the sum that needs no force of the place is right.
-    """
-    sums = {s: u + s * f for s in (1.0, -1.0)}
-    left = {s: explain_force(total, x, h).left for s, total in sums.items()}
-    if SURELY_LESS * left[1.0] <= left[-1.0] <= left[1.0] / SURELY_LESS:
-        left = {s: left_by_motion(total, x, h) for s, total in sums.items()}
+    """The sign with which a measured force (n,) adds to the actuator's; -1 with the reason."""
+    left = {s: explain_force(u + s * f, x, h).left for s in (1.0, -1.0)}
     if left[-1.0] < SURELY_LESS * left[1.0]:
         return -1.0, f"{1 - left[-1.0] / left[1.0]:.0%} less of the forces unexplained"
     return 1.0, None
@@ -249,7 +222,7 @@ def _choose_signs(
         total = u + better * f
         with_hand = explain_force(total, x, h)
     turned = with_hand.explained > DRIVES and is_turned(total, x, h)
-    if turned and not (hand is None and _pulls_back(u, x, h)):
+    if turned:
         survey.channels["position"]["sign"] = -1
         if "velocity" in survey.channels:
             survey.channels["velocity"]["sign"] = -1

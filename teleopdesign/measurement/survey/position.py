@@ -11,6 +11,7 @@ import numpy as np
 
 from ...base.units import measures, si_factor
 from ..column_names import (
+    is_wanted,
     likeness,
     why_no_unit,
 )
@@ -46,8 +47,8 @@ from .derivative import (
 )
 from .force_entry import describe_code
 from .forces import score_beside
-from .refusals import error_without_position, has_only_speeds
-from .roles import as_likely, first_of, is_no_position, score_of
+from .refusals import error_without_position
+from .roles import as_likely, first_of, is_nameless, is_no_position, score_of
 from .set_point import lags, may_be_set_point
 
 #: part of a step by which readings at the end of a range may lie beside a grid of rounded steps
@@ -89,8 +90,10 @@ def find_position(survey: Survey, choices: Choices, file: str) -> tuple[str, str
         if alike := as_likely(scores, best):
             motions = ((n, velocities[n], flat[n]) for n in (best, *alike))
             best = first_of({n: score_beside(survey, n, v, x) for n, v, x in motions})
+        # a velocity of no column's motion is that of a body whose position is not in the log
+        speeds = (n for n, c in moving.items() if n != best and is_velocity(c) and not is_wanted(n))
         shown = velocities[best] is not None or best in followed
-        if not shown and has_only_speeds(moving[best], moving):
+        if is_nameless(moving[best]) and not shown and any(speeds):
             raise error_without_position(survey, moving, file, best)
         _note_choice(survey, best, scores, velocities[best], followed)
     else:

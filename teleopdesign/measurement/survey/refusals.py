@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from ...base.errors import ExperimentError
 from ..column_names import is_wanted, likeness
@@ -13,7 +13,6 @@ from .content import (
     Survey,
     SurveyedColumn,
     columns_in_use,
-    is_unit_of,
     moves,
     reasons,
     rises,
@@ -33,18 +32,6 @@ def tells_forces(survey: Survey) -> bool:
     return bool(2.0 * band_of_fit(h) * seconds >= FEWEST_VALUES)
 
 
-def has_only_speeds(column: SurveyedColumn, moving: Mapping[str, SurveyedColumn]) -> bool:
-    """Whether a log holds a measured velocity, and a column of which nothing says it is a position.
-
-    column: no velocity is its derivative, and it follows no set point
-    The velocity beside a position is its derivative. A velocity of no column's motion is that of a
-    body whose position is not in the log.
-    """
-    if likeness(column.name, "position") > 0.0 or is_unit_of(column.unit, "position"):
-        return False
-    return any(is_velocity(c) and not is_wanted(n) for n, c in moving.items() if n != column.name)
-
-
 def error_without_position(
     survey: Survey, moving: Mapping[str, SurveyedColumn], file: str, nearest: str = ""
 ) -> ExperimentError:
@@ -53,10 +40,23 @@ def error_without_position(
     nearest: a column whose name leaves open what it is, and of which no velocity is the derivative
     """
     why = "no column changes without being a force or velocity by unit or name"
-    how = _how_to_choose_position(moving)
+    speeds = sorted((n for n, c in moving.items() if is_velocity(c)), key=is_wanted)
+    # an input of a logger in V may be any sensor; the integral of a wanted velocity is a set point
+    unsure = [
+        n
+        for n, c in moving.items()
+        if (c.unit is None or c.unit in OF_SENSORS) and likeness(n, "actuator_force") == 0.0
+    ]
+    how = ""
     if nearest:
         why = f"{nearest!r} is none by name or unit, and no velocity is its derivative"
-        how = f"; if it is one: --position {nearest!r}{how.replace(';', '; else', 1)}"
+        how = f"; if it is one: --position {nearest!r}"
+    if speeds:
+        how += f"; {'else ' * bool(nearest)}add a column with the integral of {speeds[0]!r}"
+    elif unsure and not nearest:
+        volts = moving[unsure[0]].unit
+        more = f", then `scale` in experiment.toml, per {volts}" if volts else ""
+        how = f"; if {unsure[0]!r} is the position: --position {unsure[0]!r}{more}"
     still = [name for name, column in survey.columns.items() if not moves(column)]
     constant = f" ({join_names(still)} not changing)" if still else ""
     return ExperimentError(
@@ -65,61 +65,33 @@ def error_without_position(
     )
 
 
-def _how_to_choose_position(moving: Mapping[str, SurveyedColumn]) -> str:
-    """What to do with a log of velocities, or of inputs in V whatever their sensors measure.
-
-    The integral of a desired velocity would be a set point.
-    """
-    speeds = sorted((n for n, c in moving.items() if is_velocity(c)), key=is_wanted)
-    if speeds:
-        return f"; add a column with the integral of {speeds[0]!r}"
-    unsure = (n for n, c in moving.items() if c.unit is None or c.unit in OF_SENSORS)
-    names = [n for n in unsure if likeness(n, "actuator_force") == 0.0]
-    if not names:
-        return ""
-    volts = moving[names[0]].unit
-    more = f", then `scale` in experiment.toml, per {volts}" if volts else ""
-    return f"; if {names[0]!r} is the position: --position {names[0]!r}{more}"
-
-
-def error_without_force(survey: Survey, file: str, velocity: str | None) -> ExperimentError:
-    """The error for a log without a column that could be a force."""
-    position = survey.channels["position"]["column"]
-    return ExperimentError(
-        f"{file}: found no column that could be a force beside {position!r}, "
-        f"found {join_names(survey.columns)}{explain_other_roles(survey, velocity)}"
-        f"{_constant_columns(survey)}{reasons(survey.unread)}"
-    )
-
-
-def error_of_chance(
-    survey: Survey, file: str, best: tuple[str, float], others: str
+def error_without_force(
+    survey: Survey, file: str, velocity: str | None, best: str = ""
 ) -> ExperimentError:
-    """The error where no name tells the force, and the motion shows none.
-
-    best: the most likely column, and the part of it that the motion explains
-    others: all columns that may be the force
-    """
-    name, share = best
-    what = f"the motion explains {max(share, 0.0):.0%} of {name!r}"
+    """The error for a log without a force; best: the likeliest column, without the name of one."""
+    position = survey.channels["position"]["column"]
+    others = {n: why for n, why in survey.relations.items() if survey.columns[n].unit is None}
+    if velocity is not None and not is_velocity(survey.columns[velocity]):
+        others = {velocity: f"a velocity: the derivative of {position!r}", **others}
+    listed = "".join(f"; {n!r} is taken for {why}" for n, why in [*others.items()][:3])
+    if others:
+        listed += f"; --force {next(iter(others))!r} overrules this"
+    if not best:
+        return ExperimentError(
+            f"{file}: found no column that could be a force beside {position!r}, found "
+            f"{join_names(survey.columns)}{listed}{_constant_columns(survey)}"
+            f"{reasons(survey.unread)}"
+        )
+    what = (
+        f"the motion explains {survey.explained[best]:.0%} of {best!r} beyond the place, which a "
+        "second position or a spring follows as well"
+    )
     if not tells_forces(survey):
         what = f"{len(survey.time)} rows are too few to show which column moves the body"
     return ExperimentError(
         f"{file}: found no force: no column has the name or unit of a force, and {what}; "
-        f"--force COLUMN selects one of {others}"
+        f"--force COLUMN selects one of {join_names(survey.explained)}{listed}"
     )
-
-
-def explain_other_roles(survey: Survey, velocity: str | None) -> str:
-    """Which columns without a unit, taken for something else, may be the force, for a message."""
-    others = {n: why for n, why in survey.relations.items() if survey.columns[n].unit is None}
-    if velocity is not None and not is_velocity(survey.columns[velocity]):
-        position = survey.channels["position"]["column"]
-        others = {velocity: f"a velocity: the derivative of {position!r}", **others}
-    if not others:
-        return ""
-    listed = "".join(f"; {n!r} is taken for {why}" for n, why in [*others.items()][:3])
-    return f"{listed}; --force {next(iter(others))!r} overrules this"
 
 
 def _constant_columns(survey: Survey) -> str:
@@ -128,10 +100,9 @@ def _constant_columns(survey: Survey) -> str:
     Each of several logs may hold another constant command.
     """
     free = {n: c for n, c in survey.columns.items() if n not in columns_in_use(survey)}
-    kinds: tuple[tuple[Sequence[str], str, str], ...] = (
-        ([n for n, c in free.items() if not moves(c)], "does not change here", "such a command"),
-        ([n for n, c in free.items() if moves(c) and rises(c.readings)], "only rises", "a ramp"),
-    )
+    still = [n for n, c in free.items() if not moves(c)]
+    ramps = [n for n, c in free.items() if moves(c) and rises(c.readings)]
+    kinds = ((still, "does not change here", "such a command"), (ramps, "only rises", "a ramp"))
     return "".join(
         f"; {join_names(names)} {what}: --force {names[-1]!r} chooses {command}"
         for names, what, command in kinds

@@ -36,6 +36,7 @@ from .derivative import (
     unwrap_column,
     wrap_of,
 )
+from .roles import is_nameless
 from .set_point import has_numbers_of, is_sent_to_places, may_be_set_point
 from .words import says
 
@@ -105,7 +106,7 @@ def _planned_motions(survey: Survey, h: float) -> Iterator[tuple[str, str]]:
     Each is exactly the derivative of the one before. Two such columns alone tell less: the friction
     of a body that goes to and fro at one speed is the derivative of its position, too.
     """
-    columns = {n: c.values for n, c in survey.columns.items() if moves(c) and _is_nameless(c)}
+    columns = {n: c.values for n, c in survey.columns.items() if moves(c) and is_nameless(c)}
     rates = {
         one: {n: derivative_factor(y, v, h)[1] for n, v in columns.items() if n != one}
         for one, y in columns.items()
@@ -115,12 +116,6 @@ def _planned_motions(survey: Survey, h: float) -> Iterator[tuple[str, str]]:
         for two, three in ((b, c) for b in after for c in exact[b] if c != one):
             for name in (one, two, three):
                 yield name, "a motion that was planned: an exact derivative, or integral, of others"
-
-
-def _is_nameless(column: SurveyedColumn) -> bool:
-    """Whether neither unit nor name of a column says anything: "column 3", "CH2"."""
-    kinds = ("position", "velocity", "actuator_force", "interaction_force")
-    return column.unit is None and not any(likeness(column.name, kind) > 0 for kind in kinds)
 
 
 def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[str, str]:

@@ -61,6 +61,12 @@ def _said_by(column: SurveyedColumn) -> dict[str, float]:
     return said | {"wanted": is_wanted(name), "another quantity": is_no_position(column)}
 
 
+def is_nameless(column: SurveyedColumn) -> bool:
+    """Whether neither unit nor name of a column says anything: "column 3", "CH2"."""
+    kinds = ("position", "velocity", "actuator_force", "interaction_force")
+    return column.unit is None and not any(likeness(column.name, kind) > 0 for kind in kinds)
+
+
 def is_named_force(column: SurveyedColumn) -> bool:
     """Whether unit or name are those of a force; "motor" is the name of what has one."""
     named = likeness(column.name, "actuator_force") > 0 and not says_only(column.name, "part")
