@@ -9,7 +9,15 @@ import numpy as np
 from ...base.units import AXES, is_unit, measures, si_factor
 from ..column_names import words_of
 from .content import Choices, Survey, SurveyedColumn, sample_time_of
-from .derivative import NEAR_USUAL, USUAL_COUNTS, derivative_factor, turn_of, unwrap_column, wrap_of
+from .derivative import (
+    DERIVATIVE,
+    NEAR_USUAL,
+    USUAL_COUNTS,
+    derivative_factor,
+    turn_of,
+    unwrap_column,
+    wrap_of,
+)
 from .remarks import counts_per_turn_in
 from .words import SAYS, says
 
@@ -30,7 +38,7 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
     """The axis: the user's choice, or from the unit of the position, or a guess."""
     if choices.axis is not None:
         return choices.axis
-    unit = choices.units.get(position) or survey.columns[position].unit
+    unit = survey.columns[position].unit
     if unit is not None and unit != "counts":
         for axis in ("prismatic", "revolute"):
             if measures(unit, "position", axis):
@@ -99,23 +107,28 @@ def guess_counts_per_turn(
     if (in_header := counts_per_turn_in(survey.remarks)) is not None:
         per_turn, line = in_header
         why = f"a line of the log states {line!r}"
-    elif velocity is not None and (counted := _counts_by_velocity(survey, column, velocity)):
-        per_turn = counted
-        unit = survey.columns[velocity].unit
-        why = f"with them, the derivative agrees with {velocity!r} in {unit}"
+    elif velocity is not None and (size := size_by_velocity(survey, column, velocity)) > 0.0:
+        counted = 2 * math.pi / size
+        usual = min(USUAL_COUNTS, key=lambda one: abs(math.log(counted / one)))
+        if abs(counted / usual - 1.0) < NEAR_USUAL:
+            per_turn, unit = usual, survey.columns[velocity].unit
+            why = f"with them, the derivative agrees with {velocity!r} in {unit}"
     survey.guesses["channels.position.counts_per_turn"] = f"{per_turn:g} counts per turn: {why}"
     return per_turn
 
 
-def _counts_by_velocity(survey: Survey, column: SurveyedColumn, velocity: str) -> float:
-    """Usual counts per turn for which a velocity is the derivative of the position; 0: none."""
+def is_rate(survey: Survey, velocity: str) -> bool:
+    """Whether the unit of a column is that of a velocity on this axis."""
     unit = survey.columns[velocity].unit
-    if unit is None or not measures(unit, "velocity", "revolute"):
+    return unit is not None and measures(unit, "velocity", survey.axis)
+
+
+def size_by_velocity(survey: Survey, column: SurveyedColumn, velocity: str) -> float:
+    """One unit of a position's column in SI, by the derivative that its velocity is; 0: unknown."""
+    speed = survey.columns[velocity]
+    if speed.unit is None or not is_rate(survey, velocity):
         return 0.0
     whole = unwrap_column(column.values, wrap_of(column.values))
-    factor, _ = derivative_factor(whole, survey.columns[velocity].values, sample_time_of(survey))
-    if not factor > 0.0:
-        return 0.0
-    counted = 2 * math.pi / (factor * si_factor(unit, quantity="velocity", axis="revolute"))
-    usual = min(USUAL_COUNTS, key=lambda one: abs(math.log(counted / one)))
-    return usual if abs(counted / usual - 1.0) < NEAR_USUAL else 0.0
+    factor, agree = derivative_factor(whole, speed.values, sample_time_of(survey))
+    size = factor * si_factor(speed.unit, quantity="velocity", axis=survey.axis)
+    return size if agree > DERIVATIVE else 0.0

@@ -45,7 +45,7 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
     """
     axis = survey.axis
     # known as a force, a name may end with a unit of one letter: "F_cmd_N", "i_A"
-    unit = choices.units.get(name) or survey.columns[name].unit or unit_in_name(name, "force", axis)
+    unit = survey.columns[name].unit or unit_in_name(name, "force", axis)
     entry: dict[str, Any] = {"column": name}
     entry |= describe_code(survey, name, key)
     if unit is None and (middle := _middle_of_input(survey.columns[name].readings)):

@@ -16,7 +16,14 @@ from ..column_names import (
     why_no_unit,
 )
 from ..encoder import ENOUGH, grid_of, reading_step
-from .axis_kind import MOST_ANGLE, drives_in_turns, guess_counts_per_turn, is_counter
+from .axis_kind import (
+    MOST_ANGLE,
+    drives_in_turns,
+    guess_counts_per_turn,
+    is_counter,
+    is_rate,
+    size_by_velocity,
+)
 from .content import (
     OF_SENSORS,
     SURE_NAME,
@@ -34,7 +41,6 @@ from .derivative import (
     DERIVATIVE,
     NEAR_USUAL,
     SAME,
-    derivative_factor,
     follows_direction,
     is_no_velocity,
     is_velocity,
@@ -161,8 +167,9 @@ def describe_position(
 ) -> None:
     """Set the channels of position and velocity: unit, wrap, resolution and gear ratio."""
     column, axis = survey.columns[position], survey.axis
+    gear = {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
     entry: dict[str, Any] = {"column": position, **describe_code(survey, position, "position")}
-    unit = choices.units.get(position) or column.unit
+    unit = column.unit
     if unit is None and choices.counts_per_turn is not None:
         unit = "counts"
     if unit is None and axis == "revolute" and is_counter(column):
@@ -192,39 +199,28 @@ def describe_position(
         whole = axis == "revolute" and unit != "counts" and abs(jump / turn - 1.0) < NEAR_USUAL
         entry["unwrap"] = True if whole else jump
         survey.notes.append(f"{position!r} wraps at {jump:g}")
-    if choices.gear_ratio is not None:
-        entry["gear_ratio"] = choices.gear_ratio
-    survey.channels["position"] = entry
-    if velocity is not None:
-        velocity_unit = choices.units.get(velocity) or survey.columns[velocity].unit
-        if velocity_unit is not None and measures(velocity_unit, "velocity", axis):
-            more: dict[str, Any] = (
-                {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
-            )
-            more |= describe_code(survey, velocity, "velocity")
-            survey.channels["velocity"] = {"column": velocity, "unit": velocity_unit, **more}
-            _hold_time_against(survey, column, velocity)
+    survey.channels["position"] = entry | gear
+    if velocity is not None and is_rate(survey, velocity):
+        rate = {"column": velocity, "unit": survey.columns[velocity].unit, **gear}
+        survey.channels["velocity"] = rate | describe_code(survey, velocity, "velocity")
+        _hold_time_against(survey, column, velocity)
 
 
 def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) -> None:
     """Check a guessed unit of time: a position and its velocity show the true time step."""
-    why = survey.guesses.get("channels.time.unit")
-    unit, velocity_unit = (survey.channels[key]["unit"] for key in ("position", "velocity"))
+    why, unit = survey.guesses.get("channels.time.unit"), survey.channels["position"]["unit"]
     if why is None or unit == "counts" or "channels.position.unit" in survey.guesses:
         return
-    h = sample_time_of(survey)
-    whole = unwrap_column(column.values, wrap_of(column.values))
-    factor, agree = derivative_factor(whole, survey.columns[velocity].values, h)
-    slower = factor * si_factor(velocity_unit, quantity="velocity", axis=survey.axis)
+    slower = size_by_velocity(survey, column, velocity)
     slower /= si_factor(unit, quantity="position", axis=survey.axis)
-    if agree < DERIVATIVE or slower <= 0 or abs(slower - 1.0) < SAME:
+    if slower <= 0 or abs(slower - 1.0) < SAME:
         return
     clock = survey.channels["time"]
     tick = 1e6 * si_factor(clock["unit"], quantity="time") / slower
     stated = f"{clock['column']}={float(f'{tick:.3g}'):g} us"
     survey.guesses["channels.time.unit"] = (
-        f"{why}; but {velocity!r} in {velocity_unit} requires steps of {h / slower:.3g} s: "
-        f"--unit {stated!r}"
+        f"{why}; but {velocity!r} in {survey.columns[velocity].unit} requires steps of "
+        f"{sample_time_of(survey) / slower:.3g} s: --unit {stated!r}"
     )
 
 
@@ -252,21 +248,12 @@ def _position_unit(
     survey: Survey, column: SurveyedColumn, velocity: str | None, axis: str
 ) -> tuple[str, str]:
     """A unit for a position without one, from its velocity or from its range; and the reason."""
-    whole = unwrap_column(column.values, wrap_of(column.values))
-    reach = float(np.ptp(whole))
-    if velocity is not None and (velocity_unit := survey.columns[velocity].unit):
-        factor, _ = derivative_factor(
-            whole, survey.columns[velocity].values, sample_time_of(survey)
-        )
-        scale = (
-            factor * si_factor(velocity_unit, quantity="velocity", axis=axis)
-            if measures(velocity_unit, "velocity", axis)
-            else 0.0
-        )
-        for unit in ("deg", "rad", "turns") if axis == "revolute" else ("mm", "m", "um"):
-            if abs(scale / si_factor(unit, quantity="position", axis=axis) - 1.0) < SAME:
-                why = f"with it, the derivative agrees with {velocity!r} in {velocity_unit}"
-                return unit, f"{unit}: {why}"
+    reach = float(np.ptp(unwrap_column(column.values, wrap_of(column.values))))
+    size = 0.0 if velocity is None else size_by_velocity(survey, column, velocity)
+    for unit in ("deg", "rad", "turns") if axis == "revolute" else ("mm", "m", "um"):
+        if abs(size / si_factor(unit, quantity="position", axis=axis) - 1.0) < SAME:
+            in_unit = f"{velocity!r} in {survey.columns[velocity or ''].unit}"
+            return unit, f"{unit}: with it, the derivative agrees with {in_unit}"
     if axis == "revolute" and (drives := drives_in_turns(column.name)):
         return "turns", f"turns: {' and '.join(drives)} drives report turns"
     if axis == "revolute" and (turn := turn_of(column.values)) is not None:
