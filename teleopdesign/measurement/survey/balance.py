@@ -55,7 +55,7 @@ def hand_by_balance(
     x, h = motion
     u = survey.columns[force].values * force_to_si(survey, "actuator_force")
     alone = explain_force(u, x, h)
-    is_free = _has_placeholder(survey)
+    is_free = _is_open(survey, "actuator_force", "torque_constant")
     best: tuple[float, str] | None = None
     for name, column in free.items():
         if name == force or not _may_balance(column, survey.axis, named=is_free):
@@ -103,38 +103,37 @@ def _may_balance(column: SurveyedColumn, axis: str, *, named: bool) -> bool:
 def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choices) -> None:
     """Guess gear ratio, motor constant and lever arm if neither the user nor the log states them.
 
-    Each follows from the factor by which the command balances the force of the hand. If this
-    factor is far from one and none of them is guessed, a note reports it.
+    The one that is open follows from the factor by which the command balances the force of the
+    hand. If this factor is far from one and none of them is guessed, a note reports it.
     """
-    ratio_and_line = gear_ratio_in(survey.remarks) if choices.gear_ratio is None else None
+    stated = gear_ratio_in(survey.remarks) if choices.gear_ratio is None else None
     is_motors = choices.gear_ratio is None and all(
         says(_column_of(survey, key), "motor side") for key in ("position", "actuator_force")
     )
-    if ratio_and_line is not None and is_motors:
-        _guess_gear(survey, ratio_and_line[0], f"a line of the log states {ratio_and_line[1]!r}")
-    elif ratio_and_line is not None:
+    if stated is not None and is_motors:
+        _guess_gear(survey, stated[0], f"a line of the log states {stated[1]!r}")
+    elif stated is not None:
         survey.notes.append(
-            f"a line of the log states {ratio_and_line[1]!r}: if position and force are those of "
-            f"the motor, use --gear-ratio {ratio_and_line[0]:g}"
+            f"a line of the log states {stated[1]!r}: if position and force are those of "
+            f"the motor, use --gear-ratio {stated[0]:g}"
         )
     if "interaction_force" not in survey.channels:
         return
     scale, error = _command_scale(survey, motion)
     if error > KNOWN * scale:
         return
-    at_lever = [
-        key
+    places = (
+        (key, part)
+        for part in ("torque_constant", "lever_arm")
         for key in ("actuator_force", "interaction_force")
-        if f"channels.{key}.lever_arm" in survey.guesses
-    ]
-    if _has_placeholder(survey):
-        _guess_constant(survey, scale, error)
-    elif len(at_lever) == 1:
-        _guess_lever_arm(survey, at_lever[0], scale, error)
-    elif not 1 / FACTOR_OF_ONE < scale < FACTOR_OF_ONE:
+    )
+    still_open = [p for p in places if _is_open(survey, *p)]
+    if still_open and (len(still_open) == 1 or still_open[0][1] == "torque_constant"):
+        _guess_constant(survey, *still_open[0], scale, error)
+    elif not still_open and not 1 / FACTOR_OF_ONE < scale < FACTOR_OF_ONE:
         factor = with_standard_error(scale, error)
         force, hand = (_column_of(survey, f"{k}_force") for k in ("actuator", "interaction"))
-        if is_motors and ratio_and_line is None and scale > 1:
+        if is_motors and stated is None and scale > 1:
             whole = float(round(scale))
             ratio = whole if abs(scale - whole) < 2 * error else float(f"{scale:.3g}")
             _guess_gear(survey, ratio, f"{force!r} balances {hand!r} with a factor of {factor}")
@@ -149,11 +148,10 @@ def _column_of(survey: Survey, key: str) -> str:
     return str(survey.channels[key]["column"])
 
 
-def _has_placeholder(survey: Survey) -> bool:
-    """Whether the command is a current of a motor with unknown motor constant."""
-    constant = survey.channels["actuator_force"].get("torque_constant", {})
-    is_guess = "channels.actuator_force.torque_constant" in survey.guesses
-    return is_guess and constant.get("value") == PLACEHOLDER
+def _is_open(survey: Survey, key: str, part: str) -> bool:
+    """Whether a motor constant or a lever arm is a placeholder."""
+    value = survey.channels[key].get(part, {}).get("value")
+    return f"channels.{key}.{part}" in survey.guesses and value == PLACEHOLDER
 
 
 def _command_scale(survey: Survey, motion: tuple[Array, float]) -> tuple[float, float]:
@@ -168,36 +166,28 @@ def _command_scale(survey: Survey, motion: tuple[Array, float]) -> tuple[float, 
     return 1 / abs(factor), error / factor**2
 
 
-def _guess_constant(survey: Survey, ratio: float, error: float) -> None:
-    force, hand = (survey.channels[k] for k in ("actuator_force", "interaction_force"))
-    constant = force["torque_constant"]
-    per_base = si_factor(constant["unit"].rpartition("/")[0], quantity="force", axis=survey.axis)
-    value, error = ratio / per_base * PLACEHOLDER, error / per_base * PLACEHOLDER
-    constant["value"] = float(f"{value:.4g}")
-    doubt = ""
-    if "channels.interaction_force.unit" in survey.guesses:
-        doubt = f", if the latter is in {hand['unit']}"
-    elif "channels.interaction_force.lever_arm" in survey.guesses:
-        doubt = f", if the latter acts at {PLACEHOLDER:g} m from the axis"
-    survey.guesses["channels.actuator_force.torque_constant"] = (
-        f"{with_standard_error(value, error)} {constant['unit']}: with it, {force['column']!r} "
-        f"balances {hand['column']!r}{doubt}"
-    )
+def _guess_constant(survey: Survey, key: str, part: str, scale: float, error: float) -> None:
+    """Set the motor constant or the lever arm of one force so that the two forces balance.
 
-
-def _guess_lever_arm(survey: Survey, key: str, scale: float, error: float) -> None:
-    """Set the lever arm of the one force in N from the balance with the other, a torque.
-
-    scale: factor of the command in the balance, with the placeholder in place of the lever arm
+    scale: factor of the command in the balance, with the placeholder in place of the constant
     """
+    other = "interaction_force" if key == "actuator_force" else "actuator_force"
     if key == "interaction_force":
         scale, error = 1.0 / scale, error / scale**2
-    names = [_column_of(survey, k) for k in (key, "actuator_force", "interaction_force")]
-    other = names[2] if names[0] == names[1] else names[1]
-    survey.channels[key]["lever_arm"]["value"] = float(f"{scale * PLACEHOLDER:.4g}")
-    survey.guesses[f"channels.{key}.lever_arm"] = (
-        f"{with_standard_error(scale * PLACEHOLDER, error * PLACEHOLDER)} m: at this distance from "
-        f"the axis, {names[0]!r} balances {other!r}"
+    table, base = survey.channels[key][part], PLACEHOLDER
+    if part == "torque_constant":
+        unit = table["unit"].rpartition("/")[0]
+        base /= si_factor(unit, quantity="force", axis=survey.axis)
+    doubt = ""
+    if f"channels.{other}.unit" in survey.guesses:
+        doubt = f", if the latter is in {survey.channels[other]['unit']}"
+    elif _is_open(survey, other, "lever_arm"):
+        doubt = f", if the latter acts at {PLACEHOLDER:g} m from the axis"
+    table["value"] = float(f"{scale * base:.4g}")
+    value = with_standard_error(scale * base, error * base)
+    survey.guesses[f"channels.{key}.{part}"] = (
+        f"{value} {table['unit']}: with it, {_column_of(survey, key)!r} balances "
+        f"{_column_of(survey, other)!r}{doubt}"
     )
 
 
