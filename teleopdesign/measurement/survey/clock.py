@@ -178,28 +178,33 @@ def rate_without_time(
 def _score_times(raw: Mapping[str, Array], log: Log, choices: Choices) -> dict[str, float]:
     """The score of each column that may be the time; a time by its name or unit may also wrap."""
     position = set(words_of(position_by_name(raw, choices)))
+    clocks = {n: x for n, values in raw.items() if (x := _rising(n, values, log)) is not None}
+    clocks = clocks or {n: x for n, x in raw.items() if _is_coarse_time(n, x, log)}
     scores: dict[str, float] = {}
-    for name, values in raw.items():
+    for name, stamps in clocks.items():
         is_called = _is_called_time(name)
-        unit = choices.units.get(name) or _unit_of_time(name, log)
-        stamps = values[np.isfinite(values)]
-        rising = rises(stamps)
-        if not rising and (is_called or is_unit_of(unit, "time")):
-            stamps = unwrap_stamps(stamps)[0]
-            rising = rises(stamps) or are_out_of_order(stamps)
-        if rising or _is_coarse_time(name, stamps, log):
-            scores[name] = score_of(
-                "time",
-                SurveyedColumn(name, stamps, stamps, unit),
-                left=1.0 if is_called else _unevenness(stamps),
-                is_called_a_clock=_is_called_clock(name),
-                is_called_a_signal=not is_called and _names_signal(name, log, choices),
-                rows_share_a_stamp=not rising,
-                counts_the_rows=counts_rows(stamps),
-                is_the_first=not scores,
-                has_words_of_the_position=is_called and not position.isdisjoint(words_of(name)),
-            )
+        scores[name] = score_of(
+            "time",
+            SurveyedColumn(name, stamps, stamps, choices.units.get(name)),
+            left=1.0 if is_called else _unevenness(stamps),
+            is_called_a_clock=_is_called_clock(name),
+            is_called_a_signal=not is_called and _names_signal(name, log, choices),
+            counts_the_rows=counts_rows(stamps),
+            is_the_first=not scores,
+            has_words_of_the_position=is_called and not position.isdisjoint(words_of(name)),
+        )
     return {name: score for name, score in scores.items() if score > -math.inf}
+
+
+def _rising(name: str, values: Array, log: Log) -> Array | None:
+    """The numbers of a column that rises, without gaps; of a time also one that wraps."""
+    stamps = values[np.isfinite(values)]
+    if rises(stamps):
+        return stamps
+    if not is_unit_of(log.units.get(name), "time") and likeness(name, "time") == 0:
+        return None
+    stamps = unwrap_stamps(stamps)[0]
+    return stamps if rises(stamps) or are_out_of_order(stamps) else None
 
 
 def _why_time(name: str, columns: Sequence[str], raw: Mapping[str, Array], choices: Choices) -> str:
