@@ -25,6 +25,8 @@ _SHADES = {"fit": "tab:blue", "check": "tab:orange"}
 #: columns in no channel that are named below the picture; inches that a line of theirs takes
 _UNUSED = 12
 _LINE = 0.16
+#: width of the picture, inches beside, below and above its axes, and part of their height between
+_WIDTH, _MARGINS, _BETWEEN = 9.0, (0.95, 0.55, 0.15, 0.3), 0.45
 _KINDS = {"actuator_force": "force", "interaction_force": "force"}
 
 
@@ -49,8 +51,19 @@ def _draw_survey(survey: Survey, experiment: Experiment) -> Figure:
     keys = [k for k in experiment.channels if experiment.channels[k].body is not None]
     unused = unused_lines(survey.unused)
     height = 1.7 * len(keys) + 2.6 + _LINE * len(unused)
-    figure = Figure(figsize=(9.0, height), layout="constrained")
-    grid = figure.add_gridspec(len(keys) + 1, 1, height_ratios=[1.0] * len(keys) + [1.5])
+    below = _MARGINS[1] + _LINE * len(unused)
+    figure = Figure(figsize=(_WIDTH, height))
+    grid = figure.add_gridspec(
+        len(keys) + 1,
+        1,
+        height_ratios=[1.0] * len(keys) + [1.5],
+        # margins in place of a constrained layout, which draws every text twice more
+        left=_MARGINS[0] / _WIDTH,
+        right=1.0 - _MARGINS[2] / _WIDTH,
+        bottom=below / height,
+        top=1.0 - _MARGINS[3] / height,
+        hspace=_BETWEEN,
+    )
     first = None
     for row, key in enumerate(keys):
         axes = figure.add_subplot(grid[row], sharex=first)
@@ -81,7 +94,7 @@ def _draw_survey(survey: Survey, experiment: Experiment) -> Figure:
     axes.set_xlabel(f"velocity ({unit_of('velocity', survey.axis)})")
     axes.set_ylabel(f"actuator force ({unit_of('force', survey.axis)})")
     if unused:
-        figure.supxlabel("\n".join(unused), x=0.01, ha="left", fontsize=8, parse_math=False)
+        figure.text(0.01, 0.05 / height, "\n".join(unused), fontsize=8, parse_math=False)
     return figure
 
 
