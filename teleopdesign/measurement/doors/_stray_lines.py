@@ -32,18 +32,19 @@ def rows_of_numbers(
     width, separator = len(dialect.header), dialect.separator
     count = bytes_read = again = 0
     cut = False  # whether the last line was left out: the last line of a file may be incomplete
-    numbered = enumerate(stream)
-    while block := list(islice(numbered, _BLOCK)):
-        bytes_read += sum(len(line) for _, line in block)
+    lines_read = 0
+    lines_of = iter(stream)
+    while lines := list(islice(lines_of, _BLOCK)):
+        begin, lines_read = lines_read, lines_read + len(lines)
+        bytes_read += sum(map(len, lines))
         refuse_size(count + again, file)
         if bytes_read > MOST_BYTES:
             raise ExperimentError(f"{file}: found over {MOST_BYTES:.2g} bytes of text")
-        lines = [line for _, line in block]
-        if block[0][0] >= dialect.first and _are_plain_rows(lines, dialect):
-            count, cut = count + len(block), False
+        if begin >= dialect.first and _are_plain_rows(lines, dialect):
+            count, cut = count + len(lines), False
             yield from lines
             continue
-        for k, line in block:
+        for k, line in enumerate(lines, begin):
             bare = line.lstrip()
             if k < dialect.first or not bare or bare.startswith(COMMENTS):
                 continue
@@ -79,8 +80,8 @@ def _are_plain_rows(lines: Sequence[str], dialect: Dialect) -> bool:
     if separator == " " or not {line[:1] for line in lines} <= _BEGINS_A_ROW:
         return False
     cells = {line.count(separator) + 1 for line in lines}
-    odd = ('"', CUT_LETTER, *";" * (separator != ";"))
-    return cells == {len(dialect.header)} and not any(x in line for x in odd for line in lines)
+    odd, text = ('"', CUT_LETTER, *";" * (separator != ";")), "".join(lines)
+    return cells == {len(dialect.header)} and not any(x in text for x in odd)
 
 
 def is_text(line: str, dialect: Dialect) -> bool:
