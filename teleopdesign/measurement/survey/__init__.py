@@ -23,13 +23,13 @@ from ..numbers_in_cells import numbers_of
 from ..record_clock import FEWEST, segments_of
 from ..stamps import unwrap_stamps
 from .axis_kind import axis_of
-from .candidate_clocks import ASSUMED, counts_rows
-from .clock import duration_of, interpolate_columns, numeric_columns, rate_without_time, time_column
-from .content import NONE, Array, Choices, Survey, SurveyedColumn
+from .clock import duration_of, interpolate_columns, numeric_columns, time_column
+from .content import ASSUMED, NONE, Array, Choices, Survey, SurveyedColumn
 from .derivative import wrap_of
 from .forces import describe_forces
 from .position import describe_position, find_position
 from .relations import unused_columns
+from .time_role import counts_rows, rate_without_time
 
 __all__ = [
     "Choices",

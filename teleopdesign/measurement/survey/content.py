@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 SURE_NAME = 0.75
 #: units of a sensor that a scope or an analog input has read, as the package writes them
 OF_SENSORS = ("V", "mV")
+#: rate that is assumed where nothing tells it, Hz: that of most controllers
+ASSUMED = 1000.0
 #: in place of a column's name: the log has none of that quantity
 NONE = "none"
 

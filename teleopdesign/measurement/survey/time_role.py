@@ -1,0 +1,228 @@
+"""Which column of a log is its time, by one score; and the rate of its rows without a time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import product
+
+import numpy as np
+
+from ...base.units import measures, si_factor
+from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text, words_of
+from ..doors._log import Log
+from ..row_places import are_out_of_order
+from ..stamps import unit_of_steps, unwrap_stamps
+from .content import (
+    ASSUMED,
+    SURE_NAME,
+    Array,
+    Choices,
+    SurveyedColumn,
+    is_unit_of,
+    rises,
+    unit_in_log,
+)
+from .derivative import DERIVATIVE, SAME, derivative_factor, has_both_signs, unwrap_column, wrap_of
+from .remarks import sample_rate_in
+from .roles import score_of
+from .words import says, says_only
+
+#: quantities whose units are not those of a time
+QUANTITIES = ("position", "velocity", "force")
+#: least changes of stamps that many rows share, from which they tell the rate of the rows
+FEWEST_CHANGES = 3
+#: part of their median by which times from one row to the next may differ: more uneven ones are no
+#: clock
+UNEVEN = 0.5
+#: fewest rows of a velocity that tells the rate, and part by which a rate with fewer digits may be
+#: off: a derivative along rows tells it no better
+FEWEST, ROUNDED = 60, 0.005
+
+
+def rate_without_time(
+    raw: Mapping[str, Array], log: Log, choices: Choices
+) -> tuple[float, str] | None:
+    """The rate of the rows (Hz) and what tells it.
+
+    That is a line above the table, a column that holds the time from one row to the next, or a
+    velocity beside its position.
+    """
+    if stated := sample_rate_in(log.remarks):
+        return stated[0], f"a line of the log states {stated[1]!r}"
+    for name, values in raw.items():
+        steps = values[np.isfinite(values)]
+        if not says(name, "step of time") or len(steps) < 2 or steps.min() < 0:
+            continue
+        usual = float(np.median(steps))
+        if not usual > 0 or float(np.median(np.abs(steps - usual))) > UNEVEN * usual:
+            continue
+        unit = choices.units.get(name) or unit_of_time(name, log)
+        if unit is None or not measures(unit, "time"):
+            unit, _ = unit_of_steps(np.cumsum(steps))
+        rate = float(f"{1.0 / (usual * si_factor(unit, quantity='time')):.4g}")
+        return rate, f"{name!r} holds the usual time from one row to the next"
+    return _rate_of_velocity(raw, log, choices)
+
+
+def score_times(raw: Mapping[str, Array], log: Log, choices: Choices) -> dict[str, float]:
+    """The score of each column that may be the time; a time by its name or unit may also wrap."""
+    position = set(words_of(position_by_name(raw, choices)))
+    clocks = {n: x for n, values in raw.items() if (x := _rising(n, values, log)) is not None}
+    clocks = clocks or {n: x for n, x in raw.items() if _is_coarse_time(n, x, log)}
+    scores: dict[str, float] = {}
+    for name, stamps in clocks.items():
+        is_called = is_called_time(name)
+        scores[name] = score_of(
+            "time",
+            SurveyedColumn(name, stamps, stamps, choices.units.get(name)),
+            left=1.0 if is_called else _unevenness(stamps),
+            is_called_a_clock=_is_called_clock(name),
+            is_called_a_signal=not is_called and _names_signal(name, log, choices),
+            counts_the_rows=counts_rows(stamps),
+            is_the_first=not scores,
+            has_words_of_the_position=is_called and not position.isdisjoint(words_of(name)),
+        )
+    return {name: score for name, score in scores.items() if score > -math.inf}
+
+
+def _rising(name: str, values: Array, log: Log) -> Array | None:
+    """The numbers of a column that rises, without gaps; of a time also one that wraps."""
+    stamps = values[np.isfinite(values)]
+    if rises(stamps):
+        return stamps
+    if not is_unit_of(log.units.get(name), "time") and likeness(name, "time") == 0:
+        return None
+    stamps = unwrap_stamps(stamps)[0]
+    return stamps if rises(stamps) or are_out_of_order(stamps) else None
+
+
+def why_time(name: str, columns: Sequence[str], raw: Mapping[str, Array], choices: Choices) -> str:
+    """Why a column is the time, where its name alone does not say so; else "".
+
+    columns: all that may be the time
+    """
+    first = columns[0]
+    if not is_called_time(name):
+        most = "the column that rises most evenly"
+        return f"it is {'the first column that always rises' if name == first else most}"
+    before = columns[: columns.index(name)]
+    alike = [n for n in before if likeness(n, "time") == likeness(name, "time") > 0]
+    beside = position_by_name(raw, choices)
+    return f"of two clocks, {alike[0]!r} has no word of {beside!r}" if alike else ""
+
+
+def is_called_time(name: str) -> bool:
+    return likeness(name, "time") > 0 or _is_called_clock(name)
+
+
+def _unevenness(x: Array) -> float:
+    """Median deviation of a column's steps from their median, over it; 1 where that is zero."""
+    steps = np.diff(x)
+    usual = float(np.median(steps))
+    return float(np.median(np.abs(steps - usual))) / usual if usual > 0 else 1.0
+
+
+def _is_coarse_time(name: str, values: Array, log: Log) -> bool:
+    """Whether a column is a time by its name or unit, in which many rows share a stamp."""
+    timed = is_unit_of(unit_of_time(name, log), "time")
+    if not timed and likeness(name, "time") < SURE_NAME:
+        return False
+    steps = np.diff(values[np.isfinite(values)])
+    return bool(np.all(steps >= 0)) and int(np.count_nonzero(steps)) >= FEWEST_CHANGES
+
+
+def _names_signal(name: str, log: Log, choices: Choices) -> bool:
+    """Whether a column that rises is a ramp or the way of a body, by its unit or its name.
+
+    A letter tells nothing: "i" may count the rows.
+    """
+    words = words_of(name)
+    unit = choices.units.get(name) or log.units.get(name) or unit_in_name(name)
+    if words and unit != "counts" and any(is_unit_of(unit, q) for q in QUANTITIES):
+        return True
+    kinds = ("position", "velocity", "actuator_force")
+    return any(len(w) > 1 and likeness(w, k) >= SURE_NAME for w in words for k in kinds)
+
+
+def unit_of_time(name: str, log: Log) -> str | None:
+    """The unit of a column if it is a time: of its file, in its name, or all of it: "Sekunden"."""
+    unit = unit_of_text(bare_name(name))
+    return (
+        log.units.get(name)
+        or unit_in_name(name, "time")
+        or (unit if is_unit_of(unit, "time") else None)
+    )
+
+
+def _is_called_clock(name: str) -> bool:
+    """Whether a name consists only of a unit of time, or is that of a clock."""
+    return is_unit_of(unit_of_text(bare_name(name)), "time") or says_only(name, "clock")
+
+
+def _rate_of_velocity(
+    raw: Mapping[str, Array], log: Log, choices: Choices
+) -> tuple[float, str] | None:
+    """The rate at which a velocity is the derivative of a position, Hz, and why; None: no other.
+
+    Names or units say which are a position and a velocity.
+    """
+    known = {n: choices.units.get(n) or log.units.get(n) or unit_in_log(n, log.names) for n in raw}
+    moving = {n: x for n, x in raw.items() if len(x) >= FEWEST and np.ptp(x) > 0}
+    places, speeds = (
+        [n for n in moving if likeness(n, q) > 0 or is_unit_of(known[n], q)]
+        for q in ("position", "velocity")
+    )
+    best, pair = (0.0, DERIVATIVE), ("", "")
+    for place, speed in product(places, (n for n in speeds if likeness(n, "position") == 0)):
+        x, v, scale = moving[place], moving[speed], _scale(known[place], known[speed])
+        if len(x) != len(v) or scale is None:
+            continue
+        whole = unwrap_column(x, wrap_of(x))
+        factor, agree = derivative_factor(whole, v, 1 / ASSUMED)
+        if agree > best[1] and has_both_signs(whole, v, 1 / ASSUMED):
+            best, pair = (factor * scale, agree), (place, speed)
+    if not best[0] > 0 or abs(best[0] - 1.0) < SAME:
+        return None
+    rates = [float(f"{ASSUMED * best[0]:.{digits}g}") for digits in (1, 2, 3)]
+    rate = next((r for r in rates if abs(r / (ASSUMED * best[0]) - 1.0) < ROUNDED), rates[-1])
+    same = "" if all(map(known.get, pair)) else f", if it is in the unit of {pair[0]!r} per second"
+    return rate, f"{pair[1]!r} is the derivative of {pair[0]!r} at this rate{same}"
+
+
+def _scale(of_place: str | None, of_speed: str | None) -> float | None:
+    """Units of a speed over those of a position, in SI; None: they do not belong together."""
+    if of_place is None or of_speed is None:
+        return 1.0
+    for axis in ("revolute", "prismatic"):
+        fits = measures(of_place, "position", axis) and measures(of_speed, "velocity", axis)
+        if fits and of_place != "counts":
+            speed = si_factor(of_speed, quantity="velocity", axis=axis)
+            return speed / si_factor(of_place, quantity="position", axis=axis)
+    return None
+
+
+def counts_rows(x: Array) -> bool:
+    """Whether a column is the number of each row."""
+    return bool(np.all(np.diff(x[np.isfinite(x)]) == 1.0))
+
+
+def position_by_name(raw: Mapping[str, Array], choices: Choices) -> str:
+    """The column that is stated as the position, or most likely one by its name."""
+    if choices.position is not None:
+        return choices.position
+    return max(raw, key=_likeness_of_position)
+
+
+def _likeness_of_position(name: str) -> float:
+    """How surely a name is that of a measured position; a set point is named alike."""
+    return likeness(name, "position") - 0.6 * is_wanted(name)
+
+
+def busiest_clock(log: Log, raw: Mapping[str, Array], choices: Choices) -> str:
+    """The clock of the position, among several clocks of a log."""
+    if choices.position is not None:
+        return log.clocks[choices.position]
+    scores = {n: _likeness_of_position(n.rpartition(".")[2]) for n in raw if n in log.clocks}
+    best = max(scores, key=lambda n: (scores[n], len(raw[n])))
+    return log.clocks[best]
