@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from itertools import permutations
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -133,7 +133,9 @@ def _followed_columns(
     free = [
         n for n in may_be if likeness(n, "position") < SURE_NAME and may_be_set_point(moving[n])
     ]
-    return {n: m for n, m in permutations(free, 2) if lags(flat[n], flat[m])}
+    ahead = [n for n in may_be if n in free or is_wanted(n)]
+    pairs = ((n, m) for n, m in product(free, ahead) if n != m)
+    return {n: m for n, m in pairs if lags(flat[n], flat[m])}
 
 
 def _note_choice(
