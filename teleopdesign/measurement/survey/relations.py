@@ -146,39 +146,30 @@ def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Surve
         return "only rises, as a second clock or a counter does"
     if survey.is_stated:
         return "not among the columns that are stated"
-    return (
-        _explain_by_name(column, survey)
-        or survey.relations.get(name)
-        or _explain_no_force(column, survey)
-    )
-
-
-def _explain_by_name(column: SurveyedColumn, survey: Survey) -> str | None:
-    """What name and unit say of a signal that is neither position, velocity nor force."""
-    name, unit, position = column.name, column.unit, survey.channels["position"]["column"]
+    position = survey.channels["position"]["column"]
     if of_another_axis(name, position, survey.columns):
         return f"of another axis than {position!r}: --position chooses the axis"
-    kinds = [q for q in ("position", "velocity", "force") if is_unit_of(unit, q)]
-    if unit is not None and is_unit(unit) and not kinds:
-        return f"in {unit}: no position, velocity or force"
-    if is_another_quantity(name) and not kinds:
+    is_force = is_unit_of(column.unit, "force")
+    if is_another_quantity(name) and not is_force:
         return (
             "its name is not that of a position, velocity or force; for a pressure that acts on "
             "the body: "
             f'interaction_force = {{ column = "{name}", unit = "N", scale = N per unit of it }}'
         )
-    if is_wanted(name) and "force" not in kinds:
+    if is_wanted(name) and not is_force:
         return "a desired value, not a measured one"
-    return "by its name a difference, such as the error of a controller" * says(name, "difference")
+    if says(name, "difference"):
+        return "by its name a difference, such as the error of a controller"
+    return survey.relations.get(name) or _explain_no_force(column, survey)
 
 
 def _explain_no_force(column: SurveyedColumn, survey: Survey) -> str:
     """What a column is that might be a force: a velocity, or explained too little."""
     name, position = column.name, survey.channels["position"]["column"]
     x = survey.columns[position].values
+    x = unwrap_column(x, wrap_of(x))
     # a voltage is nearly in proportion to the speed
     may_agree = not is_no_velocity(column)
-    x = unwrap_column(x, wrap_of(x))
     if may_agree and rate_agreement(x, column.values, sample_time_of(survey)) > DERIVATIVE:
         if "velocity" in survey.channels:
             return f"a second velocity for {position!r}"
@@ -190,9 +181,8 @@ def _explain_no_force(column: SurveyedColumn, survey: Survey) -> str:
             return f"a {quantity}, but not that of {position!r}"
     force = survey.channels["actuator_force"]["column"]
     share, best = (survey.explained.get(n) for n in (name, force))
-    beside = "" if best is None else f", and {max(best, 0.0):.0%} of {force!r}"
-    explained = f": the motion explains {max(share or 0.0, 0.0):.0%} of it{beside}"
-    explained = explained if share is not None else ""
+    beside = "" if best is None else f", and {best:.0%} of {force!r}"
+    explained = "" if share is None else f": the motion explains {share:.0%} of it{beside}"
     if likeness(name, "actuator_force") >= SURE_NAME:
         return f"a second force beside {force!r}{explained}"
     return f"its name is not that of a force{explained}"
