@@ -35,11 +35,20 @@ FORCE_NAME = 0.85
 
 
 def lags(column: Array, other: Array) -> bool:
-    """Whether a column has the numbers of another one, and these a row later rather than earlier.
+    """Whether a column has the numbers of another one, only later.
 
-    The delay may be less than a row, as that of a position behind the path that a drive plans.
+    The delay may be less than a row, as that of a position behind the path that a drive plans: then
+    the numbers agree a row later rather than a row earlier.
     """
-    return has_numbers_of(column, other) and _apart(column, other, 1) < _apart(other, column, 1)
+    if not has_numbers_of(column, other):
+        return False
+    later, earlier = (
+        [_apart(*pair, k) for k in _delays(len(column))]
+        for pair in ((column, other), (other, column))
+    )
+    if _apart(column, other, 0) < min(*later, *earlier):
+        return later[0] < earlier[0]
+    return min(later) < min(earlier)
 
 
 def is_sent_to_places(position: Array, column: SurveyedColumn) -> bool:
