@@ -8,13 +8,7 @@ from dataclasses import replace
 
 from ...base.units import si_factor
 from ..column_names import likeness
-from ..first_guess import (
-    LEAST_LEFT,
-    SURELY_LESS,
-    explain_force,
-    is_turned,
-    left_in_turn,
-)
+from ..first_guess import LEAST_LEFT, SURELY_LESS, explain_force, is_turned, left_in_turn
 from .axes import of_another_axis, stand_together
 from .balance import current_that_acted, hand_by_balance, scale_by_balance
 from .content import (
@@ -29,19 +23,10 @@ from .content import (
 )
 from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si, state_scatter
-from .refusals import (
-    error_without_force,
-    tells_forces,
-)
+from .refusals import error_without_force, tells_forces
 from .relations import possible_forces, relations_of
-from .roles import as_likely, is_named_force, score_of
+from .roles import AS_LIKELY, as_likely, is_named_force, score_of
 from .words import says
-
-#: part of a column that the motion may explain by chance; a column with less counts as a force only
-#: with the name or unit of a force
-CHANCE = 0.1
-#: part of a column that the motion explains, from which physics shows that the column is the force
-DRIVES = 0.3
 
 
 def describe_forces(
@@ -146,7 +131,7 @@ def _find_driving_force(
     elif likeness(force, "actuator_force") < SURE_NAME or not is_named_force(free[force]):
         share = survey.explained[force]
         if not is_named_force(free[force]):
-            if share < CHANCE or not tells_forces(survey):
+            if AS_LIKELY * (1.0 - share) > 1.0 or not tells_forces(survey):
                 raise error_without_force(survey, file, velocity, force)
         why = f"{force!r} is read as the actuator's force: the motion explains {share:.0%} of it"
     elif others := as_likely(scores, force):
@@ -221,8 +206,7 @@ def _choose_signs(
             )
         total = u + better * f
         with_hand = explain_force(total, x, h)
-    turned = with_hand.explained > DRIVES and is_turned(total, x, h)
-    if turned:
+    if is_turned(total, x, h):
         survey.channels["position"]["sign"] = -1
         if "velocity" in survey.channels:
             survey.channels["velocity"]["sign"] = -1

@@ -22,7 +22,8 @@ from ..first_guess import LEAST_LEFT
 from .content import SURE_NAME, SurveyedColumn, is_unit_of, kinds_of
 from .words import says, says_only
 
-#: odds below which two columns are equally likely: what names and relations say is known no better
+#: odds below which two columns, or a force and none, are equally likely: what names and relations
+#: say is known no better
 AS_LIKELY = 1.25
 
 
