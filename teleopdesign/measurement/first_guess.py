@@ -43,9 +43,6 @@ _BOTH_WAYS = 0.1
 #: supply current of a servo; 0.99 of a constant force with noise. Sizes of dry friction alone are
 #: constant in motion, and reach 0.9
 SURELY_LESS = 0.8
-#: least part of a signal that a relation is taken to leave: what is nearer is as good, since
-#: filters, delays and digits of a log leave a hundredth
-LEAST_LEFT = 0.01
 #: a force that depends on position counts only if it leaves less than this part of the squares
 MOSTLY = 0.5
 
@@ -106,7 +103,7 @@ def explain_force(force: Array, position: Array, sample_time: float) -> FirstGue
 
 def explain_forces(pairs: Sequence[tuple[Array, Array]], sample_time: float) -> FirstGuess:
     """As `explain_force`, over several stretches; pairs: (force, position) of each stretch."""
-    all_of_them = [_stretch((force, place), place, sample_time) for force, place in pairs]
+    all_of_them = [stretch_of((force, place), place, sample_time) for force, place in pairs]
     stretches = [s for s in all_of_them if s is not None]
     if not stretches:
         return _NOTHING
@@ -123,32 +120,6 @@ def explain_forces(pairs: Sequence[tuple[Array, Array]], sample_time: float) -> 
     return FirstGuess(m, c, b, explained, of_each, left)
 
 
-def left_in_turn(force: Array, position: Array, sample_time: float) -> tuple[float, float]:
-    """Part of a force (n,) that its place leaves, and part of that which the motion leaves.
-
-    Place: a cubic of the position, which a spring, a weight or a second reading of the position
-    follows. Motion: inertia, friction and damping beside it. Where the place leaves less than a
-    hundredth, friction must be certain, and brake where the place pulls back: a reading that is
-    late has friction of the other sign.
-    """
-    stretch = _stretch((force, position), position, sample_time)
-    if stretch is None:
-        return 1.0, 1.0
-    columns, (target, place) = stretch
-    place = (place - place.mean()) / max(float(np.ptp(place)), np.finfo(float).tiny)
-    powers = np.stack([columns[3], place, place**2, place**3])
-    of_place = _least_squares(powers, target, sample_time)
-    of_all = _least_squares(np.vstack([columns[:3], powers]), target, sample_time)
-    whole = float(np.var(target))
-    if of_place is None or of_all is None or not of_place[2] * whole > 0.0:
-        return 1.0, 1.0
-    (factors, errors, left), beside = of_all, of_place[2]
-    brakes = factors[1:3] * np.sign(target @ place) > SURELY * errors[1:3]
-    share = beside**2 / whole
-    is_place = share < LEAST_LEFT and not brakes.any()
-    return min(share, 1.0), 1.0 if is_place else min(left / beside, 1.0) ** 2
-
-
 def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     """Whether the sign of a force (n,) or of its position is inverted, so that friction drives.
 
@@ -162,7 +133,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     does. So where friction brakes, a negative inertia counts only if its sign is certain beside
     such a force, too.
     """
-    stretch = _stretch((force, position), position, sample_time)
+    stretch = stretch_of((force, position), position, sample_time)
     if stretch is None or hardly_varies(force[inner_rows(sample_time)]):
         return False
     (acceleration, direction, velocity, _), (target, place) = stretch
@@ -213,7 +184,7 @@ def rows_each_way(direction: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_
 
 def _may_be_spring(columns: Array, place: Array, force: Array, sample_time: float) -> bool:
     """Whether the sign of the first column's factor is open beside a force of the position."""
-    held = _least_squares(np.vstack([columns, place]), force, sample_time)
+    held = least_squares(np.vstack([columns, place]), force, sample_time)
     return held is not None and bool(np.abs(held[0][0]) <= SURELY * held[1][0])
 
 
@@ -224,7 +195,7 @@ def is_size(force: Array, position: Array, sample_time: float) -> bool:
     explains it where the motion itself does not. A load that depends on the place, such as that of
     a pendulum which is fastest where its load is largest, is left out of both.
     """
-    stretch = _stretch((force, position), position, sample_time)
+    stretch = stretch_of((force, position), position, sample_time)
     if stretch is None or np.min(force) < 0.0 or hardly_varies(force):
         return False
     motion, (target, place) = stretch
@@ -234,7 +205,7 @@ def is_size(force: Array, position: Array, sample_time: float) -> bool:
         return False
     left = []
     for columns in (motion, np.abs(motion)):
-        fit = _least_squares(np.vstack([columns, place, place**2]), target, sample_time)
+        fit = least_squares(np.vstack([columns, place, place**2]), target, sample_time)
         if fit is None:
             return False
         left.append(fit[2])
@@ -252,7 +223,7 @@ def balance_factor(
 
     returns: factor and standard error; (0, inf) where less than a second is in motion
     """
-    stretch = _stretch((force, other), position, sample_time)
+    stretch = stretch_of((force, other), position, sample_time)
     if stretch is None:
         return 0.0, np.inf
     columns, (target, beside) = stretch
@@ -263,7 +234,7 @@ def balance_factor(
     if np.count_nonzero(rows) * sample_time < 1.0:
         return 0.0, np.inf
     columns = np.vstack([columns, -beside])[:, rows]
-    fit = _least_squares(columns, target[rows], sample_time)
+    fit = least_squares(columns, target[rows], sample_time)
     return (0.0, np.inf) if fit is None else (float(fit[0][-1]), float(fit[1][-1]))
 
 
@@ -279,7 +250,7 @@ def hardly_varies(force: Array) -> bool:
         return bool(np.std(force) <= VARIES * np.sqrt(np.mean(force**2)))
 
 
-def _stretch(
+def stretch_of(
     forces: Sequence[Array], position: Array, sample_time: float
 ) -> tuple[Array, Array] | None:
     """Columns of the motion (4, rows) and low-passed forces, without the ends; None: too short."""
@@ -296,15 +267,15 @@ def _stretch(
 def _fit_with_place(
     columns: Array, place: Array, target: Array, sample_time: float
 ) -> tuple[Array, Array, float] | None:
-    """`_least_squares`, with a force proportional to position if this removes most of the rest."""
-    fit = _least_squares(columns, target, sample_time)
-    held = _least_squares(np.vstack([columns, place]), target, sample_time)
+    """`least_squares`, with a force proportional to position if this removes most of the rest."""
+    fit = least_squares(columns, target, sample_time)
+    held = least_squares(np.vstack([columns, place]), target, sample_time)
     if fit is None or held is None or not held[2] ** 2 < MOSTLY * fit[2] ** 2:
         return fit
     return held
 
 
-def _least_squares(
+def least_squares(
     columns: Array, target: Array, sample_time: float
 ) -> tuple[Array, Array, float] | None:
     """Factors of columns (k, rows), their errors, rms of the rest; None: values too large."""

@@ -108,10 +108,19 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
 def survey_logs(logs: Sequence[Log], files: Sequence[str], choices: Choices) -> Survey:
     """Propose the channels that several logs of one experiment share; files: their names.
 
-    The first log is surveyed. If its position does not wrap and that of a later one does, that
-    one is: the readings of a slow run tell nothing of the wrap.
+    The first log that tells position and force is surveyed. If its position does not wrap and that
+    of a later one does, that one is: the readings of a slow run tell nothing of the wrap.
     """
-    survey = survey_log(logs[0], files[0], choices)
+    problems = []
+    for log, file in zip(logs, files, strict=True):
+        try:
+            survey = survey_log(log, file, choices)
+        except ExperimentError as problem:
+            problems.append(problem)
+        else:
+            break
+    else:
+        raise problems[0]
     position = survey.channels["position"]
     if "unwrap" in position:
         return survey

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from ...base.units import si_factor
 from ..column_names import likeness
-from ..first_guess import LEAST_LEFT, SURELY_LESS, explain_force, is_turned, left_in_turn
+from ..first_guess import SURELY_LESS, explain_force, is_turned
 from .axes import of_another_axis, stand_together
 from .balance import current_that_acted, hand_by_balance, scale_by_balance
 from .content import (
@@ -24,8 +24,8 @@ from .content import (
 from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si, state_scatter
 from .refusals import error_without_force, tells_forces
-from .relations import possible_forces, relations_of
-from .roles import AS_LIKELY, as_likely, is_named_force, score_of
+from .relations import left_in_turn, possible_forces, relations_of
+from .roles import AS_LIKELY, LEAST_LEFT, as_likely, is_named_force, score_of
 from .words import says
 
 

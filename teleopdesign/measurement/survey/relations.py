@@ -10,9 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+import numpy as np
+
 from ...base.units import is_unit
 from ..column_names import is_another_quantity, is_wanted, likeness, words_of
 from ..doors._log import Log
+from ..encoder import SURELY
+from ..first_guess import least_squares, stretch_of
 from ..law_of_readings import is_copy
 from .axes import of_another_axis, same_but_axis
 from .content import (
@@ -36,7 +40,7 @@ from .derivative import (
     unwrap_column,
     wrap_of,
 )
-from .roles import is_nameless
+from .roles import LEAST_LEFT, is_nameless
 from .set_point import has_numbers_of, is_sent_to_places, may_be_set_point
 from .words import says
 
@@ -88,6 +92,32 @@ def _relation(column: SurveyedColumn, position: str, x: Array, speed: Array | No
     ):
         return "a velocity by its name"
     return "an acceleration by its name" if says(name, "acceleration") else None
+
+
+def left_in_turn(force: Array, position: Array, sample_time: float) -> tuple[float, float]:
+    """Part of a force (n,) that its place leaves, and part of that which the motion leaves.
+
+    Place: a cubic of the position, which a spring, a weight or a second reading of the position
+    follows. Motion: inertia, friction and damping beside it. Where the place leaves less than a
+    hundredth, friction must be certain, and brake where the place pulls back: a reading that is
+    late has friction of the other sign.
+    """
+    stretch = stretch_of((force, position), position, sample_time)
+    if stretch is None:
+        return 1.0, 1.0
+    columns, (target, place) = stretch
+    place = (place - place.mean()) / max(float(np.ptp(place)), np.finfo(float).tiny)
+    powers = np.stack([columns[3], place, place**2, place**3])
+    of_place = least_squares(powers, target, sample_time)
+    of_all = least_squares(np.vstack([columns[:3], powers]), target, sample_time)
+    whole = float(np.var(target))
+    if of_place is None or of_all is None or not of_place[2] * whole > 0.0:
+        return 1.0, 1.0
+    (factors, errors, left), beside = of_all, of_place[2]
+    brakes = factors[1:3] * np.sign(target @ place) > SURELY * errors[1:3]
+    share = beside**2 / whole
+    is_place = share < LEAST_LEFT and not brakes.any()
+    return min(share, 1.0), 1.0 if is_place else min(left / beside, 1.0) ** 2
 
 
 def possible_forces(survey: Survey, *used: str | None) -> dict[str, SurveyedColumn]:

@@ -18,10 +18,12 @@ from importlib.resources import files
 
 from ...base.units import is_unit
 from ..column_names import is_another_quantity, is_wanted, likeness
-from ..first_guess import LEAST_LEFT
 from .content import SURE_NAME, SurveyedColumn, is_unit_of, kinds_of
 from .words import says, says_only
 
+#: least part of a signal that a relation is taken to leave: what is nearer is as good, since
+#: filters, delays and digits of a log leave a hundredth
+LEAST_LEFT = 0.01
 #: odds below which two columns, or a force and none, are equally likely: what names and relations
 #: say is known no better
 AS_LIKELY = 1.25
@@ -31,7 +33,7 @@ AS_LIKELY = 1.25
 def _odds() -> Mapping[str, Mapping[str, float]]:
     text = (files(__package__) / "roles.toml").read_text(encoding="utf-8")
     return {
-        role: {said: math.log(odds) if odds > 0 else -math.inf for said, odds in table.items()}
+        role: {key: math.log(odds) if odds > 0 else -math.inf for key, odds in table.items()}
         for role, table in tomllib.loads(text).items()
     }
 
@@ -42,24 +44,26 @@ def score_of(role: str, column: SurveyedColumn, *, left: float = 1.0, **more: fl
     left: part of a signal that the relation of the role leaves unexplained
     more: what relations to other columns say, 0 to 1, by keys of `roles.toml` with "_" for blanks
     """
-    said = _said_by(column) | {key.replace("_", " "): value for key, value in more.items()}
-    logs = (odds * said[key] for key, odds in _odds()[role].items() if said.get(key))
+    evidence = _evidence_in(column) | {key.replace("_", " "): value for key, value in more.items()}
+    logs = (odds * evidence[key] for key, odds in _odds()[role].items() if evidence.get(key))
     return sum(logs) - math.log(min(max(left, LEAST_LEFT), 1.0))
 
 
-def _said_by(column: SurveyedColumn) -> dict[str, float]:
+def _evidence_in(column: SurveyedColumn) -> dict[str, float]:
     """What name and unit of a column say, by the keys of `roles.toml`: 0 to 1."""
     name, kinds = column.name, kinds_of(column)
     quantities = ("time", "position", "velocity", "actuator_force", "interaction_force")
-    said = {f"name of {_noun(q)}": likeness(name, q) for q in quantities}
+    evidence = {f"name of {_noun(q)}": likeness(name, q) for q in quantities}
     if says_only(name, "part"):
-        said["name of an actuator force"] = 0.0
+        evidence["name of an actuator force"] = 0.0
     # the load that a servo on a bus reports is that of its motor
-    if said["name of an interaction force"] < SURE_NAME or column.code:
-        said["name of an interaction force"] = 0.0
-    said |= {f"unit of {_noun(q)}": float(q in kinds) for q in ("position", "velocity", "force")}
-    said |= {word: float(says(name, word)) for word in ("difference", "voltage")}
-    return said | {"wanted": is_wanted(name), "another quantity": is_no_position(column)}
+    if evidence["name of an interaction force"] < SURE_NAME or column.code:
+        evidence["name of an interaction force"] = 0.0
+    evidence |= {
+        f"unit of {_noun(q)}": float(q in kinds) for q in ("position", "velocity", "force")
+    }
+    evidence |= {word: float(says(name, word)) for word in ("difference", "voltage")}
+    return evidence | {"wanted": is_wanted(name), "another quantity": is_no_position(column)}
 
 
 def is_nameless(column: SurveyedColumn) -> bool:
