@@ -18,9 +18,10 @@ from ...base.sentences import with_standard_error
 from ...base.units import measures, si_factor
 from ..column_names import is_wanted, likeness
 from ..first_guess import balance_factor, explain_force
-from .content import SURE_NAME, Array, Choices, Survey, SurveyedColumn
+from .content import NONE, SURE_NAME, Array, Choices, Survey, SurveyedColumn
 from .force_entry import PLACEHOLDER, force_to_si
 from .remarks import gear_ratio_in
+from .roles import score_of
 from .words import says
 
 #: a column without a clear name counts as the force of the hand if it leaves at most this part of
@@ -44,46 +45,56 @@ ONE_SIDE = 0.1
 LATE = 4
 
 
-def hand_by_balance(
-    survey: Survey, free: Mapping[str, SurveyedColumn], force: str, motion: tuple[Array, float]
+def find_hand(
+    survey: Survey,
+    free: Mapping[str, SurveyedColumn],
+    force: str,
+    motion: tuple[Array, float],
+    choices: Choices,
 ) -> str | None:
-    """The force of the hand by its balance with the command, if names do not decide; else None.
-
-    The motion requires `k command + hand`. The column must explain a good part of what the motion
-    leaves of the command alone, with a factor of one where the scale of the command is known.
-    """
-    x, h = motion
-    u = survey.columns[force].values * force_to_si(survey, "actuator_force")
-    alone = explain_force(u, x, h)
-    is_free = _is_open(survey, "actuator_force", "torque_constant")
-    best: tuple[float, str] | None = None
+    """The force of the hand: stated, or by its name, or by its balance with the command."""
+    if choices.interaction_force is not None:
+        return None if choices.interaction_force == NONE else choices.interaction_force
+    scores: dict[str, float] = {}
     for name, column in free.items():
-        if name == force or not _may_balance(column, survey.axis, named=is_free):
-            continue
-        other = column.values
-        if column.unit:
-            other = other * si_factor(column.unit, quantity="force", axis=survey.axis)
-        factor, _ = balance_factor(u, other, x, h)
-        if not is_free and not 1 / FACTOR_OF_ONE < abs(factor) < FACTOR_OF_ONE:
-            continue
-        whole = explain_force(u + (factor if is_free else math.copysign(1.0, factor)) * other, x, h)
-        # a command that was logged twice cancels itself: the motion explains no more of the rest
-        if (
-            whole.left**2 > BALANCES * alone.left**2
-            or 1 - whole.explained > BALANCES * (1 - alone.explained)
-            or best is not None
-            and best[0] < whole.left
-        ):
-            continue
-        best = whole.left, name
-    if best is None:
+        if name != force:
+            is_called = likeness(name, "interaction_force") >= SURE_NAME
+            left = 1.0 if is_called else _left_by_balance(survey, column, motion)
+            scores[name] = score_of("interaction_force", column, left=left)
+    hand = max(scores, key=lambda n: scores[n], default="")
+    if not hand or scores[hand] < -math.log(BALANCES):
         return None
-    left, name = best
-    survey.guesses["channels.interaction_force.column"] = (
-        f"{name!r} is read as the force of the hand: with it, the motion leaves "
-        f"{1 - (left / alone.left) ** 2:.0%} less of the command {force!r} unexplained"
-    )
-    return name
+    if likeness(hand, "interaction_force") < SURE_NAME:
+        survey.guesses["channels.interaction_force.column"] = (
+            f"{hand!r} is read as the force of the hand: with it, the motion leaves "
+            f"{1 - math.exp(-scores[hand]):.0%} less of the command {force!r} unexplained"
+        )
+    return hand
+
+
+def _left_by_balance(survey: Survey, column: SurveyedColumn, motion: tuple[Array, float]) -> float:
+    """Part of what the motion leaves of the command that it leaves of `k command + hand`.
+
+    Where the scale of the command is known, the factor is one.
+    """
+    is_free = _is_open(survey, "actuator_force", "torque_constant")
+    if not _may_balance(column, survey.axis, named=is_free):
+        return 1.0
+    name = _column_of(survey, "actuator_force")
+    u = survey.columns[name].values * force_to_si(survey, "actuator_force")
+    other = column.values
+    if column.unit:
+        other = other * si_factor(column.unit, quantity="force", axis=survey.axis)
+    factor, _ = balance_factor(u, other, *motion)
+    if not is_free and not 1 / FACTOR_OF_ONE < abs(factor) < FACTOR_OF_ONE:
+        return 1.0
+    alone = explain_force(u, *motion)
+    factor = factor if is_free else math.copysign(1.0, factor)
+    whole = explain_force(u + factor * other, *motion)
+    if not alone.left > 0.0 or not alone.explained < 1.0:
+        return 1.0
+    # a command that was logged twice cancels itself: the motion explains no more of the rest
+    return max((whole.left / alone.left) ** 2, (1 - whole.explained) / (1 - alone.explained))
 
 
 def _may_balance(column: SurveyedColumn, axis: str, *, named: bool) -> bool:

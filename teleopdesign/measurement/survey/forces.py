@@ -10,9 +10,8 @@ from ...base.units import si_factor
 from ..column_names import likeness
 from ..first_guess import SURELY_LESS, explain_force, is_turned
 from .axes import of_another_axis, stand_together
-from .balance import current_that_acted, hand_by_balance, scale_by_balance
+from .balance import current_that_acted, find_hand, scale_by_balance
 from .content import (
-    NONE,
     SURE_NAME,
     Array,
     Choices,
@@ -56,9 +55,7 @@ def describe_forces(
     # in the unit of the log: the balance of forces does not depend on the scale of the motion
     motion = x, h
     same_axis = {n: c for n, c in free.items() if not of_another_axis(n, position, survey.columns)}
-    hand = _find_hand(same_axis, force, choices)
-    if hand is None and choices.interaction_force is None:
-        hand = hand_by_balance(survey, same_axis, force, motion)
+    hand = find_hand(survey, same_axis, force, motion, choices)
     if hand is not None:
         survey.channels["interaction_force"] = describe_force(
             survey, hand, "interaction_force", choices
@@ -160,14 +157,6 @@ def _is_for_constant(column: SurveyedColumn) -> bool:
     if column.unit is not None:
         return column.unit in ("A", "mA", "V")
     return says(column.name, "current")
-
-
-def _find_hand(free: Mapping[str, SurveyedColumn], force: str, choices: Choices) -> str | None:
-    if choices.interaction_force is not None:
-        return None if choices.interaction_force == NONE else choices.interaction_force
-    scores = {n: likeness(n, "interaction_force") for n in free if n != force}
-    best = max(scores, key=lambda n: scores[n], default=None)
-    return best if best is not None and scores[best] >= SURE_NAME else None
 
 
 def _position_to_si(survey: Survey) -> float:
