@@ -67,8 +67,10 @@ def describe_forces(
 
 def score_beside(survey: Survey, position: str, velocity: str | None, x: Array) -> float:
     """The score of the other columns beside a position x (n,): one is a force, others its place."""
-    h = sample_time_of(survey)
-    trial = replace(survey, relations=dict(relations_of(survey, position, velocity, x)))
+    h, columns = sample_time_of(survey), survey.columns
+    own = {n: c for n, c in columns.items() if not of_another_axis(n, position, columns)}
+    trial = replace(survey, columns=own)
+    trial.relations = dict(relations_of(trial, position, velocity, x))
     free = possible_forces(trial, position, velocity)
     left = {n: left_in_turn(c.values, x, h) for n, c in free.items()}
     trial.explained = {n: 1.0 - by_motion for n, (_, by_motion) in left.items()}
@@ -76,7 +78,7 @@ def score_beside(survey: Survey, position: str, velocity: str | None, x: Array) 
     places = [
         math.log(max(by_place, LEAST_LEFT))
         for n, (by_place, _) in left.items()
-        if not is_named_force(free[n]) and not of_another_axis(n, position, survey.columns)
+        if not is_named_force(free[n])
     ]
     return max(forces.values(), default=-math.inf) - sum(places)
 
