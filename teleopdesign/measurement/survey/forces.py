@@ -68,8 +68,8 @@ def describe_forces(
 def score_beside(survey: Survey, position: str, velocity: str | None, x: Array) -> float:
     """The score of the other columns beside a position x (n,): one is a force, others its place."""
     h, columns = sample_time_of(survey), survey.columns
-    own = {n: c for n, c in columns.items() if not of_another_axis(n, position, columns)}
-    trial = replace(survey, columns=own)
+    beside = {n: c for n, c in columns.items() if not of_another_axis(n, position, columns)}
+    trial = replace(survey, columns=beside)
     trial.relations = dict(relations_of(trial, position, velocity, x))
     free = possible_forces(trial, position, velocity)
     left = {n: left_in_turn(c.values, x, h) for n, c in free.items()}

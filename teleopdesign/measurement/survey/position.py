@@ -16,6 +16,7 @@ from ..column_names import (
     why_no_unit,
 )
 from ..encoder import ENOUGH, grid_of, reading_step
+from .axes import of_another_axis
 from .axis_kind import (
     MOST_ANGLE,
     drives_in_turns,
@@ -113,17 +114,24 @@ def find_position(survey: Survey, choices: Choices, file: str) -> tuple[str, str
 def _velocity_of(
     name: str, moving: Mapping[str, SurveyedColumn], flat: Mapping[str, Array], h: float
 ) -> str | None:
-    """The most likely column that is the derivative of another one; None: there is none."""
-    scores: dict[str, tuple[float, float]] = {}
-    for other, column in moving.items():
-        if other == name or is_no_velocity(column):
-            continue
-        agree = rate_agreement(flat[name], column.values, h)
-        if agree < DERIVATIVE:
-            continue
-        if is_velocity(column) or not follows_direction(flat[name], column.values, h):
-            scores[other] = score_of("velocity", column, left=1.0 - agree), agree
-    return max(scores, key=lambda n: scores[n], default=None)
+    """The most likely column that is the derivative of another one; None: there is none.
+
+    Those of another axis by their names are looked at where no other is the derivative.
+    """
+    others = {n: c for n, c in moving.items() if n != name and not is_no_velocity(c)}
+    apart = {n for n in others if of_another_axis(n, name, moving)}
+    for group in (others.keys() - apart, apart):
+        scores: dict[str, tuple[float, float]] = {}
+        for other in (n for n in others if n in group):
+            column = others[other]
+            agree = rate_agreement(flat[name], column.values, h)
+            if agree < DERIVATIVE:
+                continue
+            if is_velocity(column) or not follows_direction(flat[name], column.values, h):
+                scores[other] = score_of("velocity", column, left=1.0 - agree), agree
+        if scores:
+            return max(scores, key=scores.__getitem__)
+    return None
 
 
 def _followed_columns(
