@@ -38,6 +38,10 @@ TOGETHER = {
     "design": "a diagnosis of the rod",
     "report": "a diagnosis of the rod",
     "unexplained": "a fit of the rod",
+    "test_export_command": "a diagnosis of the short rod",
+    "test_first_screen": "a diagnosis of the short rod",
+    "test_report_command": "a diagnosis of the short rod",
+    "test_simulate_command": "a diagnosis of the short rod",
     "test_dependencies": "syntax trees",
     "test_import_circles": "syntax trees",
     "test_imports": "syntax trees",
@@ -89,6 +93,25 @@ def all_trees():
         every = learnable.TREES
         patch.setattr(learnable, "TREES", 5)
         yield every
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_picture():
+    """`teleopdesign new` draws no picture, which is a third of its time; `picture` has it drawn."""
+    from teleopdesign.show.figures import log
+
+    drawn = {name: getattr(log, name) for name in ("draw_survey", "save_survey")}
+    with pytest.MonkeyPatch.context() as patch:
+        for name in drawn:
+            patch.setattr(log, name, lambda *arguments: None)
+        yield drawn
+
+
+@pytest.fixture
+def picture(no_picture, monkeypatch):
+    """`teleopdesign new` draws its picture."""
+    for name, draw in no_picture.items():
+        monkeypatch.setattr(f"teleopdesign.show.figures.log.{name}", draw)
 
 
 @pytest.fixture

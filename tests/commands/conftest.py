@@ -1,6 +1,8 @@
 """What tests of commands share: a copy of the rod, cut short, and a catalogue of few effects."""
 
 import shutil
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 
 import pytest
@@ -27,6 +29,26 @@ def few(monkeypatch):
 def rod(short_rod, tmp_path):
     """A copy of it."""
     return Path(shutil.copytree(short_rod, tmp_path / "rod"))
+
+
+@pytest.fixture(scope="session")
+def diagnosed(short_rod, tmp_path_factory):
+    """(folder with the rod and with its answer in a folder of its own, the long text of it)"""
+    from teleopdesign.cli import main
+
+    folder, text = tmp_path_factory.mktemp("diagnosed"), StringIO()
+    rod = shutil.copytree(short_rod, folder / "rod")
+    (folder / "saved").mkdir()
+    options = ["--json", str(folder / "saved" / "answer.json"), "--verbose"]
+    with redirect_stdout(text):
+        assert main(["diagnose", str(rod), "--only", "stribeck", "spring", *options]) == 0
+    return folder, text.getvalue()
+
+
+@pytest.fixture
+def answer(diagnosed, rod, tmp_path):
+    """A copy of that answer, beside a copy of the rod, where it says that the rod is."""
+    return Path(shutil.copytree(diagnosed[0] / "saved", tmp_path / "saved")) / "answer.json"
 
 
 @pytest.fixture

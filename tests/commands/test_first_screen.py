@@ -16,8 +16,7 @@ def test_the_verdict_stands_first_and_the_screen_has_twelve_lines(short_rod, cap
     assert ("stribeck_velocity = " in "\n".join(lines)) == (only == "stribeck")
 
 
-def test_how_the_log_was_read_and_the_model_stand_in_the_long_text(short_rod, capsys):
-    assert main(["diagnose", str(short_rod), "--only", "stribeck", "--verbose"]) == 0
-    text = capsys.readouterr().out
+def test_how_the_log_was_read_and_the_model_stand_in_the_long_text(diagnosed):
+    _, text = diagnosed
     assert "Record fit.csv.gz" in text and "device.inertia = " in text
     assert text.index("fit error") < text.index("verdict: effects_missing: stribeck at device")
