@@ -1,6 +1,6 @@
 """What all tests share: how examples are drawn, one diagnosis of the shipped rod, two test devices.
 
-Under CI the property-based tests draw the same examples each time; elsewhere new ones: fifty where
+Under CI the property-based tests draw the same examples each time; elsewhere new ones: thirty where
 a test says no other number. None has a deadline: on a loaded machine it would measure the load.
 The truth simulator of tests/hidden can be imported everywhere.
 """
@@ -21,14 +21,19 @@ from teleopdesign.diagrams import haptic_interface
 
 sys.path.insert(0, str(Path(__file__).parent / "hidden"))
 
+# what one process has compiled to bytecode, the others and the next run need not compile again:
+# half of the time of collecting the tests
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
 # objects between two looks for garbage. Python's own 700 suit a small heap: here looking took two
 # thirds of the time of parsing the package, and a tenth of symbolic work
 gc.set_threshold(50_000, 20, 20)
 
 #: both would measure the load of the machine: a time for each example, and for drawing the first
 TIMELESS = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
-settings.register_profile("ci", derandomize=True, max_examples=50, **TIMELESS)
-settings.register_profile("here", max_examples=50, **TIMELESS)
+settings.register_profile("ci", derandomize=True, max_examples=30, **TIMELESS)
+settings.register_profile("here", max_examples=30, **TIMELESS)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
 
 #: folder or file of tests -> what it shares with others and costs seconds: they stay together

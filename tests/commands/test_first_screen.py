@@ -5,7 +5,14 @@ import pytest
 from teleopdesign.cli import main
 
 
-@pytest.mark.parametrize(("only", "verdict"), [("stribeck", "effects_missing"), ("spring", "und")])
+@pytest.mark.parametrize(
+    ("only", "verdict"),
+    [
+        ("stribeck", "effects_missing"),
+        # looks for a curve in place of a law
+        pytest.param("bias", "undecided", marks=pytest.mark.slow),
+    ],
+)
 def test_the_verdict_stands_first_and_the_screen_has_twelve_lines(short_rod, capsys, only, verdict):
     assert main(["diagnose", str(short_rod), "--only", only]) == 0
     lines = capsys.readouterr().out.splitlines()
