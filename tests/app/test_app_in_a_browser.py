@@ -106,7 +106,8 @@ def test_from_a_dropped_log_to_the_exported_report(served, short_rod, tmp_path):
         for _ in range(25):
             page.keyboard.press("ArrowLeft")
         page.get_by_text("check span").wait_for()
-        picture(page, folder, "log", settle=3000, full_page=True)  # with the spans anew
+        page.wait_for_timeout(3000)  # the shaded spans are drawn anew
+        picture(page, folder, "log", full_page=True)
         press(page, "Make the experiment")
         page.get_by_text("swing_experiment is created").wait_for()
         press(page, "Open")
