@@ -7,22 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from teleopdesign import EFFECTS
-
 FEW = ("coulomb", "viscous", "stribeck", "presliding", "bias", "spring")
 
 
 @pytest.fixture
-def few(monkeypatch):
+def few(choose_from):
     """A catalogue of few effects, so that a diagnosis takes a second."""
-    from teleopdesign import effects
-
-    known = effects.catalogue
-    monkeypatch.setattr(
-        effects,
-        "catalogue",
-        lambda extra=(): {n: e for n, e in known(extra).items() if n in FEW or n not in EFFECTS},
-    )
+    choose_from(FEW)
 
 
 @pytest.fixture
