@@ -1,6 +1,6 @@
 """What all tests share: how examples are drawn, one diagnosis of the shipped rod, two test devices.
 
-Under CI the property-based tests draw the same examples each time; elsewhere new ones: fifty where
+Under CI the property-based tests draw the same examples each time; elsewhere new ones: thirty where
 a test says no other number. None has a deadline: on a loaded machine it would measure the load.
 The truth simulator of tests/hidden can be imported everywhere.
 """
@@ -21,14 +21,19 @@ from teleopdesign.diagrams import haptic_interface
 
 sys.path.insert(0, str(Path(__file__).parent / "hidden"))
 
+# what one process has compiled to bytecode, the others and the next run need not compile again:
+# half of the time of collecting the tests
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
 # objects between two looks for garbage. Python's own 700 suit a small heap: here looking took two
 # thirds of the time of parsing the package, and a tenth of symbolic work
 gc.set_threshold(50_000, 20, 20)
 
 #: both would measure the load of the machine: a time for each example, and for drawing the first
 TIMELESS = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
-settings.register_profile("ci", derandomize=True, max_examples=50, **TIMELESS)
-settings.register_profile("here", max_examples=50, **TIMELESS)
+settings.register_profile("ci", derandomize=True, max_examples=30, **TIMELESS)
+settings.register_profile("here", max_examples=30, **TIMELESS)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
 
 #: folder or file of tests -> what it shares with others and costs seconds: they stay together
@@ -38,6 +43,10 @@ TOGETHER = {
     "design": "a diagnosis of the rod",
     "report": "a diagnosis of the rod",
     "unexplained": "a fit of the rod",
+    "test_export_command": "a diagnosis of the short rod",
+    "test_first_screen": "a diagnosis of the short rod",
+    "test_report_command": "a diagnosis of the short rod",
+    "test_simulate_command": "a diagnosis of the short rod",
     "test_dependencies": "syntax trees",
     "test_import_circles": "syntax trees",
     "test_imports": "syntax trees",
@@ -89,6 +98,25 @@ def all_trees():
         every = learnable.TREES
         patch.setattr(learnable, "TREES", 5)
         yield every
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_picture():
+    """`teleopdesign new` draws no picture, which is a third of its time; `picture` has it drawn."""
+    from teleopdesign.show.figures import log
+
+    drawn = {name: getattr(log, name) for name in ("draw_survey", "save_survey")}
+    with pytest.MonkeyPatch.context() as patch:
+        for name in drawn:
+            patch.setattr(log, name, lambda *arguments: None)
+        yield drawn
+
+
+@pytest.fixture
+def picture(no_picture, monkeypatch):
+    """`teleopdesign new` draws its picture."""
+    for name, draw in no_picture.items():
+        monkeypatch.setattr(f"teleopdesign.show.figures.log.{name}", draw)
 
 
 @pytest.fixture

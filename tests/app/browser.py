@@ -39,8 +39,13 @@ def press(page, name):
     page.keyboard.press("Enter")
 
 
-def picture(page, folder, name, **options):
-    """Take a picture of the page into the test's folder, and where `PICTURES` says."""
+def picture(page, folder, name, settle=0, **options):
+    """Take a picture of the page into the test's folder, and where `PICTURES` says.
+
+    settle: ms in which a page that is for the docs may come to rest
+    """
+    if os.environ.get(PICTURES):
+        page.wait_for_timeout(settle)
     path = folder / f"{name}.png"
     page.screenshot(path=path, **options)
     assert path.stat().st_size > 20_000, "the page is empty"

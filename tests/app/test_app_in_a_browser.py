@@ -77,8 +77,7 @@ def test_units_that_no_name_says_are_typed_by_keyboard(served, tmp_path):
         fill_in(page, "torque constant", "0.05 N*m/A")
         page.get_by_text("placeholder for the motor's constant").wait_for(state="detached")
         page.get_by_text("No column name states the unit of").wait_for(state="detached")
-        page.wait_for_timeout(3000)  # the log is drawn anew
-        picture(page, folder, "units", full_page=True)
+        picture(page, folder, "units", settle=3000, full_page=True)  # the log is drawn anew
         press(page, "Make the experiment")
         page.get_by_text("bare_experiment is created").wait_for()
     channels = load_experiment(folder / "bare_experiment").channels.values()
@@ -143,8 +142,7 @@ def test_from_a_dropped_log_to_the_exported_report(served, tmp_path):
         claims = page.get_by_text("proved: Coulomb friction")  # laid out twice, shown once
         claims.locator("visible=true").first.wait_for()
         page.get_by_role("tab", name="Diagram").click()
-        page.wait_for_timeout(500)  # the tab is shown as chosen
-        picture(page, folder, "design", full_page=True)
+        picture(page, folder, "design", settle=500, full_page=True)
         page.get_by_role("tab", name="Export").click()
         press(page, "Write report, answer, model and script")
         page.get_by_text("written to results/swing_experiment").first.wait_for()

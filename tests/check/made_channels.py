@@ -78,20 +78,8 @@ def slower(signal):
     return ask_of_channels("held_samples", [signal], words="changes only every")
 
 
-def coarse_force(signal):
-    return ask_of_channels("force_readings", [signal], "force steps")
-
-
 def hums(signal, *others):
     return ask_of_channels("force_readings", [signal, *others], "hum")
-
-
-def wrong_steps(signal, *others):
-    return ask_of_channels("stated_accuracy", [signal, *others], "encoder steps")
-
-
-def wrong_noise(signal, *others):
-    return ask_of_channels("stated_accuracy", [signal, *others], "noise")
 
 
 def strange_velocity(position, velocity):

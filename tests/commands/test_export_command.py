@@ -1,25 +1,8 @@
 """An identified model for a simulator, from an answer alone."""
 
-import shutil
-from pathlib import Path
 from xml.etree import ElementTree
 
-import pytest
-
 from teleopdesign.cli import main
-
-
-@pytest.fixture(scope="module")
-def diagnosed(short_rod, tmp_path_factory):
-    path = tmp_path_factory.mktemp("diagnosed") / "answer.json"
-    assert main(["diagnose", str(short_rod), "--only", "stribeck", "--json", str(path)]) == 0
-    return path
-
-
-@pytest.fixture
-def answer(diagnosed, tmp_path):
-    """A copy of that answer."""
-    return Path(shutil.copy(diagnosed, tmp_path))
 
 
 def test_an_answer_becomes_mjcf_and_urdf_beside_it(answer, capsys):

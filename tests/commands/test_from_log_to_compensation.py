@@ -3,6 +3,9 @@
 import json
 import re
 import shlex
+import shutil
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -38,16 +41,26 @@ def write_log(path, seconds):
     np.savetxt(path, rows, fmt="%.8g", delimiter=",", header=",".join(columns), comments="")
 
 
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """(folder with a short log and the experiment "joint" made of it, what was printed)"""
+    folder, text = tmp_path_factory.mktemp("short"), StringIO()
+    write_log(folder / "bench.csv", 6)
+    with redirect_stdout(text):
+        new = ["new", str(folder / "bench.csv"), "--yes", "--output", str(folder / "joint")]
+        assert main(new) == 0
+    return folder, text.getvalue()
+
+
 @pytest.fixture
-def short_log(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    write_log(Path("bench.csv"), 6)
-    assert main(["new", "bench.csv", "--yes", "--output", "joint"]) == 0
+def printed(made, tmp_path, monkeypatch):
+    """What was printed; the working folder is a copy of that folder."""
+    monkeypatch.chdir(shutil.copytree(made[0], tmp_path / "copy"))
+    return made[1]
 
 
-def test_a_guess_is_corrected_by_the_option_that_is_printed(short_log, capsys):
-    output = capsys.readouterr().out
-    (option,) = re.findall(r"otherwise: --torque-constant .*", output)
+def test_a_guess_is_corrected_by_the_option_that_is_printed(printed, capsys):
+    (option,) = re.findall(r"otherwise: --torque-constant .*", printed)
     more = shlex.split(option.removeprefix("otherwise: ").replace("VALUE", "0.05"))
     log = ["new", "bench.csv", "--yes", "--output", "joint", *more]
     assert main(log) == 2
@@ -58,9 +71,8 @@ def test_a_guess_is_corrected_by_the_option_that_is_printed(short_log, capsys):
 
 
 def test_check_says_once_how_the_log_was_read_and_names_no_steps_that_were_interpolated(
-    short_log, capsys
+    printed, capsys
 ):
-    capsys.readouterr()
     assert main(["check", "joint"]) == 0
     output = " ".join(capsys.readouterr().out.split())
     # two records, the fit and the check one

@@ -3,28 +3,10 @@
 import json
 import re
 import shutil
-from pathlib import Path
 
 import pytest
 
 from teleopdesign.cli import main
-
-
-@pytest.fixture(scope="module")
-def diagnosed(short_rod, tmp_path_factory):
-    """A folder with the rod and, in a folder of its own, its answer: diagnosed once."""
-    folder = tmp_path_factory.mktemp("diagnosed")
-    rod = shutil.copytree(short_rod, folder / "rod")
-    (folder / "saved").mkdir()
-    written = folder / "saved" / "answer.json"
-    assert main(["diagnose", str(rod), "--only", "stribeck", "spring", "--json", str(written)]) == 0
-    return folder
-
-
-@pytest.fixture
-def answer(diagnosed, rod, tmp_path):
-    """A copy of that answer, beside a copy of the rod, where it says that the rod is."""
-    return Path(shutil.copytree(diagnosed / "saved", tmp_path / "saved")) / "answer.json"
 
 
 def data_of(page):

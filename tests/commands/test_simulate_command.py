@@ -75,9 +75,7 @@ def test_a_diagram_in_a_file_and_a_figure_of_chosen_signals(tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_the_device_of_a_diagnosis_moves_in_a_hand(short_rod, tmp_path, capsys):
-    answer = tmp_path / "answer.json"
-    assert main(["diagnose", str(short_rod), "--only", "stribeck", "--json", str(answer)]) == 0
+def test_the_device_of_a_diagnosis_moves_in_a_hand(answer, capsys):
     assert main(["simulate", str(answer), "--duration", "0.1", *MOVED]) == 0
     assert "Z_M_friction" in capsys.readouterr().out
 

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import teleopdesign as td
 from teleopdesign.blocks import compose_equation
@@ -44,11 +45,13 @@ def test_law_gives_the_force_that_the_effect_takes(name):
         now = {"position": x, "velocity": v, "direction": math.copysign(1, v), "time": time}
         here = numbers | {SIGNALS[n]: value for n, value in now.items()}
         here |= {SIGNALS["acting_force"]: command, SIGNALS["acceleration"]: 0.0}
-        needed = float((equation.force + equation.friction).subs(here))
+        here = {symbol: sp.Float(value) for symbol, value in here.items()}
+        needed = float((equation.force + equation.friction).xreplace(here))
         read = {"input": x, "velocity": v, "speed": abs(v), "travel_rate": v, "time": time}
         now_read = SimpleNamespace(**read, command=command)
         output = float(stage.law.law(now_read, SimpleNamespace(**stage.values)))
-        acting = equation.acting.subs(here).subs(SIGNALS["command"], command + output)
+        here[SIGNALS["command"]] = sp.Float(command + output)
+        acting = equation.acting.xreplace(here)
         assert float(acting) == pytest.approx(command + needed, rel=1e-9, abs=1e-9)
 
 

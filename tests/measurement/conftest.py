@@ -4,18 +4,6 @@ from measurement.rod_example import COUNT, PAIR, rows, write_rod
 from shared_data import shared_folder
 
 
-@pytest.fixture(autouse=True)
-def no_picture(request, monkeypatch):
-    """`teleopdesign new` draws no picture but where a test wants it: a test reads what it says."""
-    if "picture" not in request.fixturenames:
-        monkeypatch.setattr("teleopdesign.show.figures.log.save_survey", lambda figure, path: None)
-
-
-@pytest.fixture
-def picture():
-    """What a test that wants the picture of `teleopdesign new` has as an argument."""
-
-
 @pytest.fixture
 def rod(tmp_path):
     """A good experiment with one body: the folder."""

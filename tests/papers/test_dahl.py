@@ -15,7 +15,6 @@ from teleopdesign.effects import EFFECTS
 from teleopdesign.simulate import sampled_motion, simulate
 
 LEVEL, STIFFNESS = 0.5, 5e3
-LAMBDA = LEVEL / STIFFNESS
 f, f_c, sigma, v, x, T = sp.symbols("f f_c sigma v x T", real=True)
 
 

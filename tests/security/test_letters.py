@@ -49,17 +49,23 @@ def test_a_name_holds_plain_letters_alone(guard, tmp_path, capsys, name):
     assert one_line(capsys.readouterr().err.strip())
 
 
+def derived_with(name, folder):
+    """What is derived of a diagram whose names are made of this one, with NAME for it."""
+    path = folder / f"{name}.toml"
+    path.write_text(diagram_file(body=name, outside=f"{name}_f", law=f"{name}2"))
+    assert main(["derive", str(path), "--json", str(folder / "d.json")]) == 0
+    return json.loads((folder / "d.json").read_text().replace(name, "NAME"))
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    return derived_with("plain", tmp_path_factory.mktemp("plain"))
+
+
 @pytest.mark.parametrize("word", WORDS)
-def test_a_name_that_means_something_elsewhere_is_a_name(guard, tmp_path, capsys, word):
+def test_a_name_that_means_something_elsewhere_is_a_name(guard, plain, tmp_path, word):
     """The same answer as with plain names."""
-    answers = []
-    for name in (word, "plain"):
-        path = tmp_path / f"{name}.toml"
-        path.write_text(diagram_file(body=f"{name}", outside=f"{name}_f", law=f"{name}2"))
-        assert main(["derive", str(path), "--json", str(tmp_path / "d.json")]) == 0
-        answers.append((tmp_path / "d.json").read_text().replace(name, "NAME"))
-    capsys.readouterr()
-    assert json.loads(answers[0]).keys() == json.loads(answers[1]).keys()
+    assert derived_with(word, tmp_path).keys() == plain.keys()
 
 
 def test_no_signal_is_called_as_the_number_that_expressions_have(guard, tmp_path, capsys):

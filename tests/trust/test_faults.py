@@ -31,8 +31,12 @@ def test_each_planted_fault_has_another_name_and_changes_something(planted):
     assert all(f.old.split() != f.new.split() and f.kind and f.part for f in faults)
 
 
-def test_the_table_tells_of_known_faults_only(planted):
-    assert set(planted.read_table()) <= {f.name for f in planted.read_faults()}
+def test_the_table_tells_of_known_faults_and_of_tests_that_are_there(planted):
+    table = planted.read_table()
+    assert set(table) <= {f.name for f in planted.read_faults()}
+    for one in filter(lambda one: one.suite in ("plain", "slow"), table.values()):
+        file, _, test = one.by.partition("::")
+        assert f"def {test.partition('[')[0]}(" in (planted.ROOT / file).read_text(), one.by
 
 
 def test_a_snippet_is_looked_for_whatever_its_file_and_line_breaks(planted):

@@ -165,16 +165,16 @@ def counted(number, judge, rng):
     assert counts["refuted", True] >= counts["refuted", False]
 
 
-@attacked(4, 80)
+@attacked(4, 50)
 def test_no_wave_beats_small_motion_that_is_proved_passive(seed, number):
     counted(number, small_motion, np.random.default_rng(seed))
 
 
-@attacked(4, 80)
+@attacked(4, 50)
 def test_no_wave_beats_a_late_cancellation_of_inertia_that_is_proved_passive(seed, number):
     counted(number, inertia, np.random.default_rng(seed))
 
 
-@attacked(4, 80)
+@attacked(4, 50)
 def test_no_wave_beats_a_late_one_port_that_evidence_calls_passive(seed, number):
     counted(number, one_port, np.random.default_rng(seed))

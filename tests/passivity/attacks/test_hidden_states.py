@@ -130,7 +130,7 @@ def rests(a, c, poles):
     return bool((np.abs(slow) < GROWS).all()) and len(slow) == np.linalg.matrix_rank(c @ still)
 
 
-@attacked(10, 40)
+@attacked(10, 25)
 def test_no_hidden_state_of_a_plant_is_forgotten(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for k in range(number):
@@ -156,7 +156,7 @@ def test_no_hidden_state_of_a_plant_is_forgotten(seed, number):
     assert counts[True, "proved", "proved"] and counts[False, "unknown", "refuted"]
 
 
-@attacked(8, 100)
+@attacked(8, 60)
 def test_no_hidden_state_of_an_impedance_is_forgotten(seed, number):
     """Dampers with states of their own, one port or two: Z = D + C (s I - A)^-1 C^T is passive."""
     rng, counts = np.random.default_rng(seed), Counter()
@@ -203,7 +203,7 @@ def looped(rng, discrete):
     return diagram, (np.abs(modes).max() - 1) / h if discrete else modes.real.max(), poles, share
 
 
-@attacked(4, 60)
+@attacked(4, 40)
 def test_a_loop_with_a_hidden_mode_that_grows_has_no_margin(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for k in range(number):

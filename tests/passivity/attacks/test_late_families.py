@@ -271,7 +271,7 @@ def points(rng, box):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES, ids=lambda f: type(f).__name__.lower())
-@attacked(0, 6)
+@attacked(0, 4)
 def test_no_late_loop_of_this_kind_is_proved_stable_that_has_a_growing_pole(family, seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):
