@@ -4,6 +4,7 @@ The code below has no file, as at a prompt, in a notebook and in `python -`.
 """
 
 import sys
+from types import ModuleType
 
 import pytest
 
@@ -43,6 +44,12 @@ CHANGES = {
         "= 2",
     ),
 }
+
+
+@pytest.fixture(autouse=True)
+def prompt(monkeypatch):
+    """A prompt has no file; pytest, where it runs the tests itself, has one."""
+    monkeypatch.setitem(sys.modules, "__main__", ModuleType("__main__"))
 
 
 def at_prompt(text):
