@@ -113,7 +113,7 @@ def _drive_by_tone(model: Model, stretch: Stretch, frequency: float) -> Stretch:
     shown = stretch.motion.lowpassed(waves.T).T[stretch.keep]
     for _ in range(PLAN.tone_turns):
         ((residual, _),) = residuals(model, [stretch])
-        if len(residual) < 3:
+        if len(residual) <= shown.shape[1]:
             break
         motion = stretch.motion
         size, *_ = np.linalg.lstsq(shown, residual, rcond=None)
@@ -165,9 +165,9 @@ def _tone_squares(stretch: Stretch, residual: Array, frequency: float) -> float:
 
 def _remove_tone(stretch: Stretch, residual: Array, frequency: float) -> Array:
     """A residual without the tone of this frequency (Hz), of the best amplitude and phase."""
-    if len(residual) < 3:
-        return residual
     waves = _waves(stretch, frequency)[stretch.keep]
+    if len(residual) <= waves.shape[1]:
+        return residual
     size, *_ = np.linalg.lstsq(waves, residual, rcond=None)
     return np.asarray(residual - waves @ size)
 

@@ -99,6 +99,7 @@ def _row(
         fit_error=finite(fit.fit_error),
         check_error=finite(fit.check_error),
         model=fit.model,
+        blind=max(one.blind for one in fit.fits.values()),
         instead_of=None if rung.instead_of is None else rung.instead_of.effect.name,
         alternatives=() if of_joint is None else of_joint.alternatives,
         named=added is not None and added.key in named,

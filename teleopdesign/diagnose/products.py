@@ -120,4 +120,4 @@ def _relative_columns(fit: Fit, names: Sequence[str], values: Array) -> Array:
 
 
 def _power(name: str, power: float) -> str:
-    return name if abs(power - 1.0) < 0.05 else f"{name}^{power:.1f}"
+    return name if f"{power:.1f}" == "1.0" else f"{name}^{power:.1f}"

@@ -73,9 +73,9 @@ class LadderRow(ByValue):
     fit_error: Error
     check_error: Error
     model: Model
-    instead_of: str | None = None
+    blind: Error
     check_error_at_command: Error = math.nan
-    blind: Error = 0.0
+    instead_of: str | None = None
     could_be: tuple[Candidate, ...] | None = None
     alternatives: tuple[Alternative, ...] = ()
     named: bool = False
@@ -129,8 +129,8 @@ class CandidateResult(ByValue):
     probability: Size
     check_error: Error
     parameters: Mapping[str, EstimatedValue]
-    check_error_at_command: Error = math.nan
-    blind: Error = 0.0
+    check_error_at_command: Error
+    blind: Error
     refused: str | None = None
     rho: Annotated[float | None, OMIT] = None
     lambda_: Annotated[float | None, OMIT, At("lambda")] = None

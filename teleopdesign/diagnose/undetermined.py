@@ -22,11 +22,9 @@ from .rung import Rung
 from .statements import Undetermined
 
 #: standard error over value from which a parameter counts as open: then zero and twice the value
-#: both lie within two standard errors
-OPEN = 0.5
-#: a product of open parameters is known far better than each of them, if its relative error is
-#: below this part of the least relative error of the parameters
-PRODUCT = 0.5
+#: both lie in its interval of 95 %. The same part of the least relative error of some parameters is
+#: that of a product that is known far better than each of them
+OPEN = 1.0 / CRITERIA.interval
 
 
 def find_undetermined(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Undetermined, ...]:
@@ -82,7 +80,7 @@ def known_together(fit: Fit, candidate: Candidate) -> str:
     product = product_of(fit, f"{candidate.at}.{candidate.effect.name}")
     if product is None or max(product.errors) < OPEN:
         return ""
-    if product.known >= PRODUCT * min(product.errors):
+    if product.known >= OPEN * min(product.errors):
         return ""
     each = ", ".join(f"{100 * error:.2g} %" for error in product.errors)
     return f"{product} is known within {100 * product.known:.2g} %, each factor only within {each}"
