@@ -147,7 +147,7 @@ def _frequency(parts: Sequence[tuple[Stretch, Array]]) -> float:
         line[stretch.keep] = residual
         power += np.abs(fft.rfft(line, length)) ** 2
     thinned = min(float(np.median(np.diff(s.keep))) for s, _ in parts)
-    power[(grid < 2 / (rows * interval)) | (grid > 0.5 / (thinned * interval))] = 0.0
+    power[(grid < 2 / (rows * interval)) | (2 * grid * thinned * interval > 1)] = 0.0
     step, peak = float(grid[1]), float(grid[int(np.argmax(power))])
 
     def lost(frequency: float) -> float:
@@ -176,12 +176,12 @@ def _share(stretch: Stretch, frequency: float) -> float:
     """Largest share of the power near a frequency (Hz), of three signals of the motion.
 
     The signals are the velocity, its sign and its magnitude: friction of a periodic motion has odd
-    and even harmonics that the velocity lacks.
+    and even harmonics that the velocity lacks. By their window a tone is four lines wide.
     """
     motion = stretch.motion
     n = len(motion.velocity)
     line = 1.0 / (n * motion.sample_time)
-    near = np.abs(np.fft.rfftfreq(n, motion.sample_time) - frequency) <= 3 * line
+    near = np.abs(np.fft.rfftfreq(n, motion.sample_time) - frequency) <= 2 * line
     size = np.abs(motion.velocity)
     parts = []
     for signal in (motion.velocity, np.sign(motion.velocity), size - size.mean()):

@@ -69,13 +69,8 @@ class CandidateEvidence:
             trusted = 0.0 if self.belief is None else self.belief.share**CRITERIA.believing
         if self.from_noise:  # a true effect explains nearly all force above the noise
             trusted *= self.explained
-        return float(
-            np.clip(
-                CRITERIA.true_of_accepted * real * trusted,
-                0.0,
-                1.0 if self.at_most is None else self.at_most,
-            )
-        )
+        alone = max(CRITERIA.true_of_accepted * real * trusted, 0.0)
+        return float(alone if self.at_most is None else min(alone, self.at_most))
 
 
 def evidence_of(end: LadderEnd) -> list[CandidateEvidence]:

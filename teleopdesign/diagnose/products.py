@@ -88,8 +88,7 @@ def are_dependent(columns: Array) -> bool:
     lengths = np.linalg.norm(columns, axis=0)
     if not lengths.all():
         return True
-    sizes = np.linalg.svd(columns / lengths, compute_uv=False)
-    return bool((sizes[-1] / sizes[0]) ** 2 <= 1e-12)
+    return bool(np.linalg.matrix_rank(columns / lengths, rtol=1e-6) < len(lengths))
 
 
 def best_product(columns: Array, errors: Array) -> tuple[Array, float]:
