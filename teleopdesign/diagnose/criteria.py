@@ -23,10 +23,6 @@ class Criteria:
     #: effect what it is differs from zero (one in 30 000 by a normal law; residuals are not quite
     #: normal). Lower: chance gains; higher: short records say nothing
     significance: float = 4.0
-    #: probability by chance up to which moments of one log that agree on an effect count: six agree
-    #: once in 64, seven once in 128. Higher: what acts at a few starts is named; lower: short logs
-    #: say nothing
-    by_chance: float = 0.01
     #: part of the noise floor's square from which a gain counts: while a body is stuck or turns,
     #: its friction is known no better. Lower: the method's errors count; higher: weak effects
     #: are missed

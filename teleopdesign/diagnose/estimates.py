@@ -32,7 +32,7 @@ def fit(model: Model, experiment: Experiment, *, seed: int = 0) -> Model:
     """
     search = search_for(experiment, model, seed=seed)
     fit = estimate_stated(search.stated, search.prepared)
-    if not search.plan.corrected:
+    if not search.is_of_body_in_time:
         return fit.model
     drawn = noise_floor(fit.model, search.prepared, search.generator())
     return correct_fit(search, fit, limit_noise_floor(drawn, fit, Ranking(fit, ()))).model

@@ -23,12 +23,6 @@ class SearchPlan:
     #: ranking each. At each joint of an arm with more joints than that one is followed: a real arm
     #: always leaves more than noise, and with three, six joints took over twice the time
     beam: int = 3
-    #: whether the errors of the readings are taken out of the last fit. Not at a joint of an arm:
-    #: its readings are drawn with those of all joints
-    corrected: bool = True
-    #: whether an effect is barred that stands in for other values of the model, for the noise of
-    #: readings or for a few moments. Not at a joint of an arm: its effects are tested on all joints
-    stand_ins: bool = True
     #: parameters of an effect from which it is searched from more starts. Five: `maxwell_slip`
     many_parameters: int = 5
     #: starts kept after the prediction by one linear step, of an effect linear in its strength; of
@@ -68,8 +62,7 @@ class SearchPlan:
     unexplained: float = 0.1
     #: draws of the parameters of a gap; those that are improved and then followed; evaluations for
     #: each. Of eight wide gaps four ended above 1.4 times the error of a fit from the true values,
-    #: with 200 draws one. A draw takes 5 ms on 6 s of records. 0: none, as at the joints of an arm,
-    #: where it was not measured
+    #: with 200 draws one. A draw takes 5 ms on 6 s of records. 0: none
     draws: int = 200
     draws_kept: int = 4
     draw_evaluations: int = 60
@@ -102,18 +95,8 @@ class SearchPlan:
 
         An arm's records are searched whole, so the plan has the default sizes of windows.
         """
-        plan = replace(self, long=SearchPlan.long, windows=SearchPlan.windows)
-        return replace(
-            plan,
-            beam=self.beam if count <= self.beam else min(self.beam, 1),
-            corrected=False,
-            stand_ins=False,
-            draws=0,
-        )
-
-    def for_curve(self) -> SearchPlan:
-        """The plan for a friction curve, whose readings have no time: no motion is simulated."""
-        return replace(self, corrected=False, stand_ins=False, draws=0)
+        beam = self.beam if count <= self.beam else min(self.beam, 1)
+        return replace(self, long=SearchPlan.long, windows=SearchPlan.windows, beam=beam)
 
     def omissions(self) -> tuple[str, ...]:
         """Parts of the search with `PLAN` that this plan leaves out, in words; empty: none."""
