@@ -139,7 +139,7 @@ def _frequency(parts: Sequence[tuple[Stretch, Array]]) -> float:
         return 0.0
     interval = parts[0][0].motion.sample_time
     rows = max(len(s.motion.time) for s, _ in parts)
-    length = fft.next_fast_len(PLAN.tone_fineness * rows, real=True)
+    length = fft.next_fast_len(2 * rows, real=True)
     grid = fft.rfftfreq(length, interval)
     power = np.zeros(len(grid))
     for stretch, residual in parts:

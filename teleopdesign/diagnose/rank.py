@@ -56,23 +56,12 @@ def _contenders_refined(
     *,
     widths: OpenWidths,
 ) -> list[tuple[Candidate, Fit]]:
-    """The attempts, with fine fits of the best ones.
-
-    The leading attempts are refined first: their fine fits decide which others are close enough.
-    """
-    attempts, refined = list(attempts), set[int]()
-    for contending in (PLAN.leading, PLAN.contending):
-        most = (1.0 + contending) * _least_squares_that_count(attempts, base, widths)
-        chosen = [
-            i
-            for i, (_, fit) in enumerate(attempts)
-            if i not in refined and fit_squares(fit) <= most
-        ]
-        finer = map_on_cores(lambda i: _refine_candidate(attempts[i], worthless, prepared), chosen)
-        for i, attempt in zip(chosen, finer, strict=True):
-            attempts[i] = attempt
-        refined.update(chosen)
-    return attempts
+    """The attempts, with fine fits of the best ones."""
+    most = (1.0 + PLAN.contending) * _least_squares_that_count(attempts, base, widths)
+    chosen = [i for i, (_, fit) in enumerate(attempts) if fit_squares(fit) <= most]
+    finer = map_on_cores(lambda i: _refine_candidate(attempts[i], worthless, prepared), chosen)
+    made = dict(zip(chosen, finer, strict=True))
+    return [made.get(i, attempt) for i, attempt in enumerate(attempts)]
 
 
 def _least_squares_that_count(

@@ -25,9 +25,10 @@ class SearchPlan:
     beam: int = 3
     #: parameters of an effect from which it is searched from more starts. Five: `maxwell_slip`
     many_parameters: int = 5
-    #: starts kept after the prediction by one linear step, of an effect linear in its strength; of
-    #: these one is kept after the first real steps
-    predicted: int = 2
+    #: starts of an effect linear in its strength that are kept after the prediction by one linear
+    #: step; of these one is kept after the first real steps. Of any other effect, of which one step
+    #: says less, twice as many, and these after the first steps; of draws, twice as many, too
+    followed: int = 2
     #: part of the force below which the strength of an effect that a new one needs counts as taken
     #: away. Of 30 simulated springs that slip late in a stroke, a bristle left 86 to 88 % of four
     #: from the usual starts, and leaves 9 to 15 % with the further ones; no error grew by 0.2 %
@@ -36,9 +37,6 @@ class SearchPlan:
     #: effect. Of nine simulated springs beside a bristle, six ended above it (up to 4.5 times its
     #: squares), one with the first two parts, none with three; two smaller ones changed nothing
     smaller: tuple[float, ...] = (0.3, 0.1, 0.03)
-    #: the same of an effect that is linear in no strength: one step says less of it
-    curved_predicted: int = 4
-    curved_stepped: int = 2
     #: the same where hidden states are corrected, or parameters are many: states may still fall out
     #: of step, and squares are rugged. All are followed: the first steps from a good start may all
     #: fail (one search of a gap ended at 43 % with three, at 4 % with six; one of slipping springs
@@ -53,18 +51,15 @@ class SearchPlan:
     #: factors on each parameter of an effect with rugged squares, from which a better place is
     #: sought
     jolts: tuple[float, ...] = (0.85, 1.18)
-    #: most sweeps of such jolts over the parameters
-    sweeps: int = 2
-    #: part of the squares that a sweep must take away for another to follow
+    #: part of the squares that a sweep of such jolts must take away for another to follow
     onward: float = 0.1
     #: part of the squares before that the best candidate leaves at least where a gap is also sought
     #: among draws: there nothing explains the records. A lower limit searches more records twice
     unexplained: float = 0.1
-    #: draws of the parameters of a gap; those that are improved and then followed; evaluations for
-    #: each. Of eight wide gaps four ended above 1.4 times the error of a fit from the true values,
-    #: with 200 draws one. A draw takes 5 ms on 6 s of records. 0: none
+    #: draws of the parameters of a gap, and evaluations that improve each of those followed. Of
+    #: eight wide gaps four ended above 1.4 times the error of a fit from the true values, with 200
+    #: draws one. A draw takes 5 ms on 6 s of records. 0: none
     draws: int = 200
-    draws_kept: int = 4
     draw_evaluations: int = 60
     #: first step of a search without derivatives, in the logarithm of each value: a third of it
     simplex: float = 0.3
@@ -74,15 +69,10 @@ class SearchPlan:
     #: rough fit leaves open
     elsewhere: float = 1e-3
     #: squares on the fit records above the least that a rough fit leaves, as a part of these, up to
-    #: which another candidate is fitted finely at once
-    leading: float = 0.05
-    #: the same above the least that these fine fits leave. A fine fit took away 2.7 % of what a
-    #: rough one left at most, in 136 fits on simulated and real records, but for four: those of the
-    #: candidates that led
+    #: which another candidate is fitted finely. A fine fit took away 2.7 % of what a rough one left
+    #: at most, in 136 fits on simulated and real records, but for four: those of the candidates
+    #: that led
     contending: float = 0.15
-    #: frequencies evaluated for a tone per inverse of the longest stretch: four, so that none falls
-    #: between two
-    tone_fineness: int = 4
     #: turns of finding the force of a tone on one stretch
     tone_turns: int = 4
     #: turns of finding that force and estimating the model beside it
