@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 from ..base.errors import ModelError, unknown
 from ..frequency.confidence import ParameterCovariance
 from ..measurement.filtering import Array
+from ..measurement.friction_curve import points_as_motion
 from ..measurement.prepare import Prepared
 from ..model import Model
+from ..realise.along_motion import residual_along
 from .effort import EFFORTS
 from .fit import Fit, block_numbers, free_parameters, sandwich
 from .solve import solve
@@ -72,3 +74,16 @@ def _with_stated_errors(
     covariance = np.zeros((len(free), len(free)))
     covariance[np.ix_(sensitive, sensitive)] = scaled * np.outer(unit, unit)
     return covariance
+
+
+def friction_at(fit: Fit, velocity: Array) -> tuple[Array, Array]:
+    """Force (n,) that holds a body at these speeds (n,), and its standard error.
+
+    fit: of a friction curve
+    """
+    (place,) = fit.model.bodies
+    names = [fit.model.locate(name)[1] for name in fit.free]
+    motion = points_as_motion(place, "", velocity, np.zeros(len(velocity)))
+    left = residual_along(fit.model.bodies[place], motion, names).residual
+    variance = np.einsum("pn,pq,qn->n", left.tangent, covariance_of(fit), left.tangent)
+    return -left.value, np.sqrt(np.maximum(variance, 0.0))
