@@ -76,10 +76,6 @@ class Criteria:
     #: eight, a spring or a cable's pull on two: (2 + 1)/(8 + 1). Higher: undecided more often;
     #: lower: a spring is called gravity more surely
     rarer: float = 0.3
-    #: part of what is left that a black box may learn where what is left is said not to repeat. A
-    #: tenth: its own errors add as much. Lower: a slow log's scatter is called missing physics;
-    #: higher: physics is called scatter
-    repeats: float = 0.1
     #: rms difference of two motions, of the position over that of the motion about its mean and of
     #: the velocity over the velocity, up to which they are one motion that is made again. Passes of
     #: position-controlled machines differ by 0.0006 to 0.04, different parts of one multisine by
@@ -108,6 +104,11 @@ class Criteria:
     countable: float = 1000.0
     #: probability from which an effect is said to be missing: less likely than not is not named
     named: float = 0.5
+
+    @property
+    def open_error(self) -> float:
+        """Standard error over value from which a parameter is open: its interval holds zero."""
+        return 1.0 / self.interval
 
     @property
     def true_of_others(self) -> float:

@@ -92,7 +92,7 @@ def estimate_from_starts(
     models = make_starts(model, prepared.scales)
     absent = [model.body(at).effect(name) for name, at in model.absent]
     rugged = any(is_rugged(e) for e in absent)
-    wide = rugged or any(len(e.parameters) >= PLAN.many_parameters for e in absent)
+    wide = rugged or any(len(e.parameters) > 2 * PLAN.followed for e in absent)
     kept = PLAN.wide if wide else PLAN.followed
     if base is not None:
         curved = strength_of_new(model) is None

@@ -23,8 +23,6 @@ class SearchPlan:
     #: ranking each. At each joint of an arm with more joints than that one is followed: a real arm
     #: always leaves more than noise, and with three, six joints took over twice the time
     beam: int = 3
-    #: parameters of an effect from which it is searched from more starts. Five: `maxwell_slip`
-    many_parameters: int = 5
     #: starts of an effect linear in its strength that are kept after the prediction by one linear
     #: step; of these one is kept after the first real steps. Of any other effect, of which one step
     #: says less, twice as many, and these after the first steps; of draws, twice as many, too
@@ -37,10 +35,10 @@ class SearchPlan:
     #: effect. Of nine simulated springs beside a bristle, six ended above it (up to 4.5 times its
     #: squares), one with the first two parts, none with three; two smaller ones changed nothing
     smaller: tuple[float, ...] = (0.3, 0.1, 0.03)
-    #: the same where hidden states are corrected, or parameters are many: states may still fall out
-    #: of step, and squares are rugged. All are followed: the first steps from a good start may all
-    #: fail (one search of a gap ended at 43 % with three, at 4 % with six; one of slipping springs
-    #: at 6.5 % with two, at 2.5 % with four)
+    #: the same where hidden states are corrected, or where parameters are more than starts: states
+    #: may fall out of step, and squares are rugged. All are followed: the first steps from a good
+    #: start may all fail (one search of a gap ended at 43 % with three, at 4 % with six; one of
+    #: slipping springs at 6.5 % with two, at 2.5 % with four)
     wide: int = 6
     #: parts of the time by which a log may be late at which the user's model begins, too: 12 and
     #: 35 ms of 50. From none alone, a log late by 8 rows of 2 ms ended at one row
