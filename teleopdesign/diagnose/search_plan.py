@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from ..measurement.experiment import excerpt
 from ..measurement.prepare import Prepared, prepare
+from .effort import EFFORTS
 
 
 @dataclass(frozen=True)
@@ -63,9 +64,6 @@ class SearchPlan:
     simplex: float = 0.3
     #: factor by which draws go beyond the usual starts on both sides
     draws_beyond: float = 3.0
-    #: part of the squares by which two fits must differ to count as two places: ten times what a
-    #: rough fit leaves open
-    elsewhere: float = 1e-3
     #: squares on the fit records above the least that a rough fit leaves, as a part of these, up to
     #: which another candidate is fitted finely. A fine fit took away 2.7 % of what a rough one left
     #: at most, in 136 fits on simulated and real records, but for four: those of the candidates
@@ -77,6 +75,14 @@ class SearchPlan:
     tone_estimates: int = 2
     #: most models that one open question holds: an experiment separates each from the others
     rivals: int = 4
+
+    @property
+    def elsewhere(self) -> float:
+        """Part of the squares by which two fits must differ to count as two places.
+
+        Ten times what a rough fit leaves open.
+        """
+        return 10.0 * EFFORTS.rough.tolerance
 
     def for_joints(self, count: int) -> SearchPlan:
         """The plan for each joint of an arm with `count` joints.
