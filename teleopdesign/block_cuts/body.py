@@ -10,7 +10,7 @@ Forces between bodies are taken at half of the step that the command puts into t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -28,6 +28,7 @@ from ..measurement.experiment import Experiment
 from ..measurement.record import RecordEntry, record_of
 from ..measurement.tables import LogColumns
 from ..model import Model
+from .computer import Placed
 from .cuts import Cut
 from .diagram_experiment import DiagramExperiment, RecordedLog
 from .half_steps import command_of, force_at_half_step, share_of_step
@@ -85,9 +86,12 @@ def _add_up(terms: dict[str, float], more: Mapping[str, float]) -> None:
         terms[name] = terms.get(name, 0.0) + weight
 
 
-def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
+def body_experiment(
+    experiment: DiagramExperiment, cut: Cut, placed: Sequence[Placed] = ()
+) -> Experiment:
     """The experiment of one body that a cut is, under the name of its block.
 
+    placed: effects in the laws of a command that is not recorded
     raises ExperimentError, ModelError: a channel cannot be read as one of a body
     """
     terms, name = forces_on(experiment.diagram, cut), cut.name
@@ -121,7 +125,7 @@ def body_experiment(experiment: DiagramExperiment, cut: Cut) -> Experiment:
     layout = LogLayout(channels, described, experiment.sample_rate)
     records = tuple(
         record_of(
-            _columns(experiment, name, log),
+            _columns(experiment, name, log, placed),
             f"{experiment.folder.name}/{log.file}",
             RecordEntry(log.file, log.use, log.offset_names | rest),
             layout,
@@ -158,12 +162,14 @@ def diagnose_body(
     cut: Cut,
     *,
     known: Mapping[str, Effect] = EFFECTS,
+    placed: Sequence[Placed] = (),
     report: Callable[[str], None],
     **options: Any,
 ) -> Diagnosis:
     """The diagnosis of the body of a cut.
 
     known: effects by name;  options: those of `diagnose.find_missing`
+    placed: effects in the laws of a command that is not recorded
     """
     model = model_of_body(experiment.diagram, cut, known)
     if isinstance(experiment.diagram.block(cut.name), Attached):
@@ -171,7 +177,7 @@ def diagnose_body(
         names = known if among is None else among
         options["among"] = [n for n in names if known[n].role in OF_A_HAND]
     diagnosis = find_missing_in_body(
-        body_experiment(experiment, cut),
+        body_experiment(experiment, cut, placed),
         model,
         progress=lambda line: report(f"{cut.name}: {line}"),
         **options,
@@ -211,16 +217,18 @@ def _value(body: Body, name: str) -> float:
     return body.parameters[name].value
 
 
-def _columns(experiment: DiagramExperiment, moving: str, log: RecordedLog) -> LogColumns:
+def _columns(
+    experiment: DiagramExperiment, moving: str, log: RecordedLog, placed: Sequence[Placed]
+) -> LogColumns:
     """The columns of a log, with forces at half of their steps and a predicted command."""
     half = {
-        f"{name} at half of its step": force_at_half_step(experiment, name, log)
+        f"{name} at half of its step": force_at_half_step(experiment, name, log, placed)
         for name in experiment.recorded
         if share_of_step(experiment, name) is not None
     }
     block = experiment.diagram.block(moving)
     if isinstance(block, Moving) and block.command not in experiment.channels:
-        half[f"predicted {block.command}"] = command_of(experiment, block, log)
+        half[f"predicted {block.command}"] = command_of(experiment, block, log, placed)
     return replace(log.columns, values={**log.columns.values, **half})
 
 

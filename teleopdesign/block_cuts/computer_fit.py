@@ -8,7 +8,6 @@ fit among -1, 0 and 1 rows, the smaller one where both leave the same.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -21,8 +20,8 @@ from ..diagnose.solve import BLOCK
 from ..effects.of_blocks.controllers import ControlEffect
 from ..measurement.filtering import Array, spectrum
 from ..measurement.prepare import TRIM
-from .computer import ComputerPart, Passes, Placed, free_parameters, velocity_of
-from .cuts import COMPUTER
+from .computer import ComputerPart, Passes, Placed, free_parameters
+from .control_rows import ControlFit, ControlRows
 from .diagram_experiment import DiagramExperiment, RecordedLog
 
 #: s of a block that is held out where no record is for checks only
@@ -33,39 +32,14 @@ ROUNDING = 1e-12
 DRAWS = 8
 #: squares over those of the signal below which two shifts leave the same: rounding
 TINY = 1e-16
-_BOUNDS = ("lower", "upper")
 
 
-@dataclass(frozen=True)
-class ControlFit:
-    """Effects of the computer with their values, and what they leave.
-
-    shift: rows by which the log of the command is late
-    residual: use -> residual over the rms of the signal, so that its squares add up to those of
-        the errors;  blocks: use -> number of the block of each row
-    errors: use -> cut -> relative error;  stderr: of each value, SI
-    """
-
-    placed: tuple[Placed, ...]
-    shift: int
-    residual: dict[str, Array]
-    errors: dict[str, dict[str, float]]
-    stderr: tuple[float, ...] = ()
-
-    def error(self, use: str) -> float:
-        """Root mean square of the errors of the cuts."""
-        return float(np.sqrt(np.mean(np.square(list(self.errors[use].values())))))
-
-    @property
-    def squares(self) -> float:
-        return float(np.sum(self.residual["fit"] ** 2))
-
-
-class ControlData:
+class ControlData(ControlRows):
     """The recorded signals of the computer's cuts, low-passed, and the rows that count."""
 
     def __init__(self, part: ComputerPart, rows: Sequence[Passes], bandwidth: float) -> None:
-        self.part, self.rows, self.bandwidth = part, tuple(rows), bandwidth
+        super().__init__(part, rows)
+        self.bandwidth = bandwidth
         self.spectra = [spectrum(_count(r), r.period) for r in self.rows]
         self.gains = [s.lowpass(bandwidth) for s in self.spectra]
         held_out = all(r.use == "fit" for r in self.rows)
@@ -164,7 +138,7 @@ class ControlData:
 
     def estimate(self, before: ControlFit, effect: ControlEffect, at: str) -> ControlFit:
         """The best values of an effect and those before it."""
-        starts = effect.starts(self._samples(at), self.rows[0].period)
+        starts = effect.starts(self.samples(at), self.rows[0].period)
         return self._best([(*before.placed, Placed(effect, at, float(v))) for v in starts])
 
     def base(self) -> ControlFit:
@@ -185,55 +159,20 @@ class ControlData:
         """Least squares over the values, from these ones."""
         from scipy.optimize import least_squares
 
-        unit = np.array([self._unit(p) for p in placed])
+        scaled = self.scaled(placed)
 
-        def placed_at(x: Array) -> list[Placed]:
-            values = (x * unit).tolist()
-            return [Placed(p.effect, p.at, v) for p, v in zip(placed, values, strict=True)]
-
-        def left(x: Array) -> Array:
-            one = self.residuals(self.predictions(placed_at(x)), shift, "fit")
+        def residual(x: Array) -> Array:
+            one = self.residuals(self.predictions(scaled.at(x)), shift, "fit")
             return np.concatenate(list(one.values()))[:: self.thin]
 
-        declared = [p.effect.declared for p in placed]
-        lower, upper = (np.array([getattr(d, b) for d in declared]) / unit for b in _BOUNDS)
-        start = np.clip(np.array([p.value for p in placed]) / unit, lower + 1e-9, upper - 1e-9)
+        steps = [1e-4] * len(placed)
         solved = least_squares(
-            left, start, bounds=(lower, upper), diff_step=[1e-4] * len(start), xtol=1e-6
+            residual, scaled.start, bounds=scaled.bounds, diff_step=steps, xtol=1e-6
         )
         errors = standard_errors(
             np.asarray(solved.jac), solved.fun, self.blocks["fit"][:: self.thin]
         )
-        return self.at(placed_at(solved.x), shift, errors * unit)
-
-    def _unit(self, placed: Placed) -> float:
-        """Scale of a value in a fit: its own size, or a hundredth of what the effect acts on."""
-        return abs(placed.value) or 0.01 * float(np.abs(self._samples(placed.at)).max(initial=1e-9))
-
-    def _samples(self, at: str) -> Array:
-        """Samples on which an effect acts: the command, or what a block makes of recorded rows."""
-        name = self._signal(at)
-        return np.concatenate([self.part.value(r, name) for r in self.rows])
-
-    def _signal(self, at: str) -> str:
-        if at == COMPUTER:
-            return next(c.signal for c in self.part.cuts if COMPUTER in c.blocks)
-        return self.part.diagram.block(at).outputs[0]
-
-    def blind(self, one: Placed, placed: Sequence[Placed]) -> float:
-        """Share of the moving rows in which the law behind an effect has no influence."""
-        if one.effect.passes is None:
-            return 0.0
-        others = [p for p in placed if p.key != one.key]
-        moving, passing = [], []
-        for r in self.rows:
-            samples = self.part.value(r, self._signal(one.at), others)
-            motions = [s for s in r.signals if self.part.diagram.is_position(s)]
-            moves = np.any([velocity_of(r.signals[s], r.period) != 0 for s in motions], axis=0)
-            moving.append(moves | (not motions))
-            passing.append(one.effect.passes(samples, one.value))
-        where = np.concatenate(moving)
-        return 1.0 - float(np.mean(np.concatenate(passing)[where])) if where.any() else 0.0
+        return self.at(scaled.at(solved.x), shift, (errors * scaled.unit).tolist())
 
 
 def _least(squares: dict[int, float]) -> int:

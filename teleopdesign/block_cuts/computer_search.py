@@ -17,7 +17,7 @@ from ..diagnose.evidence import SAME, chance, gain_score
 from ..diagnose.verdict import removed_share
 from ..effects.of_blocks.controllers import CONTROL_EFFECTS
 from .computer import Placed
-from .computer_fit import ControlData, ControlFit
+from .control_rows import ControlFit, ControlRows
 from .cuts import COMPUTER
 
 #: why an effect of which too many rows say nothing is refused
@@ -49,27 +49,43 @@ class ComputerStep:
     """One step of the ladder: what was tried, and the accepted one first among its look-alikes.
 
     accepted: None: nothing was added
+    of_body: (effect, place) of a body in the same cut that explains the records equally well
     """
 
     before: ControlFit
     attempts: tuple[Attempt, ...]
     accepted: Attempt | None
     alike: tuple[Attempt, ...] = ()
+    of_body: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def likes(self) -> tuple[tuple[str, str], ...]:
+        """(effect, place) of what explains the records as well as the accepted effect."""
+        return (*(one.added.key for one in self.alike), *self.of_body)
 
 
 @dataclass(frozen=True)
 class ComputerLadder:
-    """The ladder of the computer's cuts;  floors: cut -> error that rounding alone leaves."""
+    """The ladder of the computer's cuts, or of its laws in the cut of a body.
+
+    floors: cut -> error that sensors and rounding alone leave
+    with_body: whether a body is in the cut; else a right law leaves rounding
+    """
 
     base: ControlFit
     steps: tuple[ComputerStep, ...]
     floors: dict[str, float]
+    with_body: bool = False
+
+    @property
+    def accepted(self) -> tuple[Attempt, ...]:
+        """The accepted effects, in their order."""
+        return tuple(step.accepted for step in self.steps if step.accepted is not None)
 
     @property
     def last(self) -> ControlFit:
         """The fit with every accepted effect."""
-        fits = [step.accepted.fit for step in self.steps if step.accepted is not None]
-        return fits[-1] if fits else self.base
+        return self.accepted[-1].fit if self.accepted else self.base
 
     @property
     def floor(self) -> float:
@@ -88,33 +104,44 @@ def _floor(floors: dict[str, float]) -> float:
 
 
 def climb(
-    data: ControlData, floors: dict[str, float], report: Callable[[str], None]
+    data: ControlRows,
+    floors: dict[str, float],
+    report: Callable[[str], None],
+    *,
+    beside: Callable[[ComputerStep], ComputerStep] | None = None,
 ) -> ComputerLadder:
-    """Add effects of the computer while the check rows support them."""
+    """Add effects of the computer while the check rows support them.
+
+    beside: a step whose effect was accepted, held against the effects of a body in the same cut;
+        None: no body is there
+    """
     base = data.base()
     steps: list[ComputerStep] = []
     here = base
     while len(steps) <= _MOST:
         report(f"effects of the computer, beside {len(here.placed)}")
         step = step_of(data, here, floors)
+        if beside is not None and step.accepted is not None:
+            step = beside(step)
         steps.append(step)
         if step.accepted is None:
             break
         here = step.accepted.fit
-        if here.error("check") ** 2 < (1.0 + CRITERIA.of_floor) * _floor(floors) ** 2:
-            break  # what counts as a gain would leave less than rounding alone
-    ladder = ComputerLadder(base, tuple(steps), floors)
+        enough = CRITERIA.adequate**2 if beside is not None else 1.0 + CRITERIA.of_floor
+        if here.error("check") ** 2 < enough * _floor(floors) ** 2:
+            break  # as much noise may be left, or a gain would leave less than rounding alone
+    ladder = ComputerLadder(base, tuple(steps), floors, beside is not None)
     return replace(ladder, steps=tuple(_with_probabilities(s, ladder) for s in steps))
 
 
-def step_of(data: ControlData, here: ControlFit, floors: dict[str, float]) -> ComputerStep:
+def step_of(data: ControlRows, here: ControlFit, floors: dict[str, float]) -> ComputerStep:
     """Fit every candidate, and accept the best one that the check rows support."""
     there = {p.key for p in here.placed}
     attempts = []
-    for at in data.part.places:
+    for at in data.places:
         for name, effect in CONTROL_EFFECTS.items():
             filters = effect.on_velocity and not data.part.uses_velocity(at)
-            if (name, at) in there or filters:
+            if (name, at) in there or filters or not data.is_candidate(name, at):
                 continue
             fit = data.estimate(here, effect, at)
             score = _score(data, here, fit)
@@ -143,12 +170,12 @@ def _is_alike(one: Attempt, best: Attempt) -> bool:
     )
 
 
-def _score(data: ControlData, before: ControlFit, after: ControlFit) -> float:
+def _score(data: ControlRows, before: ControlFit, after: ControlFit) -> float:
     return gain_score(before.residual["check"], after.residual["check"], data.blocks["check"])
 
 
 def _reason_against(
-    data: ControlData, before: ControlFit, one: Attempt, floors: dict[str, float]
+    data: ControlRows, before: ControlFit, one: Attempt, floors: dict[str, float]
 ) -> str:
     """Why a candidate cannot be accepted; "": it can."""
     floor = _floor(floors)
@@ -191,7 +218,7 @@ def _with_probabilities(step: ComputerStep, ladder: ComputerLadder) -> ComputerS
         # a law without hidden parts leaves rounding alone; where much more is left, the accepted
         # effects stand in for another one
         ends = ladder.base.error("check"), ladder.last.error("check")
-        explains = ends[1] <= _EXPLAINED * ends[0]
+        explains = ladder.with_body or ends[1] <= _EXPLAINED * ends[0]
         trusted = removed_share(ends, floor) ** CRITERIA.believing if explains else 0.0
         blind = [one for one in step.attempts if one.refused == BLIND]
         if any(one.fit.error("check") < accepted.fit.error("check") for one in blind):
@@ -206,9 +233,9 @@ def _with_probabilities(step: ComputerStep, ladder: ComputerLadder) -> ComputerS
 
     attempts = tuple(replace(one, probability=probability(one)) for one in step.attempts)
     by_key = {one.added.key: one for one in attempts}
-    return ComputerStep(
-        step.before,
-        tuple(sorted(attempts, key=lambda one: -one.probability)),
-        None if accepted is None else by_key[accepted.added.key],
-        tuple(by_key[one.added.key] for one in step.alike),
+    return replace(
+        step,
+        attempts=tuple(sorted(attempts, key=lambda one: -one.probability)),
+        accepted=None if accepted is None else by_key[accepted.added.key],
+        alike=tuple(by_key[one.added.key] for one in step.alike),
     )

@@ -121,6 +121,8 @@ def _cut(diagram: Diagram, signal: str, made: _Traced, recorded: Collection[str]
         return f"{unstated[0]} has no values to compare"
     if analog := [b.name for b in made.blocks if isinstance(b, Control) and b.analog]:
         return f"{analog[0]} is analog: only laws in a computer are predicted"
+    if blind := next((s for b in made.blocks for s in _unread(diagram, b, recorded)), None):
+        return f"the computer reads {blind}, which is not recorded: record {blind}"
     bodies = [b for b in made.blocks if isinstance(b, Moving | Attached | Linked)]
     controls = [b for b in made.blocks if isinstance(b, Control)]
     inputs = tuple(s for s in made.inputs if s in recorded)
@@ -147,6 +149,18 @@ def _cut(diagram: Diagram, signal: str, made: _Traced, recorded: Collection[str]
     name = moving[0].name if moving else bodies[0].name
     whole = (COMPUTER,) if controls else ()
     return Cut(name, signal, "body", (*names, *whole), inputs, separating)
+
+
+def _unread(diagram: Diagram, block: Part, recorded: Collection[str]) -> list[str]:
+    """Measured signals that a controller needs and that no record holds."""
+    if not isinstance(block, Control):
+        return []
+    behind = [_trace(diagram, s, recorded) for s in block.inputs if s not in recorded]
+    made = {
+        s for one in behind for b in one.blocks if not isinstance(b, Control) for s in b.outputs
+    }
+    made |= {j.output for j in diagram.junctions if made & set(j.terms)}
+    return [s for s in diagram.measured if s in made and s not in recorded]
 
 
 def _content(block: Part) -> object:

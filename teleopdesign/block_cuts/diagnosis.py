@@ -7,7 +7,7 @@ whole joins their ladders, the largest fall of the error first.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -20,8 +20,9 @@ from ..diagnose.answer import answer
 from ..diagnose.candidates import Candidate
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.verdict import VerdictName
+from .computer import Placed
 from .computer_fit import ControlData
-from .computer_search import Attempt, ComputerLadder
+from .computer_search import Attempt, ComputerLadder, ComputerStep
 from .cuts import Cuts
 from .diagram_experiment import DiagramExperiment
 from .look_alikes import same_effects
@@ -61,7 +62,7 @@ class BlockDiagnosis(Shown, ByValue):
 
     cuts: what is tested, and what is not
     bodies: cut -> diagnosis of its body;  computer: ladder of the other cuts; None: none
-    data: of these cuts
+    data: of these cuts;  joined: cut of a body whose command the laws give -> ladder of the laws
     """
 
     experiment: DiagramExperiment
@@ -69,6 +70,25 @@ class BlockDiagnosis(Shown, ByValue):
     bodies: Mapping[str, Diagnosis]
     computer: ComputerLadder | None
     data: ControlData | None = None
+    joined: Mapping[str, ComputerLadder] = field(default_factory=dict)
+
+    @property
+    def ladders(self) -> tuple[ComputerLadder, ...]:
+        """The ladders of laws: in the cuts of bodies, and in those of the computer."""
+        alone = () if self.computer is None else (self.computer,)
+        return (*self.joined.values(), *alone)
+
+    @property
+    def steps(self) -> tuple[ComputerStep, ...]:
+        """The steps of the ladders of laws."""
+        return tuple(step for ladder in self.ladders for step in ladder.steps)
+
+    @property
+    def placed(self) -> tuple[tuple[Placed, float], ...]:
+        """Effects of laws and free parameters at the end of their ladders, with standard errors."""
+        ends = [ladder.last for ladder in self.ladders]
+        pairs = (pair for fit in ends for pair in zip(fit.placed, fit.stderr, strict=True))
+        return tuple({p.key: (p, error) for p, error in pairs}.values())
 
     @cached_property
     def floors(self) -> dict[str, float]:
@@ -83,18 +103,23 @@ class BlockDiagnosis(Shown, ByValue):
         fit = {name: d.before.fit_error for name, d in self.bodies.items()}
         check = {name: d.before.check_error for name, d in self.bodies.items()}
         waiting: list[list[tuple[Key, dict[str, float], dict[str, float]]]] = []
+        for ladder in self.ladders:
+            fit |= ladder.base.errors["fit"]
+            check |= ladder.base.errors["check"]
         for name, d in self.bodies.items():
+            placed = self.joined[name].accepted if name in self.joined else ()
             waiting.append(
                 [
-                    ((r.added.effect.name, r.added.at), {name: r.fit_error}, {name: r.check_error})
-                    for r in d.rungs[1:]
-                    if r.added is not None
+                    *((a.added.key, a.fit.errors["fit"], a.fit.errors["check"]) for a in placed),
+                    *(
+                        (r.added.key, {name: r.fit_error}, {name: r.check_error})
+                        for r in d.rungs[1:]
+                        if r.added is not None
+                    ),
                 ]
             )
         if self.computer is not None:
-            fit |= self.computer.base.errors["fit"]
-            check |= self.computer.base.errors["check"]
-            accepted = [s.accepted for s in self.computer.steps if s.accepted is not None]
+            accepted = self.computer.accepted
             waiting.append(
                 [(a.added.key, a.fit.errors["fit"], a.fit.errors["check"]) for a in accepted]
             )
@@ -121,11 +146,10 @@ class BlockDiagnosis(Shown, ByValue):
     @property
     def named_in_computer(self) -> tuple[Attempt, ...]:
         """Accepted effects of the computer that are probable enough, without look-alikes."""
-        steps = () if self.computer is None else self.computer.steps
         return tuple(
             s.accepted
-            for s in steps
-            if s.accepted is not None and not s.alike and s.accepted.probability >= CRITERIA.named
+            for s in self.steps
+            if s.accepted is not None and not s.likes and s.accepted.probability >= CRITERIA.named
         )
 
     @property
@@ -135,15 +159,17 @@ class BlockDiagnosis(Shown, ByValue):
         for name, d in self.bodies.items():
             alone = (one for one in d.missing if not self._equal_effects(name, one))
             named |= {(one.effect.name, one.at) for one in alone}
-        return tuple(r.added for r in self.rows if r.added in named and r.added is not None)
+        added = (r.added for r in self.rows if r.added in named and r.added is not None)
+        return tuple(dict.fromkeys(added))
 
     @property
     def adequate(self) -> dict[str, bool]:
         """Cut -> whether what is left of it is noise."""
         made = {name: d.verdict == "model_adequate" for name, d in self.bodies.items()}
+        for name, ladder in self.joined.items():
+            made[name] &= not ladder.accepted
         if self.computer is not None:
-            added = any(s.accepted for s in self.computer.steps)
-            fine = self.computer.is_adequate and not added
+            fine = self.computer.is_adequate and not self.computer.accepted
             made |= dict.fromkeys(self.computer.floors, fine)
         return made
 
@@ -165,10 +191,9 @@ class BlockDiagnosis(Shown, ByValue):
                 keys = [(c.effect.name, c.at) for c in group]
                 keys += [key for c in group for key in self._equal_effects(name, c)]
                 groups.append(tuple(dict.fromkeys(keys)))
-        steps = () if self.computer is None else self.computer.steps
-        for s in steps:
-            if s.accepted is not None and s.alike:
-                groups.append((s.accepted.added.key, *(one.added.key for one in s.alike)))
+        for s in self.steps:
+            if s.accepted is not None and s.likes:
+                groups.append((s.accepted.added.key, *s.likes))
         return tuple(groups)
 
     def _equal_effects(self, cut: str, one: Candidate) -> tuple[Key, ...]:
@@ -229,16 +254,13 @@ class BlockDiagnosis(Shown, ByValue):
 
     def _parameters_of_laws(self) -> dict[str, Any]:
         """Free parameters of controllers at the end of the ladder."""
-        if self.computer is None:
-            return {}
-        last = self.computer.last
         return {
             f"{p.at}.{p.effect.parameter}": {
                 "value": p.value,
                 "stderr": stderr,
                 "unit": self.experiment.unit(p.effect, p.at),
             }
-            for p, stderr in zip(last.placed, last.stderr, strict=True)
+            for p, stderr in self.placed
             if p.effect.of_law
         }
 
@@ -251,7 +273,7 @@ class BlockDiagnosis(Shown, ByValue):
     def _candidates_of_computer(self) -> list[dict[str, Any]]:
         """Every effect of a controller tried, by the step at which it was most probable."""
         best: dict[Key, Attempt] = {}
-        for step in () if self.computer is None else self.computer.steps:
+        for step in self.steps:
             for one in step.attempts:
                 if one.added.key not in best or one.probability > best[one.added.key].probability:
                     best[one.added.key] = one

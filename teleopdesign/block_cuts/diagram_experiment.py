@@ -49,6 +49,11 @@ class RecordedLog(ByValue):
     offset_names: frozenset[str]
     columns: LogColumns
 
+    @property
+    def count(self) -> int:
+        """Number of its rows."""
+        return len(next(iter(self.columns.values.values())))
+
 
 @dataclass(frozen=True, eq=False)
 class DiagramExperiment(ByValue):
@@ -121,16 +126,13 @@ class DiagramExperiment(ByValue):
     def seconds(self, log: RecordedLog) -> Array:
         """Time of the rows, s, (n,)."""
         if self.sample_rate is not None:
-            return np.arange(len(next(iter(log.columns.values.values())))) / self.sample_rate
+            return np.arange(log.count) / self.sample_rate
         return self.signal("time", log)
 
     def __repr__(self) -> str:
         lines = [f"Experiment {quote(self.title)} of the diagram {self.diagram.name}"]
         lines += [f"  {name}: {self.diagram.texts.get(name, name)}" for name in self.recorded]
-        rows = [len(next(iter(log.columns.values.values()))) for log in self.logs]
-        lines += [
-            f"  {log.file} ({log.use}): {n} rows" for log, n in zip(self.logs, rows, strict=True)
-        ]
+        lines += [f"  {log.file} ({log.use}): {log.count} rows" for log in self.logs]
         return "\n".join([*lines, *(f"  {line}" for line in repr(self.cuts).splitlines())])
 
 

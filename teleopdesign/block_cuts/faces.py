@@ -14,8 +14,9 @@ from ..model import Model
 from ..unexplained import ResidualDescription
 from ..unexplained import describe as describe_bodies
 from .body import body_experiment, model_of_body
-from .computer_fit import ControlFit, floors
+from .computer_fit import floors
 from .computer_search import ComputerStep, step_of
+from .control_rows import ControlFit
 from .cuts import Cut
 from .diagram_experiment import DiagramExperiment
 from .search import data_of_computer

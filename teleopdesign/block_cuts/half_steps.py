@@ -11,11 +11,13 @@ tenth of the half step.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..diagrams import Attached, Moving
 from ..measurement.filtering import Array
-from .computer import ComputerPart, passes_of
+from .computer import ComputerPart, Placed, passes_of
 from .cuts import Cut
 from .diagram_experiment import DiagramExperiment, RecordedLog
 
@@ -40,32 +42,45 @@ def share_of_step(experiment: DiagramExperiment, signal: str) -> tuple[Moving, f
     return None
 
 
-def force_at_half_step(experiment: DiagramExperiment, signal: str, log: RecordedLog) -> Array:
-    """A force as recorded, with half of the command's step added where the body moves, SI, (n,)."""
+def force_at_half_step(
+    experiment: DiagramExperiment, signal: str, log: RecordedLog, placed: Sequence[Placed] = ()
+) -> Array:
+    """A force as recorded, with half of the command's step added where the body moves, SI, (n,).
+
+    placed: effects in the laws of a command that is not recorded
+    """
     recorded = experiment.signal(signal, log)
     share = share_of_step(experiment, signal)
     if share is None:
         return recorded
     moving, part = share
-    step = np.diff(command_of(experiment, moving, log), prepend=np.nan)
+    step = np.diff(command_of(experiment, moving, log, placed), prepend=np.nan)
     position = experiment.signal(moving.motion, log)
     moves = np.zeros(len(position), dtype=bool)
     moves[1:-1] = position[2:] != position[:-2]
     return recorded + 0.5 * part * np.nan_to_num(step) * moves
 
 
-def command_of(experiment: DiagramExperiment, moving: Moving, log: RecordedLog) -> Array:
+def command_of(
+    experiment: DiagramExperiment, moving: Moving, log: RecordedLog, placed: Sequence[Placed] = ()
+) -> Array:
     """The command of a body, held between rows: recorded, or as the computer's laws give it.
 
+    placed: effects in the laws of a command that is not recorded
     raises ModelError: it is not recorded, and no rows or laws to predict it
     """
     if moving.command in experiment.channels:
         return experiment.signal(moving.command, log)
+    part = laws_of_command(experiment, moving)
+    made, count = part.signal(part.cuts[0], passes_of(experiment, log), placed), log.count
+    return np.repeat(made, -(-count // len(made)))[:count]
+
+
+def laws_of_command(experiment: DiagramExperiment, moving: Moving) -> ComputerPart:
+    """The laws that make the command of a body, which is not recorded, as a cut of its own."""
     made = next(c for c in experiment.cuts.tested if c.name == moving.name)
     cut = Cut(moving.command, moving.command, "computer", made.blocks, made.inputs)
-    part = ComputerPart(experiment.diagram, (cut,), experiment.zero, experiment.computer)
-    values, count = part.signal(cut, passes_of(experiment, log)), len(experiment.seconds(log))
-    return np.repeat(values, -(-count // len(values)))[:count]
+    return ComputerPart(experiment.diagram, (cut,), experiment.zero, experiment.computer)
 
 
 def _has_command(experiment: DiagramExperiment, moving: Moving) -> bool:

@@ -34,7 +34,7 @@ def same_effects(diagram: Diagram, cut: Cut, effect: Effect) -> tuple[tuple[str,
         name = _OF_COMMAND[effect.name]
         places = [COMPUTER]
         if name == "bias":
-            places += [b for b in _feeding(diagram, cut) if b in cut.blocks]
+            places += [b for b in feeding(diagram, cut) if b in cut.blocks]
         same += [(name, at) for at in places]
     if effect.role in OF_A_HAND:
         others = [n for n in cut.blocks if n != cut.name and diagram.has(n)]
@@ -43,7 +43,7 @@ def same_effects(diagram: Diagram, cut: Cut, effect: Effect) -> tuple[tuple[str,
     return tuple(same)
 
 
-def _feeding(diagram: Diagram, cut: Cut) -> list[str]:
+def feeding(diagram: Diagram, cut: Cut) -> list[str]:
     """Controllers whose outputs are terms of the command of a cut."""
     block = diagram.block(cut.name)
     assert isinstance(block, Moving)

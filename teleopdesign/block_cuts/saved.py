@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,16 +19,19 @@ from ..base.errors import ExperimentError
 from ..base.files import write_json
 from ..diagnose import Diagnosis
 from ..diagnose.answer import content_of_answer, diagnosis_in, folder_of_answer
+from ..diagrams import Diagram
 from ..effects import EFFECTS, Effect
 from ..effects.of_blocks.controllers import CONTROL_EFFECTS
 from ..measurement.experiment import Experiment
 from .body import body_experiment
 from .computer import Placed, free_parameters
-from .computer_fit import ControlData, ControlFit
+from .computer_fit import ControlData
 from .computer_search import Attempt, ComputerLadder, ComputerStep
+from .control_rows import ControlFit
 from .cuts import Cuts
 from .diagnosis import BlockDiagnosis, Key
 from .diagram_experiment import DiagramExperiment
+from .joined_cut import placed_for
 from .reading import load_experiment
 from .search import data_of_computer
 
@@ -41,6 +45,8 @@ def write_answer(diagnosis: BlockDiagnosis, path: str | Path) -> None:
         content["experiment"]["folder"] = Path(place).as_posix()
     if diagnosis.computer is not None:
         content["computer"] = _ladder_data(diagnosis.computer)
+    if diagnosis.joined:
+        content["joined"] = {n: _ladder_data(ladder) for n, ladder in diagnosis.joined.items()}
     write_json(path, content)
 
 
@@ -88,15 +94,19 @@ def _block_diagnosis(
     tested = tuple(c for c in whole.tested if c.name in content["tested"])
     cuts = Cuts(tested, dict(content["untested"]))
     bodies = {}
+    joined = {
+        n: _ladder_from(one, partial(_saved_fit, experiment))
+        for n, one in content.get("joined", {}).items()
+    }
     for name, one in content["bodies"].items():
         (cut,) = (c for c in tested if c.name == name)
-        body = body_experiment(experiment, cut)
+        body = body_experiment(experiment, cut, placed_for(cut, joined))
         bodies[name] = replace(diagnosis_in(one, path, known, experiment=body), left_out=())
     data, ladder = None, None
     if "computer" in content:
         data = data_of_computer(experiment, cuts, bodies)
-        ladder = _ladder_from(content["computer"], data)
-    return BlockDiagnosis(experiment, cuts, bodies, ladder, data)
+        ladder = _ladder_from(content["computer"], partial(_computed_fit, data))
+    return BlockDiagnosis(experiment, cuts, bodies, ladder, data, joined)
 
 
 def _ladder_data(ladder: ComputerLadder) -> dict[str, Any]:
@@ -116,10 +126,12 @@ def _ladder_data(ladder: ComputerLadder) -> dict[str, Any]:
                 ],
                 "accepted": None if step.accepted is None else step.accepted.added.key,
                 "alike": [one.added.key for one in step.alike],
+                "of_body": step.of_body,
             }
             for step in ladder.steps
         ],
         "floors": ladder.floors,
+        "with_body": ladder.with_body,
     }
 
 
@@ -130,23 +142,30 @@ def _fit_data(fit: ControlFit) -> dict[str, Any]:
         "placed": [
             [*p.key, p.value, error if math.isfinite(error) else None] for p, error in values
         ],
+        "errors": fit.errors,
     }
 
 
-def _ladder_from(content: Mapping[str, Any], data: ControlData) -> ComputerLadder:
-    base = here = _fit_from(content["base"], data)
+#: makes a fit of its saved data
+_ReadFit = Callable[[Mapping[str, Any]], ControlFit]
+
+
+def _ladder_from(content: Mapping[str, Any], read: _ReadFit) -> ComputerLadder:
+    base = here = read(content["base"])
     steps = []
     for one in content["steps"]:
-        by_key = {a.added.key: a for a in (_attempt_from(a, data) for a in one["attempts"])}
+        by_key = {a.added.key: a for a in (_attempt_from(a, read) for a in one["attempts"])}
         alike = tuple(by_key[_key(key)] for key in one["alike"])
         accepted = None if one["accepted"] is None else by_key[_key(one["accepted"])]
-        steps.append(ComputerStep(here, tuple(by_key.values()), accepted, alike))
+        of_body = tuple(_key(key) for key in one.get("of_body", ()))
+        steps.append(ComputerStep(here, tuple(by_key.values()), accepted, alike, of_body))
         here = here if accepted is None else accepted.fit
-    return ComputerLadder(base, tuple(steps), dict(content["floors"]))
+    with_body = bool(content.get("with_body", False))
+    return ComputerLadder(base, tuple(steps), dict(content["floors"]), with_body)
 
 
-def _attempt_from(content: Mapping[str, Any], data: ControlData) -> Attempt:
-    fit = _fit_from(content["fit"], data)
+def _attempt_from(content: Mapping[str, Any], read: _ReadFit) -> Attempt:
+    fit = read(content["fit"])
     rest = (content[n] for n in ("score", "behind", "refused", "probability"))
     return Attempt(fit.placed[-1], fit, *rest)
 
@@ -156,11 +175,24 @@ def _key(content: Sequence[str]) -> Key:
     return name, at
 
 
-def _fit_from(content: Mapping[str, Any], data: ControlData) -> ControlFit:
-    free = {p.key: p.effect for p in free_parameters(data.part.diagram, data.part.places)}
+def _computed_fit(data: ControlData, content: Mapping[str, Any]) -> ControlFit:
+    """A fit at the computer's cuts: its errors are those along the records."""
+    placed, errors = _placed_from(content, data.part.diagram)
+    return data.at(placed, int(content["shift"]), errors)
+
+
+def _saved_fit(experiment: DiagramExperiment, content: Mapping[str, Any]) -> ControlFit:
+    """A fit in the cut of a body, which was estimated with it: its errors are those saved."""
+    placed, errors = _placed_from(content, experiment.diagram)
+    return ControlFit(tuple(placed), 0, {}, dict(content["errors"]), tuple(errors))
+
+
+def _placed_from(content: Mapping[str, Any], diagram: Diagram) -> tuple[list[Placed], list[float]]:
+    """Effects with their values, and the standard errors of these."""
+    blocks = [block.name for block in diagram.blocks]
+    free = {p.key: p.effect for p in free_parameters(diagram, blocks)}
     placed = [
         Placed(free.get((name, at)) or CONTROL_EFFECTS[name], at, float(value))
         for name, at, value, _ in content["placed"]
     ]
-    errors = [float("nan") if e is None else float(e) for *_, e in content["placed"]]
-    return data.at(placed, int(content["shift"]), errors)
+    return placed, [math.nan if e is None else float(e) for *_, e in content["placed"]]

@@ -14,13 +14,14 @@ from ..diagnose.search_plan import PLAN, SearchPlan
 from ..effects import EFFECTS, Effect
 from ..measurement.experiment import Experiment
 from ..model import Model
-from .body import diagnose_body
+from .body import diagnose_body, model_of_body
 from .computer import ComputerPart, passes_of
 from .computer_fit import ControlData, floors
-from .computer_search import climb
-from .cuts import Cuts
+from .computer_search import ComputerLadder, climb
+from .cuts import COMPUTER, Cuts
 from .diagnosis import BlockDiagnosis
 from .diagram_experiment import DiagramExperiment
+from .joined_cut import climb_joined, placed_for
 
 #: part of the sample rate up to which the computer's signals are compared where no bandwidth is
 #: stated: a tenth of it, as far as a difference of two readings is a velocity
@@ -56,14 +57,20 @@ def find_missing(
         raise ModelError("find_missing: found a model beside a diagram, which has its own values")
     report = progress or (lambda _: None)
     cuts, bodies = _select(experiment.cuts, at), {}
-    options: dict[str, Any] = {"seed": seed, "plan": plan}
+    joined: dict[str, ComputerLadder] = {}
+    options: dict[str, Any] = {"known": known, "report": report, "seed": seed, "plan": plan}
     if among is not None:
         options["among"] = among
-    for cut in cuts.of("body"):
+    for cut in sorted(cuts.of("body"), key=lambda c: COMPUTER not in c.blocks):
         try:
-            bodies[cut.name] = diagnose_body(experiment, cut, known=known, report=report, **options)
+            if COMPUTER in cut.blocks:
+                model = model_of_body(experiment.diagram, cut, known)
+                joined[cut.name] = climb_joined(experiment, cut, model, report, seed=seed)
+            placed = placed_for(cut, joined)
+            bodies[cut.name] = diagnose_body(experiment, cut, placed=placed, **options)
         except (ModelError, ExperimentError) as error:
             cuts = _without_cut(cuts, cut.name, str(error))
+            joined.pop(cut.name, None)
     data, ladder = None, None
     if computed := (*cuts.of("computer"), *cuts.of("wiring")):
         try:
@@ -75,7 +82,8 @@ def find_missing(
     if not (bodies or ladder):
         why = "; ".join(f"{block}: {text}" for block, text in cuts.untested.items())
         raise ExperimentError(f"{experiment.title}: no block can be tested: {why}")
-    return BlockDiagnosis(experiment, cuts, bodies, ladder, data)
+    bodies = {c.name: bodies[c.name] for c in cuts.of("body")}
+    return BlockDiagnosis(experiment, cuts, bodies, ladder, data, joined)
 
 
 def _select(cuts: Cuts, at: Collection[str] | None) -> Cuts:

@@ -34,7 +34,7 @@ def device_of_diagram(
     computer, settings = experiment.computer, assumptions or Assumptions()
     late = computer.delay + sum(
         p.value
-        for p in (diagnosis.computer.last.placed if diagnosis.computer else ())
+        for p, _ in diagnosis.placed
         if p.key in diagnosis.missing and p.effect.name == "delay" and p.at == "computer"
     )
     held = [b for b in diagram.blocks if isinstance(b, Attached) and b.motion == device.motion]

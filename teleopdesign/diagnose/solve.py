@@ -95,7 +95,7 @@ def _search_space(model: Model, free: tuple[str, ...], prepared: Prepared) -> _S
 
 
 @dataclass(frozen=True, eq=False)
-class _Residuals:
+class SearchResiduals:
     """Residual and Jacobian at search coordinates x (p + k,): free parameters, then k shifts."""
 
     model: Model
@@ -143,7 +143,7 @@ def solve(
     effort: Effort,
 ) -> Solution:
     """Bounded least squares on the relative residuals of these stretches, by shifts as well."""
-    left, start, lower, upper = _problem(model, free, prepared, stretches, effort)
+    left, start, lower, upper = search_problem(model, free, prepared, stretches, effort)
     space, shifts, p = left.space, left.shifts, len(free)
     if len(start):
         minimum = minimise(
@@ -178,13 +178,13 @@ def solve(
     )
 
 
-def _problem(
+def search_problem(
     model: Model,
     free: tuple[str, ...],
     prepared: Prepared,
     stretches: Sequence[Stretch],
     effort: Effort,
-) -> tuple[_Residuals, Array, Array, Array]:
+) -> tuple[SearchResiduals, Array, Array, Array]:
     """Residuals of a search on these stretches, its start and its bounds, (p + k,) each."""
     space = _search_space(model, free, prepared)
     lasts = sum(s.weight * len(s.keep) * s.row for s in stretches)
@@ -193,7 +193,7 @@ def _problem(
     upper = np.append(space.upper, shifts.latest)
     start = np.append(space.start, shifts.start(model))
     bodies = BodyByBody(model, (*free, *shifts.names), stretches, tolerance=effort.tolerance)
-    return _Residuals(model, free, space, shifts, bodies), start, lower, upper
+    return SearchResiduals(model, free, space, shifts, bodies), start, lower, upper
 
 
 def model_without(
@@ -211,7 +211,7 @@ def model_without(
 
     known: the stretches with these rows;  rows: which of the solution's rows these are
     """
-    left, start, lower, upper = _problem(solution.model, free, prepared, known, effort)
+    left, start, lower, upper = search_problem(solution.model, free, prepared, known, effort)
     if any(s.shared is not None for s in known) or not len(start):
         return solve(solution.model, free, prepared, known, effort).model
     columns = np.hstack([solution.jacobian, solution.by_shift])[rows]

@@ -232,6 +232,13 @@ def write_case(interface, folder, random, durations=(11.0, 8.0)):
     (folder / "experiment.toml").write_text(text)
 
 
+def leave_out(folder, signal):
+    """Take a channel out of an experiment."""
+    lines = (folder / "experiment.toml").read_text().splitlines()
+    kept = [line for line in lines if not line.startswith(f'"{signal}" =')]
+    (folder / "experiment.toml").write_text("\n".join(kept))
+
+
 def write_logs(folder, logs):
     """The columns of the logs as fit.csv.gz and check.csv.gz."""
     folder.mkdir(parents=True, exist_ok=True)

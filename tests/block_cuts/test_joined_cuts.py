@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from block_cuts.interface_simulator import draw_interface, write_case
+from block_cuts.interface_simulator import draw_interface, leave_out, write_case
 
 import teleopdesign as td
 from teleopdesign.block_cuts.body import body_experiment
@@ -22,9 +22,7 @@ def without(folder, signal, place):
     """The experiment without one of its channels."""
     for file in folder.iterdir():
         (place / file.name).write_bytes(file.read_bytes())
-    lines = (folder / "experiment.toml").read_text().splitlines()
-    kept = [line for line in lines if not line.startswith(f'"{signal}" =')]
-    (place / "experiment.toml").write_text("\n".join(kept))
+    leave_out(place, signal)
     return td.load_experiment(place)
 
 
@@ -60,6 +58,13 @@ def test_device_and_hand_are_one_body_where_the_force_between_is_not_recorded(fo
     assert set(experiment.records[0].signals) == {"Z_M.position", "Z_M.actuator_force"}
     spring = td.EFFECTS["hardening_spring"]
     assert same_effects(joined.diagram, cut, spring) == (("hardening_spring", "Z_H"),)
+
+
+def test_a_law_that_reads_a_force_that_is_not_recorded_is_not_predicted(folder, tmp_path):
+    without(folder, "R_A", tmp_path)
+    leave_out(tmp_path, "R_M")
+    with pytest.raises(td.ExperimentError, match="the computer reads R_M.*record R_M"):
+        td.load_experiment(tmp_path)
 
 
 def test_commands_print_the_cuts_and_what_to_log(folder, capsys):

@@ -5,17 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from block_cuts.interface_simulator import draw_interface, write_case
+from block_cuts.interface_simulator import draw_interface, leave_out, write_case
 
 import teleopdesign as td
 from teleopdesign.block_cuts import write_answer
 
 
-def diagnosis_of(folder, hidden, seed, **options):
+def diagnosis_of(folder, hidden, seed, at="R_A", without=None):
     random = np.random.default_rng(seed)
     interface = replace(draw_interface(random), hidden=hidden)
     write_case(interface, folder, random, durations=(3.0, 2.5))
-    return td.find_missing(td.load_experiment(folder), at=["R_A"], **options)
+    if without is not None:
+        leave_out(folder, without)
+    return td.find_missing(td.load_experiment(folder), at=[at])
 
 
 @pytest.mark.slow
@@ -36,6 +38,30 @@ def test_an_effect_of_the_computer_is_named_at_its_block_with_its_value(
     (parameter,) = candidate["parameters"].values()
     assert parameter["value"] == pytest.approx(value, rel=0.02)
     assert candidate["probability"] > 0.9
+
+
+@pytest.mark.slow
+def test_without_the_command_an_effect_of_a_law_is_named_along_the_motion(tmp_path):
+    place = tmp_path / "case"
+    diagnosis = diagnosis_of(place, {("delay", "H"): 0.004}, 5, at="Z_M", without="R_A")
+    assert diagnosis.missing == (("delay", "H"),)
+    ((delay, error),) = diagnosis.placed
+    # a row of the log is 1 ms: a part of one belongs to the clock
+    assert delay.value == pytest.approx(0.004, abs=0.0005)
+    assert error < 0.0005
+    assert diagnosis.left["Z_M"] < 1.8
+    write_answer(diagnosis, tmp_path / "answer.json")
+    again = td.load_answer(tmp_path / "answer.json")
+    assert again.missing == diagnosis.missing
+    assert again.rows == diagnosis.rows
+    assert str(again) == str(diagnosis)
+
+
+@pytest.mark.slow
+def test_without_the_command_an_effect_of_the_body_is_none_of_the_laws(tmp_path):
+    hidden = {("quadratic_drag", "Z_M"): 6.0}
+    diagnosis = diagnosis_of(tmp_path, hidden, 5, at="Z_M", without="R_A")
+    assert diagnosis.missing == (("quadratic_drag", "Z_M"),)
 
 
 @pytest.mark.slow

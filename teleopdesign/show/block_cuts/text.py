@@ -65,11 +65,9 @@ def _parameters(diagnosis: BlockDiagnosis, key: Key) -> list[str]:
             if n.startswith(f"{at}.{name}.")
         ]
     else:
-        assert diagnosis.computer is not None
-        last = diagnosis.computer.last
         rows = [
             (p.effect.parameter, p.value, e, diagnosis.experiment.unit(p.effect, p.at))
-            for p, e in zip(last.placed, last.stderr, strict=True)
+            for p, e in diagnosis.placed
             if p.key == key
         ]
     return [f"{n} = {with_standard_error(v, e)} {u}".rstrip(" 1") for n, v, e, u in rows]

@@ -1,0 +1,92 @@
+"""The search for a body's parameters together with values on which its command depends.
+
+Where the laws of a computer give the command, an effect in a law moves it: each value is one more
+coordinate of the search, its derivative a difference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..measurement.filtering import Array
+from ..measurement.prepare import Prepared, Stretch
+from ..model import Model
+from .effort import Effort
+from .fit import free_parameters
+from .least_squares import minimise
+from .solve import SearchResiduals, search_problem
+
+#: step of a value of size one, for a derivative
+_STEP = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class CommandValues:
+    """k values of size one on which the command of a body depends.
+
+    stretches: the fit records with the command at other values;  start, lower, upper: (k,)
+    """
+
+    stretches: Callable[[Array], Sequence[Stretch]]
+    start: Array
+    lower: Array
+    upper: Array
+
+
+@dataclass(frozen=True, eq=False)
+class CommandSolution:
+    """A body and the values on which its command depends, at the optimum of both.
+
+    values: (k,);  jacobian: (rows, k + p + shifts) derivative of the residual, by the values first
+    """
+
+    model: Model
+    values: Array
+    residual: Array
+    jacobian: Array
+
+
+def solve_with_command(
+    model: Model, prepared: Prepared, command: CommandValues, effort: Effort
+) -> CommandSolution:
+    """As `solve` on the fit records, by the values of the command as well.
+
+    prepared: the records, with any command of these values
+    """
+    free, count = free_parameters(model), len(command.start)
+
+    def problem(x: Array) -> tuple[SearchResiduals, Array, Array, Array]:
+        return search_problem(model, free, prepared, command.stretches(x[:count]), effort)
+
+    def residual(x: Array) -> Array:
+        return problem(x)[0].residual_with_prior(x[count:])
+
+    def both(x: Array) -> tuple[Array, Array]:
+        here, jacobian = problem(x)[0].with_prior(x[count:])
+        columns = []
+        for i in range(count):
+            moved = x.copy()
+            moved[i] += _STEP if x[i] + _STEP <= command.upper[i] else -_STEP
+            columns.append((residual(moved) - here) / (moved[i] - x[i]))
+        return here, np.hstack([np.column_stack(columns), jacobian])
+
+    left, start, lower, upper = problem(command.start)
+    minimum = minimise(
+        both,
+        np.append(command.start, start),
+        np.append(command.lower, lower),
+        np.append(command.upper, upper),
+        tolerance=effort.tolerance,
+        evaluations=effort.evaluations,
+        residual_alone=residual,
+    )
+    rows, best = len(minimum.residual) - len(left.shifts.logs), minimum.values
+    return CommandSolution(
+        left.model_at(best[count:]),
+        best[:count],
+        minimum.residual[:rows],
+        minimum.jacobian[:rows],
+    )
