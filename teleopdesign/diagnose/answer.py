@@ -27,16 +27,11 @@ from ..model import Model
 from .by_simulation import SimulationComparison, simulation_data
 from .candidates import Candidate
 from .diagnosis import Diagnosis
-from .model_data import known_effect, model_data, model_from
+from .model_data import Place, known_effect, model_data, model_from, place_data
 from .recording import DiagnosedRecording
 from .statements import JointErrors
 
 WRITER = "an answer of `teleopdesign diagnose --json`"
-
-
-def place_data(candidate: Candidate) -> dict[str, str]:
-    """An effect and its place, as answers write them."""
-    return {"effect": candidate.effect.name, "at": candidate.at}
 
 
 def answer(diagnosis: Diagnosis) -> dict[str, Any]:
@@ -242,14 +237,6 @@ class _Written:
     ladder: Annotated[tuple[JointErrors, ...], Filled(1)]
     models: Mapping[str, Any]
     joints: Mapping[str, _Written] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Place:
-    """An effect and its place, as answers write them."""
-
-    effect: str
-    at: str
 
 
 def _check_parts(diagnosis: Diagnosis, at: str = "") -> None:
