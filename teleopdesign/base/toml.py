@@ -9,7 +9,7 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, final
@@ -176,6 +176,15 @@ def read_toml(path: Path, file: str) -> Table:
         raise ExperimentError(f"{file}: brackets nested too deeply") from None
     except ValueError as problem:  # TOMLDecodeError, and numbers too long to convert
         raise ExperimentError(f"{file}: not valid TOML: {problem}") from None
+
+
+def texts_in(content: Any) -> Iterator[str]:
+    """Every text in plain data, apart from the empty ones and what no file can be called."""
+    if isinstance(content, str) and content and "\0" not in content:
+        yield content
+    elif isinstance(content, dict | list):
+        for one in content.values() if isinstance(content, dict) else content:
+            yield from texts_in(one)
 
 
 def string_text(text: str) -> str:

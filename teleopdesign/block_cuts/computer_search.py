@@ -153,21 +153,26 @@ def step_of(data: ControlRows, here: ControlFit, floors: dict[str, float]) -> Co
         return ComputerStep(here, tuple(attempts), None)
     best = min(able, key=lambda one: one.fit.error("check"))
     attempts = [replace(one, behind=max(_score(data, one.fit, best.fit), 0.0)) for one in attempts]
-    alike = tuple(one for one in attempts if not one.refused and _is_alike(one, best))
+    least = best.fit.error("check")
+    alike = tuple(
+        one
+        for one in attempts
+        if not one.refused and are_alike(one.fit.error("check"), least, one.behind)
+    )
     best = next(one for one in attempts if one.added.key == best.added.key)
     return ComputerStep(
         here, tuple(attempts), best, tuple(o for o in alike if o.added.key != best.added.key)
     )
 
 
-def _is_alike(one: Attempt, best: Attempt) -> bool:
-    """Whether two candidates explain the records equally well."""
-    if one.behind >= CRITERIA.indistinguishable:
+def are_alike(error: float, least: float, behind: float) -> bool:
+    """Whether two candidates explain the records equally well.
+
+    error, least: theirs on the check rows, the better one last;  behind: score of that one
+    """
+    if behind >= CRITERIA.indistinguishable:
         return False
-    errors = one.fit.error("check"), best.fit.error("check")
-    return (
-        errors[0] ** 2 <= (1.0 + CRITERIA.relative_improvement) * errors[1] ** 2 or one.behind < 1.0
-    )
+    return error**2 <= (1.0 + CRITERIA.relative_improvement) * least**2 or behind < 1.0
 
 
 def _score(data: ControlRows, before: ControlFit, after: ControlFit) -> float:

@@ -33,7 +33,7 @@ from ..measurement.prepare import Prepared, Stretch, prepare
 from ..model import Model
 from .body import body_experiment
 from .computer import Placed, UnevenRows, free_parameters, passes_of
-from .computer_search import ComputerLadder, ComputerStep, climb
+from .computer_search import ComputerLadder, ComputerStep, are_alike, climb
 from .control_rows import ControlFit, ControlRows
 from .cuts import Cut
 from .diagram_experiment import DiagramExperiment
@@ -217,11 +217,12 @@ def _compare_with_body(data: JoinedData, step: ComputerStep) -> ComputerStep:
     if not able:
         return step
     best, ours = min(able, key=lambda r: r.fit.check_error), data.body(step.accepted.fit.placed).fit
-    behind = check_score(ours, best.fit), check_score(best.fit, ours)
-    if behind[0] >= CRITERIA.indistinguishable:
-        why = f"{best.candidate.effect.name} at {data.cut.name} explains more"
-        attempts = tuple(replace(a, refused=a.refused or why) for a in step.attempts)
-        return replace(step, attempts=attempts, accepted=None, alike=())
-    if behind[1] >= CRITERIA.indistinguishable:
+    less, more = sorted((ours, best.fit), key=lambda fit: fit.check_error)
+    behind = max(check_score(more, less), 0.0)
+    if are_alike(more.check_error, less.check_error, behind):
+        return replace(step, of_body=(best.candidate.key,))
+    if less is ours:
         return step
-    return replace(step, of_body=(best.candidate.key,))
+    why = f"{best.candidate.effect.name} at {data.cut.name} explains more"
+    attempts = tuple(replace(a, refused=a.refused or why) for a in step.attempts)
+    return replace(step, attempts=attempts, accepted=None, alike=())

@@ -11,7 +11,6 @@ import os
 import shlex
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from ..base.errors import ExperimentError
 from ..base.files import read_whole
@@ -19,7 +18,7 @@ from ..base.files import read_whole
 #: options that name what a command reads, and what it writes: a file or a folder
 INPUTS = (
     *("folder", "logs", "source", "file", "diagram", "answer", "check", "effect", "law", "design"),
-    "without",
+    *("without", "like"),
 )
 OUTPUTS = ("json", "predictions", "figure", "report", "output", "out", "effect_file")
 
@@ -80,18 +79,10 @@ def _files_read(options: argparse.Namespace) -> Iterator[Path]:
 
 def _texts_of(file: Path) -> Iterator[str]:
     """Every text in a TOML file; none for an invalid file, which is reported when it is read."""
-    from ..base.toml import parse_toml
+    from ..base.toml import parse_toml, texts_in
 
     try:
         content = parse_toml(read_whole(file).decode("utf-8-sig"))
-        yield from _texts(content)
+        yield from texts_in(content)
     except (OSError, ValueError, RecursionError):
         return
-
-
-def _texts(value: Any) -> Iterator[str]:
-    if isinstance(value, str) and value and "\0" not in value:
-        yield value
-    elif isinstance(value, dict | list):
-        for one in value.values() if isinstance(value, dict) else value:
-            yield from _texts(one)

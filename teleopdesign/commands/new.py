@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any
 from ..base.errors import ExperimentError
 from ._new_curve import is_curve, make_curve
 from ._new_diagram import add_diagram_options, make_diagram
+from ._new_like import make_like
 from ._paths import shell_word
 
 if TYPE_CHECKING:
+    from ..measurement.experiment import Experiment
     from ..measurement.new_folder import FitAndCheck
     from ..measurement.survey import Choices, Survey
 
@@ -25,6 +27,7 @@ EXAMPLES = """
   teleopdesign new log.csv --fit-span 5 40 --check-span 45 60
   teleopdesign new log.csv --torque-constant "0.037 N*m/A" --gear-ratio 50
   teleopdesign new log.csv --diagram interface.toml     the signals of a whole diagram
+  teleopdesign new second.csv --like first_experiment   a further log of the same logger
 """
 
 
@@ -45,6 +48,12 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--yes", action="store_true", help="accept every guess without a question")
     parser.add_argument("--title", help="title of the experiment (default: the name of the log)")
     parser.add_argument("--kind", choices=("friction curve",), help="a table of points, no time")
+    parser.add_argument(
+        "--like",
+        type=Path,
+        metavar="FOLDER",
+        help="an experiment of the same logger: its columns, units, signs and model",
+    )
     add_diagram_options(parser)
     parser.add_argument("--axis", choices=("prismatic", "revolute"), help="kind of motion")
     for name, text in (
@@ -77,6 +86,10 @@ def add(parser: argparse.ArgumentParser) -> None:
     ):
         parser.add_argument(f"--{option}", type=float, metavar=unit, help=text)
     parser.add_argument("--inertia", type=float, help="inertia of the body, if known, kg or kg*m^2")
+    _add_spans(parser)
+
+
+def _add_spans(parser: argparse.ArgumentParser) -> None:
     for use, text in (
         ("fit", "on which the model is fitted"),
         ("check", "on which errors are computed"),
@@ -105,6 +118,8 @@ def run(options: argparse.Namespace) -> int:
     folder = options.output or Path(f"{stem}_experiment")
     if not options.overwrite:
         require_new(folder)
+    if options.like is not None:
+        return make_like(options, choices, folder, spans)
     logs = [open_log(path, path.name) for path in options.logs]
     files = [path.name for path in options.logs]
     require_same_columns(logs, files)
@@ -134,6 +149,12 @@ def run(options: argparse.Namespace) -> int:
     print(experiment)
     for finding in stopping_findings(CheckedRecording(experiment)):
         print(f"\nno diagnosis can answer yet: {finding.sentence}")
+    _write_picture(survey, experiment, folder)
+    return 0
+
+
+def _write_picture(survey: Survey, experiment: Experiment, folder: Path) -> None:
+    """Draw what was understood, and say what may follow."""
     from ..show.figures.log import draw_survey, save_survey
     from ..show.figures.style import explain_boxes
 
@@ -149,7 +170,6 @@ def run(options: argparse.Namespace) -> int:
         )
     print(f"next: teleopdesign check {shell_word(folder)}")
     print(f"      teleopdesign diagnose {shell_word(folder)} --report report.html")
-    return 0
 
 
 def _spans(options: argparse.Namespace) -> FitAndCheck | None:

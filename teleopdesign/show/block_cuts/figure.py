@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from ...block_cuts.diagnosis import BlockDiagnosis
+from ...block_cuts.diagnosis import BlockDiagnosis, Key
 from ..figures.block_diagram import draw_diagram
 from ..figures.block_diagram.drawing import figure
 from ..figures.block_diagram.shapes import Box, Wire, shaft
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
 
+#: most effects of a group that are listed in the table
+_LISTED = 3
 #: noise floors at which the colour is full; the scale is logarithmic from one floor on
 FULL = 100.0
 UNTESTED = "0.86"
@@ -89,9 +92,7 @@ def _table(diagnosis: BlockDiagnosis) -> list[tuple[str, ...]]:
         if cut.name not in diagnosis.floors:
             continue
         added = [r.added for r in diagnosis.rows if r.added and r.added[1] in cut.blocks]
-        words = [
-            " or ".join(f"{name} at {at}" for name, at in groups.get(key, (key,))) for key in added
-        ]
+        words = [_any_of(groups.get(key, (key,))) for key in dict.fromkeys(added)]
         errors = (
             diagnosis.rows[0].check[cut.name],
             diagnosis.rows[-1].check[cut.name],
@@ -100,6 +101,13 @@ def _table(diagnosis: BlockDiagnosis) -> list[tuple[str, ...]]:
         percent = (f"{100 * e:.2g} %" for e in errors)
         rows.append((cut.name, ", ".join(cut.blocks), *percent, ", ".join(words)))
     return rows
+
+
+def _any_of(group: Sequence[Key]) -> str:
+    """Effects of which one is missing; of many the first, and the number of the others."""
+    words = [f"{name} at {at}" for name, at in group]
+    few = len(words) <= _LISTED
+    return " or ".join(words) if few else f"{words[0]} or one of {len(words) - 1} others"
 
 
 def _write_table(axes: Axes, rows: list[tuple[str, ...]], top: float) -> None:
