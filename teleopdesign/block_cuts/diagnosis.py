@@ -107,17 +107,17 @@ class BlockDiagnosis(Shown, ByValue):
             fit |= ladder.base.errors["fit"]
             check |= ladder.base.errors["check"]
         for name, d in self.bodies.items():
-            placed = self.joined[name].accepted if name in self.joined else ()
-            waiting.append(
-                [
-                    *((a.added.key, a.fit.errors["fit"], a.fit.errors["check"]) for a in placed),
-                    *(
-                        (r.added.key, {name: r.fit_error}, {name: r.check_error})
-                        for r in d.rungs[1:]
-                        if r.added is not None
-                    ),
-                ]
-            )
+            accepted = self.joined[name].accepted if name in self.joined else ()
+            steps = [(a.added.key, a.fit.errors["fit"], a.fit.errors["check"]) for a in accepted]
+            if steps:  # the body was estimated anew beside all of them
+                before = {name: d.before.fit_error}, {name: d.before.check_error}
+                steps[-1] = (steps[-1][0], *before)
+            steps += [
+                (r.added.key, {name: r.fit_error}, {name: r.check_error})
+                for r in d.rungs[1:]
+                if r.added is not None
+            ]
+            waiting.append(steps)
         if self.computer is not None:
             accepted = self.computer.accepted
             waiting.append(

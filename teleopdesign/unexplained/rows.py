@@ -19,7 +19,7 @@ from ..diagnose.record_offsets import as_logged
 from ..diagnose.residual import residuals
 from ..effects import Effect, Parameter
 from ..measurement.filtering import Array
-from ..measurement.prepare import Prepared, Stretch
+from ..measurement.prepare import Prepared, Stretch, measured_force
 from ..measurement.reversals import look_back_to_reversal
 from ..model import Model
 from ..realise.along_motion import residual_along
@@ -124,7 +124,7 @@ def rows_of(model: Model, prepared: Prepared, body: str) -> Rows:
         bandwidth=prepared.bandwidth,
         alongs=tuple(_signals_along(model, s) for s in stretches),
         residual=np.concatenate([r for r, _ in parts]),
-        measured=np.concatenate([_measured_force(s) for s in stretches]),
+        measured=np.concatenate([measured_force(s) for s in stretches]),
         tangents=np.concatenate([d.T for _, d in parts]),
         root=np.concatenate(
             [np.sqrt(s.weight) * (s.motion.direction[s.keep] != 0) for s in stretches]
@@ -133,12 +133,6 @@ def rows_of(model: Model, prepared: Prepared, body: str) -> Rows:
         number=np.repeat(np.arange(len(stretches)), lengths),
         splits=_splits(stretches),
     )
-
-
-def _measured_force(stretch: Stretch) -> Array:
-    motion = stretch.motion
-    force = motion.at_rows(motion.command) + motion.interaction
-    return motion.lowpassed(force)[stretch.keep]
 
 
 def _splits(

@@ -9,6 +9,7 @@ from block_cuts.interface_simulator import draw_interface, leave_out, write_case
 
 import teleopdesign as td
 from teleopdesign.block_cuts import write_answer
+from teleopdesign.unexplained import describe_residual
 
 
 def diagnosis_of(folder, hidden, seed, at="R_A", without=None):
@@ -50,6 +51,10 @@ def test_without_the_command_an_effect_of_a_law_is_named_along_the_motion(tmp_pa
     assert delay.value == pytest.approx(0.004, abs=0.0005)
     assert error < 0.0005
     assert diagnosis.left["Z_M"] < 1.8
+    body = diagnosis.bodies["Z_M"]
+    (part,) = describe_residual(body.model, body.prepared, body.floor).parts
+    # the predicted command stands above the line alone
+    assert part.error == pytest.approx(diagnosis.rows[-1].check["Z_M"], rel=1e-6)
     write_answer(diagnosis, tmp_path / "answer.json")
     again = td.load_answer(tmp_path / "answer.json")
     assert again.missing == diagnosis.missing
