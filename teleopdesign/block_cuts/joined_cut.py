@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 from ..diagnose.command_values import CommandSolution, CommandValues, solve_with_command
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.effort import EFFORTS, Effort
+from ..diagnose.error import weigh_residuals
 from ..diagnose.evidence import check_score
-from ..diagnose.fit import Fit, estimate, standard_errors, weigh_residuals
+from ..diagnose.fit import Fit, estimate, standard_errors
 from ..diagnose.least_squares import sum_of_squares
 from ..diagnose.noise_floor import noise_floor
 from ..diagnose.rank import rank_candidates

@@ -94,4 +94,4 @@ def floors_left(errors: Errors, floor: NoiseFloor) -> float:
 
 def records_differ(errors: Errors) -> bool:
     """Whether the relative error on the check records is much larger than on the fit records."""
-    return errors.check_error >= CRITERIA.differ * errors.fit_error > 0.0
+    return errors.check_error >= CRITERIA.far_larger * errors.fit_error > 0.0

@@ -10,7 +10,7 @@ from .ladder_state import LadderSearch, LadderState, look
 from .moves import add, add_two, swap
 from .noise_floor import noise_floor
 from .rung import Rung
-from .stand_in import stands_in_for_moments, stands_in_for_readings, stands_in_for_values
+from .stand_in import stands_in_for_readings, stands_in_for_values
 from .straight import straighten
 from .transmission import add_transmission
 
@@ -32,7 +32,7 @@ def climb(search: LadderSearch, state: LadderState) -> tuple[LadderState, tuple[
             state = barred
             if stays:  # no candidate was removed: the same move would follow again
                 break
-        rungs = with_last_corrected(search, state) if search.plan.corrected else state.rungs
+        rungs = with_last_corrected(search, state) if search.is_of_body_in_time else state.rungs
         less = remove_doubtful_rung(search, state, rungs)
         if less is None:
             return state, rungs
@@ -44,23 +44,21 @@ def bar_what_explains_nothing(
 ) -> LadderState | None:
     """The state before a move, with the move's new effects barred; None: they explain something.
 
-    An effect is barred if it only does what other values of the model do as well, only weakens
-    the errors of the readings, or explains a few moments of one log. A move that replaces rungs is
-    exempt: it may explain as much as they did, more simply.
+    An effect is barred if it only does what other values of the model do as well, or only weakens
+    the errors of the readings. A move that replaces rungs is exempt: it may explain as much as they
+    did, more simply.
     """
     before, after = ({r.added.key for r in s.rungs if r.added} for s in (state, moved))
     new = [r for r in moved.rungs if r.added is not None and r.added.key not in state.effects]
-    if not search.plan.stand_ins or not new or not before <= after:
+    if not search.is_of_body_in_time or not new or not before <= after:
         return None
     if moved.fit.check_error >= state.fit.check_error:
         return None
     last = replace(new[-1], fit=moved.fit)
     prepared = search.prepared
     drawn = noise_floor(moved.fit.model, prepared, search.generator())
-    barred = (
-        stands_in_for_readings(state.fit, state.floor, last, drawn)
-        or stands_in_for_values(state.fit, last, prepared, state.floor)
-        or stands_in_for_moments(state.fit, last, prepared)
+    barred = stands_in_for_readings(state.fit, state.floor, last, drawn) or stands_in_for_values(
+        state.fit, last, prepared, state.floor
     )
     if barred is None:
         return None

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import ndtri
 
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared
@@ -17,7 +18,7 @@ from ..realise.along_motion import residual_along
 from .record_offsets import as_logged
 
 #: standard deviations of an interval of 99 %
-NINETY_NINE = 2.576
+NINETY_NINE = float(ndtri(0.995))
 #: most lags that are looked at, in samples 1/(2 B) apart
 LAGS = 25
 

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base.errors import ModelError, unknown
 from ..frequency.confidence import ParameterCovariance
 from ..measurement.filtering import Array
+from ..measurement.friction_curve import points_as_motion
 from ..measurement.prepare import Prepared
 from ..model import Model
+from ..realise.along_motion import residual_along
 from .effort import EFFORTS
-from .fit import Fit, block_numbers, free_parameters, sandwich
-from .solve import solve
+from .fit import Fit, estimate, sandwich
 
 
 def covariance_of(fit: Fit) -> Array:
@@ -23,8 +24,13 @@ def covariance_of(fit: Fit) -> Array:
     Correlations are those of the sandwich estimate. The standard errors also contain errors of the
     readings and shifts of the records. A parameter without a finite one counts as known.
     """
-    known = sandwich(fit.jacobian, fit.fit_residual, fit.fit_blocks)
-    return _with_stated_errors(fit.model, fit.free, known)
+    scaled, _, sensitive = sandwich(fit.jacobian, fit.fit_residual, fit.fit_blocks)
+    stated = np.array([fit.model.parameters[n].stderr for n in fit.free])[sensitive]
+    unit = np.where(np.isfinite(stated), stated, 0.0)
+    unit = unit / np.sqrt(np.maximum(np.diag(scaled), 1e-300))
+    covariance = np.zeros((len(fit.free), len(fit.free)))
+    covariance[np.ix_(sensitive, sensitive)] = scaled * np.outer(unit, unit)
+    return covariance
 
 
 def covariance_in_blocks(
@@ -35,7 +41,7 @@ def covariance_in_blocks(
     blocks: block of the diagram -> body of the model that it is; None: "Z_M" is the only body
     raises ModelError: no such body, or several bodies and no mapping
     """
-    places, free = model.bodies, free_parameters(model)
+    places = model.bodies
     if blocks is None:
         if len(places) > 1:
             raise ModelError(
@@ -46,14 +52,12 @@ def covariance_in_blocks(
     for place in blocks.values():
         if place not in places:
             raise ModelError(f"covariance: {unknown('body', place, places)}")
-    stretches = prepared.of("fit")
-    along = solve(model, free, prepared, stretches, EFFORTS.stay)
-    known = sandwich(along.jacobian, along.residual, block_numbers(stretches))
-    matrix = _with_stated_errors(model, free, known)
+    along = replace(estimate(model, prepared, effort=EFFORTS.stay), model=model)
+    matrix = covariance_of(along)
     of_blocks = {
         f"{block}.{model.locate(name)[1]}": k
         for block, place in blocks.items()
-        for k, name in enumerate(free)
+        for k, name in enumerate(along.free)
         if model.locate(name)[0] == place
     }
     determined = {n: k for n, k in of_blocks.items() if matrix[k, k] > 0}
@@ -62,13 +66,14 @@ def covariance_in_blocks(
     return ParameterCovariance(tuple(determined), matrix[np.ix_(kept, kept)], undetermined)
 
 
-def _with_stated_errors(
-    model: Model, free: Sequence[str], known: tuple[Array, Array, NDArray[np.bool_]]
-) -> Array:
-    scaled, _, sensitive = known
-    stated = np.array([model.parameters[n].stderr for n in free])[sensitive]
-    unit = np.where(np.isfinite(stated), stated, 0.0)
-    unit = unit / np.sqrt(np.maximum(np.diag(scaled), 1e-300))
-    covariance = np.zeros((len(free), len(free)))
-    covariance[np.ix_(sensitive, sensitive)] = scaled * np.outer(unit, unit)
-    return covariance
+def friction_at(fit: Fit, velocity: Array) -> tuple[Array, Array]:
+    """Force (n,) that holds a body at these speeds (n,), and its standard error.
+
+    fit: of a friction curve
+    """
+    (place,) = fit.model.bodies
+    names = [fit.model.locate(name)[1] for name in fit.free]
+    motion = points_as_motion(place, "", velocity, np.zeros(len(velocity)))
+    left = residual_along(fit.model.bodies[place], motion, names).residual
+    variance = np.einsum("pn,pq,qn->n", left.tangent, covariance_of(fit), left.tangent)
+    return -left.value, np.sqrt(np.maximum(variance, 0.0))

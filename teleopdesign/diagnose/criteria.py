@@ -23,10 +23,6 @@ class Criteria:
     #: effect what it is differs from zero (one in 30 000 by a normal law; residuals are not quite
     #: normal). Lower: chance gains; higher: short records say nothing
     significance: float = 4.0
-    #: probability by chance up to which moments of one log that agree on an effect count: six agree
-    #: once in 64, seven once in 128. Higher: what acts at a few starts is named; lower: short logs
-    #: say nothing
-    by_chance: float = 0.01
     #: part of the noise floor's square from which a gain counts: while a body is stuck or turns,
     #: its friction is known no better. Lower: the method's errors count; higher: weak effects
     #: are missed
@@ -54,11 +50,6 @@ class Criteria:
     #: three false ones by 0.4 to 1.7. Higher: weak effects are missed; lower: what absence explains
     #: as well is named
     interval: float = 2.0
-    #: times its value, and part of it, at which such a parameter must leave more (by
-    #: `indistinguishable`), all others fitted again. Four: where the squares are a parabola, a
-    #: quarter of what differs by `significance` is three standard errors off. Higher: any gap is
-    #: named; lower: a coarse one is not
-    times: float = 4.0
     #: part of the squares that one linear step must promise, from which a start is worth a step.
     #: Higher: faster, and effects that are linear in no strength are missed
     worth: float = 0.01
@@ -74,8 +65,6 @@ class Criteria:
     #: probability of an effect that was accepted with nothing but noise left: of 74 on simulated
     #: cases 73 were true, (73 + 1)/(74 + 2)
     true_of_accepted: float = 0.97
-    #: probability of a best candidate that was not accepted: of 31 none was true, 1/33
-    true_of_others: float = 0.03
     #: power of the part of a free function's squares that an effect explains, by which it is
     #: believed though more than noise is left. Two: it is named from 0.72 of these squares on
     #: (0.97 x 0.72^2 = 0.5). Of 165 steps on simulated cases and recordings, 0.7 to 0.9 did nearly
@@ -87,10 +76,6 @@ class Criteria:
     #: eight, a spring or a cable's pull on two: (2 + 1)/(8 + 1). Higher: undecided more often;
     #: lower: a spring is called gravity more surely
     rarer: float = 0.3
-    #: part of what is left that a black box may learn where what is left is said not to repeat. A
-    #: tenth: its own errors add as much. Lower: a slow log's scatter is called missing physics;
-    #: higher: physics is called scatter
-    repeats: float = 0.1
     #: rms difference of two motions, of the position over that of the motion about its mean and of
     #: the velocity over the velocity, up to which they are one motion that is made again. Passes of
     #: position-controlled machines differ by 0.0006 to 0.04, different parts of one multisine by
@@ -108,20 +93,27 @@ class Criteria:
     #: part of the rows that must be passed again for a statement on what repeats: fewer do not
     #: stand for the records
     passed_again: float = 0.1
-    #: check error over fit error from which the text says that the records differ: 0.7 to 1.6 on
-    #: nine recordings of real machines. Lower: said of chance; higher: of other machines only
-    differ: float = 3.0
-    #: times that the error must fall with the bandwidth where readings are said to ask for forces
-    #: that nothing shows: from the whole of it to a quarter it fell by 0.1 to 2.6 times on 22
-    #: recordings of real machines, by 4.5 on one with a filtered potentiometer. Lower: said of
-    #: friction that jumps; higher: not said of what reading spoils in part
-    falls: float = 3.0
+    #: times that one error of a model must be another to be far larger: on check records over fit
+    #: records it was 0.7 to 1.6 times on nine recordings of real machines; in the whole band over a
+    #: quarter of it 0.1 to 2.6 times on 22, and 4.5 on one with a filtered potentiometer. Lower:
+    #: said of chance, and of friction that jumps; higher: of other machines only
+    far_larger: float = 3.0
     #: noise floors above which their number is not stated: the floor is then close to zero, because
     #: no noise of the force is stated, while real logs have noise. Lower: hides large errors;
     #: higher: a number without meaning
     countable: float = 1000.0
     #: probability from which an effect is said to be missing: less likely than not is not named
     named: float = 0.5
+
+    @property
+    def open_error(self) -> float:
+        """Standard error over value from which a parameter is open: its interval holds zero."""
+        return 1.0 / self.interval
+
+    @property
+    def true_of_others(self) -> float:
+        """Probability of a best candidate that was not accepted: of 31 none was true, 1/33."""
+        return 1.0 - self.true_of_accepted
 
 
 #: the criteria in use; a change of one changes every answer

@@ -13,7 +13,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from ..base.codec import INLINE, NEVER, OMIT, At, Bounds, Error, Filled, InUnit
-from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
 from ..measurement.experiment import Experiment
@@ -33,7 +32,6 @@ from .record_shift import RecordShift
 from .recording import DiagnosedRecording
 from .repeats import Repeatability
 from .statements import (
-    ANEW,
     CandidateResult,
     EstimatedValue,
     LadderRow,
@@ -41,7 +39,6 @@ from .statements import (
     NotAccepted,
     OpenQuestion,
     SetAside,
-    StepEvidence,
     Undetermined,
     estimate_of,
 )
@@ -78,8 +75,8 @@ class Diagnosis(Shown, ByValue):
     on_all_records: check error of the final model estimated on all records; None: not computed,
         because the check error is not much larger than the fit error
     fingerprint: of the experiment;  reading: corrections of its logs, as plain data
-    estimated: the final model, not yet corrected for errors of the readings; None: as `fitted`
-    open: questions that the records leave open; None: an older answer does not say
+    estimated: the final model, not yet corrected for errors of the readings; None: as `model`
+    questions: those that the records leave open
     not_accepted, nearest: candidates that leave less than the final model, and do not count
     no_named_law: the final model with a curve through values, which surely leaves less and explains
         nothing; None: there is none
@@ -91,7 +88,7 @@ class Diagnosis(Shown, ByValue):
     other_motion: joint -> the joint whose motion is its channel `other_position`
     links: name -> base parameter of the links of an arm
     friction_cells: body -> least friction that model and residual show together, by cells of its
-        travel; an older answer, and an arm's joint, have none
+        travel; an arm's joint has none
     kind: "friction curve": the records have no time, and the bandwidth is NaN; "": others
     simulation: comparison of the final model by simulation, as plain data
     recording: of the experiment; no part of the content
@@ -115,11 +112,10 @@ class Diagnosis(Shown, ByValue):
     repeats: Repeatability | None = None
     on_all_records: Error | None = None
     at_bound: tuple[str, ...] = ()
-    evidence: tuple[StepEvidence, ...] = ()
     fingerprint: Annotated[Fingerprint | None, At("experiment")] = None
     reading: tuple[Any, ...] = ()
     estimated: Annotated[Model | None, At("models.estimated")] = None
-    open: tuple[OpenQuestion, ...] | None = None
+    questions: Annotated[tuple[OpenQuestion, ...], At("open")] = ()
     not_accepted: tuple[NotAccepted, ...] = ()
     nearest: Nearest | None = None
     no_named_law: Annotated[FreeForm | None, OMIT] = None
@@ -240,13 +236,6 @@ class Diagnosis(Shown, ByValue):
         return floors_left(self.after, self.floor)
 
     @property
-    def questions(self) -> tuple[OpenQuestion, ...]:
-        """The open questions; raises ExperimentError: an older answer does not say them."""
-        if self.open is None:
-            raise ExperimentError(f'no key "open": {ANEW}; diagnose anew, or leave --answer out')
-        return self.open
-
-    @property
     def experiment(self) -> Experiment:
         """The experiment: as given, or read now from the folder that the answer names.
 
@@ -261,7 +250,7 @@ class Diagnosis(Shown, ByValue):
 
     def with_final_model(self, model: Model) -> Diagnosis:
         """The same diagnosis with another final model, such as one body of several."""
-        return replace(self, rungs=(*self.rungs[:-1], replace(self.after, fitted=model)))
+        return replace(self, rungs=(*self.rungs[:-1], replace(self.after, model=model)))
 
     def parts(self, row: int = -1) -> list[tuple[Prepared, Model]]:
         """Records and model of each part that is compared alone: all bodies, or each joint.

@@ -74,7 +74,7 @@ def best_draws(
     for i, point in enumerate(_spread_evenly(PLAN.draws, len(names))):
         x = ranges[0] + point * (ranges[1] - ranges[0])
         draws.append((squares.of(_with_logarithms(model, names, x)), i, x))
-    best = sorted(draws, key=lambda draw: draw[:2])[: PLAN.draws_kept]
+    best = sorted(draws, key=lambda draw: draw[:2])[: 2 * PLAN.followed]
     improved = [_improve(model, names, x, squares) for _, _, x in best]
     return [*(_with_logarithms(model, names, x) for _, _, x in best), *improved]
 

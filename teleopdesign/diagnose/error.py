@@ -26,6 +26,15 @@ def error_of(stretches: Sequence[Stretch], values: Sequence[Array]) -> float:
     return float(np.sqrt(left / whole))
 
 
+def weigh_residuals(stretches: Sequence[Stretch], values: Sequence[Array]) -> Array:
+    """Residuals of all stretches in one array, each row times the square root of its weight.
+
+    The weight of a row is the number of rows that it represents.
+    """
+    parts = [np.sqrt(s.weight) * r for s, r in zip(stretches, values, strict=True)]
+    return np.concatenate(parts) if parts else np.zeros(0)
+
+
 def force_error(model: Model, stretches: Sequence[Stretch]) -> float:
     """Relative force error of a model on these stretches, without estimation; NaN: no stretch."""
     if not stretches:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.frozen import ByValue
 from ..blocks import Body
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
@@ -25,22 +26,23 @@ from ..realise.residual_at_command import (
     is_between,
     residual_at_command,
 )
+from .error import weigh_residuals
 from .record_offsets import AlongRecords, follow_records
 
 
-@dataclass(frozen=True)
-class AtCommand:
+@dataclass(frozen=True, eq=False)
+class AtCommand(ByValue):
     """Residual of a model on some stretches, as an error of the recorded forces.
 
-    residual: per stretch, low-passed, on the rows that count; in blind rows the acting residual
-    sighted: per stretch, the rows that are not blind
+    residual: low-passed and weighted, on the rows that count; in blind rows the acting residual
+    sighted: the rows that are not blind
     error: rms residual over rms measured force, both over the rows that are not blind; NaN: there
         are none
     blind: share of blind samples among those where the body slides
     """
 
-    residual: tuple[Array, ...]
-    sighted: tuple[NDArray[np.bool_], ...]
+    residual: Array
+    sighted: NDArray[np.bool_]
     error: float
     blind: float
 
@@ -79,8 +81,8 @@ def refer_to_command(
             else s.weight * float(np.sum(measured_force(s)[sighted_rows] ** 2))
         )
     return AtCommand(
-        tuple(values),
-        tuple(sighted),
+        weigh_residuals(stretches, values),
+        np.concatenate([np.zeros(0, dtype=bool), *sighted]),
         float(np.sqrt(left / whole)) if whole > 0.0 else float("nan"),
         blind_share(command_errors, [s.motion for s in stretches]) if stretches else 0.0,
     )

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from ..measurement.experiment import Experiment
-from ..measurement.prepare import Prepared, prepare
+from ..measurement.prepare import prepare
 from ..model import Model
 from .adequacy import is_adequate, limit_noise_floor
 from .candidates import restrict_to_curve
 from .criteria import CRITERIA
-from .effort import EFFORTS
 from .evidence import check_squares
-from .fit import Fit, estimate, fit_squares
+from .fit import Fit
 from .ladder_state import LadderSearch, search_for
 from .noise_floor import NoiseFloor, noise_floor
 from .rank import rank_candidates
 from .ranking import Ranking
 from .reading_error import with_reading_error
-from .search_plan import PLAN
 from .stated_fit import estimate_stated
 
 
@@ -34,7 +32,7 @@ def fit(model: Model, experiment: Experiment, *, seed: int = 0) -> Model:
     """
     search = search_for(experiment, model, seed=seed)
     fit = estimate_stated(search.stated, search.prepared)
-    if not search.plan.corrected:
+    if not search.is_of_body_in_time:
         return fit.model
     drawn = noise_floor(fit.model, search.prepared, search.generator())
     return correct_fit(search, fit, limit_noise_floor(drawn, fit, Ranking(fit, ()))).model
@@ -57,23 +55,9 @@ def correct_fit(search: LadderSearch, fit: Fit, floor: NoiseFloor) -> Fit:
     The standard errors are widened too where the corrected fit leaves clearly more
     (`Criteria.of_floor`). Then the simulated readings do not describe the recorded ones.
     """
-    fit = _with_parts_in_order(fit, search.prepared)
     most = (1.0 + CRITERIA.of_floor) * check_squares(fit)
 
     def leaves_noise(other: Fit) -> bool:
         return is_adequate(other, floor) and check_squares(other) <= most
 
     return with_reading_error(fit, search.prepared, search.generator(), adequate=leaves_noise)
-
-
-def _with_parts_in_order(fit: Fit, prepared: Prepared) -> Fit:
-    """The fit with interchangeable parts of its effects in order, if it leaves no more.
-
-    Beside friction that varies with the speed the parts are not quite the same: one of them varies.
-    """
-    model = fit.model.in_order()
-    if model is fit.model:
-        return fit
-    ordered = estimate(model, prepared, effort=EFFORTS.stay)
-    alike = fit_squares(ordered) <= (1.0 + PLAN.elsewhere) * fit_squares(fit)
-    return ordered if alike else fit

@@ -10,6 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from ..base.codec import Filled
+from ..base.errors import quote
 from ..measurement.experiment import Experiment
 
 
@@ -38,7 +39,7 @@ class Fingerprint:
         """How the expected experiment differs from this one, in words; None: they are equal."""
         present = fingerprint_of(experiment)
         if self.title != present.title:
-            return f"title {_shorten(self.title)}, found {_shorten(present.title)}"
+            return f"title {quote(self.title)}, found {quote(present.title)}"
         if self.axes != present.axes:
             return f"bodies {bodies_text(self.axes)}, found {bodies_text(present.axes)}"
         if self.records != present.records:
@@ -78,9 +79,5 @@ def bodies_text(axes: Mapping[str, str]) -> str:
     return ", ".join(f"{place} ({axis})" for place, axis in axes.items())
 
 
-def _shorten(title: str) -> str:
-    return f'"{title}"' if len(title) <= 60 else f'"{title[:57]}..."'
-
-
 def _list(records: tuple[RecordPrint, ...]) -> str:
-    return ", ".join(map(str, records[:4])) + (", ..." if len(records) > 4 else "")
+    return ", ".join(map(str, records[:4])) + (", ..." if records[4:] else "")

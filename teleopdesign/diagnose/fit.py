@@ -15,27 +15,13 @@ from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from .bodies_apart import select_bodies
 from .effort import EFFORTS, Effort
-from .error import error_of, force_error
+from .error import error_of, force_error, weigh_residuals
 from .error_at_command import AtCommand, refer_to_command
 from .folds import folds
 from .least_squares import column_sizes, sum_of_squares
-from .record_offsets import AlongRecords, follow_records
+from .record_offsets import follow_records
 from .residual import both_residuals
 from .solve import BLOCK, Solution, model_without, solve
-
-
-@dataclass(frozen=True, eq=False)
-class CommandError(ByValue):
-    """Residual of a model on the check records, as an error at the command.
-
-    residual: on the rows of `Fit.check_residual`;  sighted: the rows that are not blind
-    error, blind: as in `AtCommand`
-    """
-
-    residual: Array
-    sighted: NDArray[np.bool_]
-    error: float
-    blind: float
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -61,7 +47,7 @@ class Fit(ByValue):
     at_bound: tuple[str, ...]
     fit_residual: Array
     check_residual: Array
-    at_command: CommandError
+    at_command: AtCommand
     fit_blocks: NDArray[np.intp]
     check_blocks: NDArray[np.intp]
     jacobian: Array
@@ -122,15 +108,6 @@ def block_numbers(stretches: Sequence[Stretch]) -> NDArray[np.intp]:
     return np.concatenate(parts) if parts else np.zeros(0, dtype=int)
 
 
-def weigh_residuals(stretches: Sequence[Stretch], values: Sequence[Array]) -> Array:
-    """Residuals of all stretches in one array, each row times the square root of its weight.
-
-    The weight of a row is the number of rows that it represents.
-    """
-    parts = [np.sqrt(s.weight) * r for s, r in zip(stretches, values, strict=True)]
-    return np.concatenate(parts) if parts else np.zeros(0)
-
-
 def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine) -> Fit:
     """Re-estimate the parameters of the model that are not fixed, on the fit records.
 
@@ -151,7 +128,7 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
         along = follow_records(fitted, check)
         absolute, parts = both_residuals(fitted, check, along)
         check_error = error_of(check, absolute)
-        command_error = command_error_of(fitted, check, along)
+        command_error = refer_to_command(fitted, check, along)
     else:
         check, parts, check_error, command_error = _fit_held_out(solution, prepared)
     return Fit(
@@ -212,26 +189,9 @@ def with_errors(solution: Solution, free: tuple[str, ...], blocks: NDArray[np.in
     return shifts.beside(model, shifts.start(model), errors[len(free) :])
 
 
-def command_error_of(
-    model: Model, stretches: Sequence[Stretch], along: AlongRecords | None = None
-) -> CommandError:
-    """Residual of the model on these stretches, as an error at the command.
-
-    along: of this model and these stretches; None: it is computed
-    """
-    error = refer_to_command(model, stretches, along)
-    return _join_command_errors(stretches, error)
-
-
-def _join_command_errors(stretches: Sequence[Stretch], error: AtCommand) -> CommandError:
-    sighted = np.concatenate(error.sighted) if error.sighted else np.zeros(0, dtype=bool)
-    residual = weigh_residuals(stretches, error.residual)
-    return CommandError(residual, sighted, error.error, error.blind)
-
-
 def _fit_held_out(
     solution: Solution, prepared: Prepared
-) -> tuple[tuple[Stretch, ...], list[Array], float, CommandError]:
+) -> tuple[tuple[Stretch, ...], list[Array], float, AtCommand]:
     """Residuals and errors of blocks of the fit records, each from a fit without that block."""
     held: list[Stretch] = []
     parts: list[Array] = []
@@ -252,12 +212,12 @@ def _fit_held_out(
         at_commands += command_errors[-1].error ** 2 * measured
     whole = sum(s.measured for s in held)
     together = AtCommand(
-        tuple(r for one in command_errors for r in one.residual),
-        tuple(t for one in command_errors for t in one.sighted),
+        np.concatenate([one.residual for one in command_errors]),
+        np.concatenate([one.sighted for one in command_errors]),
         float(np.sqrt(at_commands / whole)),
         float(np.mean([one.blind for one in command_errors])),
     )
-    return tuple(held), parts, float(np.sqrt(squares / whole)), _join_command_errors(held, together)
+    return tuple(held), parts, float(np.sqrt(squares / whole)), together
 
 
 def standard_errors(jacobian: Array, residual: Array, blocks: NDArray[np.intp]) -> Array:

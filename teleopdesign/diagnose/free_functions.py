@@ -23,12 +23,11 @@ from ..measurement.friction_curve import FOLDS
 from ..measurement.prepare import Prepared, Stretch
 from .fit import Fit
 from .free_forces import MotionRanges, families
+from .least_squares import RIDGE
 from .residual import relative_residuals
 
 #: weights of the ridge, over the mean square of a column, one of which the folds choose
 RIDGES = tuple(float(x) for x in np.geomspace(1e-6, 1.0, 7))
-#: the same for the model's own parameters: above rounding, where two of them do the same
-_NEXT_TO_NONE = 1e-10
 
 
 @dataclass(frozen=True)
@@ -126,7 +125,7 @@ class _Problem:
     """A linear problem: the residual of a model, its tangents, and columns of all free functions.
 
     parts: sums over the blocks of the fit records;  check: over the check records, if there are any
-    stiff: number of the first columns, which have no ridge: the model's own parameters
+    stiff: number of the first columns, the model's own parameters: their ridge is next to none
     families: free function -> its columns
     """
 
@@ -191,7 +190,7 @@ class _Problem:
         x = np.zeros(len(size))
         if not used.any():
             return x
-        weights = np.where(np.arange(len(size)) < self.stiff, _NEXT_TO_NONE, ridge)[used]
+        weights = np.where(np.arange(len(size)) < self.stiff, RIDGE, ridge)[used]
         matrix = sums.of_columns[np.ix_(used, used)] / np.outer(size[used], size[used])
         x[used] = (
             -np.linalg.lstsq(

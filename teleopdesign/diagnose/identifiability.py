@@ -140,15 +140,16 @@ def doubt(fit: Fit, candidate: Candidate, *, most: Fit | None = None) -> str:
 def explain_open_width(fit: Fit, candidate: Candidate, prepared: Prepared) -> str:
     """A sentence on another value of an essential parameter that fits as well; "": none does.
 
-    The parameter is held at a part and at a multiple of its value (`Criteria.times`). The other
-    parameters are fitted again from their values.
+    The parameter is held at a part and at a multiple of its value, by `Criteria.significance`:
+    where the squares are a parabola, a quarter of what differs from zero by four standard errors
+    is three off. The other parameters are fitted again from their values.
     """
     for name, declared in candidate.effect.parameters.items():
         full = f"{candidate.at}.{candidate.effect.name}.{name}"
         if not declared.search.essential or full not in fit.free:
             continue
         best = fit.model.parameters[full]
-        for other in (best.value / CRITERIA.times, best.value * CRITERIA.times):
+        for other in (best.value / CRITERIA.significance, best.value * CRITERIA.significance):
             if not declared.lower <= other <= declared.upper:
                 continue
             held = fit.model.with_values({full: replace(best, value=other, fixed=True)})

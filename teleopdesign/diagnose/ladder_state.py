@@ -45,6 +45,20 @@ class LadderSearch:
     plan: SearchPlan = PLAN
     progress: Callable[[str], None] = lambda _: None
 
+    @property
+    def is_of_body_in_time(self) -> bool:
+        """Whether readings are simulated, and effects tested on all records together.
+
+        Not at a joint of an arm: effects are tested on all joints, whose readings are drawn
+        together. Not on a friction curve, which has no time.
+        """
+        return not (self.whole.is_linked or self.whole.is_curve)
+
+    @property
+    def draws_gaps(self) -> bool:
+        """Whether gaps are sought among draws; at joints of an arm it was not measured."""
+        return self.plan.draws > 0 and self.is_of_body_in_time
+
     def generator(self) -> np.random.Generator:
         """A new random generator that starts at the seed."""
         return np.random.default_rng(self.seed)
@@ -151,7 +165,7 @@ def search_for(
     experiment = whole.experiment
     stated = model or Model.from_experiment(experiment)
     if whole.is_curve:
-        stated, plan = restrict_to_curve(stated), plan.for_curve()
+        stated = restrict_to_curve(stated)
     if why_silent(whole, stated):
         stated = restrict_candidates((), stated)
     return LadderSearch(
@@ -195,8 +209,7 @@ def look(
     drawn = noise_floor(here.model, prepared, search.generator())
     worth = worth_pursuing(here, drawn)
     more = not is_noise(here.check_error, drawn)
-    widely = more and search.plan.draws > 0
-    ranking = search.rank(here, step=len(rungs), worth=worth, widely=widely)
+    ranking = search.rank(here, step=len(rungs), worth=worth, widely=more and search.draws_gaps)
     weakening = () if before is None else before.weakening
     floor = limit_noise_floor(drawn, here, ranking, weakening)
     tone = best_tone(here, prepared)

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import orth
 from scipy.linalg.lapack import dgeqrf
 from scipy.optimize import lsq_linear
 
@@ -98,6 +99,13 @@ def column_sizes(columns: Array) -> Array:
     """Euclidean norms (p,) of columns (n, p); inf where squares overflow."""
     with np.errstate(over="ignore"):
         return np.asarray(np.linalg.norm(columns, axis=0))
+
+
+def span(columns: Array) -> Array:
+    """Orthonormal columns (n, r) that span columns (n, p), of which r are independent."""
+    size = column_sizes(columns)
+    kept = (size > 0.0) & np.isfinite(size)
+    return np.asarray(orth(columns[:, kept] / size[kept], rcond=1e-8))
 
 
 def reduce_to_triangle(columns: Array, residual: Array) -> tuple[Array, Array, Array]:

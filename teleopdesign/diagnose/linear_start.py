@@ -23,7 +23,7 @@ from ..model import Model
 from ..realise.tangent_columns import Probe
 from .bodies_apart import select_bodies
 from .fit import Fit
-from .least_squares import column_sizes
+from .least_squares import column_sizes, span
 
 #: columns that pass through the friction balance in one call. The number is even, because a phase
 #: takes two columns; with the residual and one more column they fill lanes of eight. With fewer,
@@ -89,9 +89,7 @@ def linear_starts(
 
 def span_of(base: Fit) -> Array:
     """Orthonormal columns (rows, p) that span what the parameters and shifts of a fit change."""
-    known = np.hstack([base.jacobian, base.by_shift])
-    basis, _ = np.linalg.qr(known / _size(known))
-    return np.asarray(basis)
+    return span(np.hstack([base.jacobian, base.by_shift]))
 
 
 def _other_values(
@@ -104,11 +102,6 @@ def _other_values(
     return values
 
 
-def _size(columns: Array) -> Array:
-    size = column_sizes(columns)
-    return np.where(size > 0, size, 1.0)
-
-
 def _slopes(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
     """Derivatives (probes, rows) of the residual by each probe, with contiguous rows."""
     stretches = prepared.of("fit")
@@ -117,23 +110,6 @@ def _slopes(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
     whole = np.zeros((len(probes), sum(len(s.keep) for s in stretches)))
     whole[:, moved.rows] = slopes.T
     return whole
-
-
-def _best_multiples(rows: Array, target: Array) -> Array:
-    """Multiples of one or two rows whose sum is nearest to a target (n,) in least squares.
-
-    rows: (1 or 2, n), each of length 1 or 0
-    """
-    first = rows[0] @ target
-    if len(rows) == 1:
-        return np.array([first])
-    along = rows[0] @ rows[1]
-    across = rows[1] - along * rows[0]
-    size = np.linalg.norm(across)
-    if size < 1e-5:  # nearly parallel: one orthogonalisation would leave errors above 1e-10
-        return np.asarray(np.linalg.lstsq(rows.T, target, rcond=1e-10)[0])
-    second = across @ target / size**2
-    return np.array([first - along * second, second])
 
 
 def _start(model: Model, effect: Effect, at: str, left: Array, slopes: Array) -> LinearStart:
@@ -145,8 +121,10 @@ def _start(model: Model, effect: Effect, at: str, left: Array, slopes: Array) ->
     assert effect.strength is not None
     if not np.isfinite(slopes).all():  # no finite motion with these values
         return LinearStart(model, {}, math.inf)
-    size = _size(slopes.T)
-    by = -_best_multiples(slopes / size[:, None], left) / size
+    size = column_sizes(slopes.T)
+    size[size == 0.0] = 1.0
+    # of one or two rows: their multiples whose sum is nearest to what is left
+    by = -np.linalg.lstsq((slopes / size[:, None]).T, left, rcond=1e-10)[0] / size
     values = {effect.strength: float(by[0])}
     if effect.phase:
         values = {

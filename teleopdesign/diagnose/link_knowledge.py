@@ -19,7 +19,7 @@ from ..realise.along_motion import residual_along
 from ..realise.tangent_columns import LinkParameter
 from .error import force_error
 from .fit import block_numbers, free_parameters, standard_errors
-from .least_squares import column_sizes
+from .least_squares import span
 from .parts import PreparedParts, remove_links
 from .record_offsets import apply_record_offsets
 from .record_shift import record_shifts
@@ -76,7 +76,7 @@ def link_errors(
     rows, left, blocks, first = [], [], [], 0
     for j, model in models.items():
         columns, residual, slopes, plain = _linear(model, records[j].of("fit"))
-        basis, n = _basis(slopes), len(residual)
+        basis, n = span(slopes), len(residual)
         numbers = block_numbers(plain)
         numbers = np.append(numbers, np.full(n - len(numbers), numbers.max() + 1))
         rows.append((columns - basis @ (basis.T @ columns)) / sizes[j])
@@ -104,7 +104,7 @@ def _knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Kno
     size: root of the squares that count as one observation
     """
     columns, residual, slopes, _ = _linear(model, stretches, is_held=True)
-    basis = _basis(slopes)
+    basis = span(slopes)
     columns, residual = (x - basis @ (basis.T @ x) for x in (columns, residual))
     # residual at b: residual - columns (b - links)
     target = residual + columns @ np.asarray(model.links)
@@ -166,14 +166,6 @@ def add_links(model: Model, stretches: tuple[Stretch, ...]) -> tuple[Stretch, ..
         links = replace(s.motion.links, smooth=-s.motion.lowpassed(slopes))
         made.append(replace(s, motion=replace(s.motion, links=links)))
     return tuple(made)
-
-
-def _basis(columns: Array) -> Array:
-    """Orthonormal basis of the span of the columns."""
-    size = column_sizes(columns)
-    columns = columns[:, size > 0] / size[size > 0]
-    basis, s, _ = np.linalg.svd(columns, full_matrices=False)
-    return np.asarray(basis[:, s > 1e-8 * s.max(initial=0.0)])
 
 
 def _sum(known: list[Knowledge]) -> Knowledge:

@@ -1,10 +1,10 @@
-"""Bodies of a model as plain data, in the format of experiments, diagrams and answers."""
+"""Bodies and effects of a model as plain data, as in experiments, diagrams and answers."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ..base.errors import ExperimentError, did_you_mean, quote
@@ -16,9 +16,23 @@ from ..measurement.arm_description import joints_from
 from ..measurement.description import ONE_BODY, TWO_BODIES, bodies_from
 from ..model import Model
 from ..realise.stages_along import RECORD_SHIFT
+from .candidates import Candidate
 
 #: key of an arm's base parameters beside its bodies
 LINKS = "links"
+
+
+@dataclass(frozen=True)
+class Place:
+    """An effect and its place, as answers write them."""
+
+    effect: str
+    at: str
+
+
+def place_data(candidate: Candidate) -> dict[str, str]:
+    """An effect and its place, as answers write them."""
+    return {"effect": candidate.effect.name, "at": candidate.at}
 
 
 def model_data(model: Model) -> dict[str, Any]:

@@ -62,7 +62,7 @@ def narrower_band(model: Model, prepared: Prepared) -> NarrowerBand | None:
         except ExperimentError:
             return best
         there = _error(estimate(model, narrower))
-        if not CRITERIA.falls * there < here:
+        if not CRITERIA.far_larger * there < here:
             break
         best = NarrowerBand(part * chosen, there, chosen, here)
     return best
@@ -85,7 +85,7 @@ def choose_band(wide: Diagnosis, narrow: Diagnosis) -> Diagnosis:
     Where the final model explains the high frequencies, such as a resonance, its error is small in
     the wide band too.
     """
-    if not CRITERIA.falls * _error(narrow.after) < _error(wide.after):
+    if not CRITERIA.far_larger * _error(narrow.after) < _error(wide.after):
         return wide
     words = (
         f"all that is faster than {narrow.bandwidth:.3g} Hz: the final model of the "

@@ -92,8 +92,8 @@ def noise_floor(
         drawn = [_draw_reading(s, prepared, generator, k) for s in stretches]
         pairs = zip(residuals(model, drawn), before, strict=True)
         errors.append(error_of(drawn, [r - r0 for (r, _), (r0, _) in pairs]))
-        again = zip(refer_to_command(model, drawn).residual, command_before, strict=True)
-        command_errors.append(error_of(drawn, [r - r0 for r, r0 in again]))
+        moved = refer_to_command(model, drawn).residual - command_before
+        command_errors.append(np.linalg.norm(moved) / np.sqrt(sum(s.measured for s in drawn)))
     source = (
         "stated resolution and noise" if stated else "step and noise estimated from the readings"
     )

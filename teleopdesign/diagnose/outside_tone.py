@@ -113,7 +113,7 @@ def _drive_by_tone(model: Model, stretch: Stretch, frequency: float) -> Stretch:
     shown = stretch.motion.lowpassed(waves.T).T[stretch.keep]
     for _ in range(PLAN.tone_turns):
         ((residual, _),) = residuals(model, [stretch])
-        if len(residual) < 3:
+        if len(residual) <= shown.shape[1]:
             break
         motion = stretch.motion
         size, *_ = np.linalg.lstsq(shown, residual, rcond=None)
@@ -139,7 +139,7 @@ def _frequency(parts: Sequence[tuple[Stretch, Array]]) -> float:
         return 0.0
     interval = parts[0][0].motion.sample_time
     rows = max(len(s.motion.time) for s, _ in parts)
-    length = fft.next_fast_len(PLAN.tone_fineness * rows, real=True)
+    length = fft.next_fast_len(2 * rows, real=True)
     grid = fft.rfftfreq(length, interval)
     power = np.zeros(len(grid))
     for stretch, residual in parts:
@@ -147,7 +147,7 @@ def _frequency(parts: Sequence[tuple[Stretch, Array]]) -> float:
         line[stretch.keep] = residual
         power += np.abs(fft.rfft(line, length)) ** 2
     thinned = min(float(np.median(np.diff(s.keep))) for s, _ in parts)
-    power[(grid < 2 / (rows * interval)) | (grid > 0.5 / (thinned * interval))] = 0.0
+    power[(grid < 2 / (rows * interval)) | (2 * grid * thinned * interval > 1)] = 0.0
     step, peak = float(grid[1]), float(grid[int(np.argmax(power))])
 
     def lost(frequency: float) -> float:
@@ -165,9 +165,9 @@ def _tone_squares(stretch: Stretch, residual: Array, frequency: float) -> float:
 
 def _remove_tone(stretch: Stretch, residual: Array, frequency: float) -> Array:
     """A residual without the tone of this frequency (Hz), of the best amplitude and phase."""
-    if len(residual) < 3:
-        return residual
     waves = _waves(stretch, frequency)[stretch.keep]
+    if len(residual) <= waves.shape[1]:
+        return residual
     size, *_ = np.linalg.lstsq(waves, residual, rcond=None)
     return np.asarray(residual - waves @ size)
 
@@ -176,12 +176,12 @@ def _share(stretch: Stretch, frequency: float) -> float:
     """Largest share of the power near a frequency (Hz), of three signals of the motion.
 
     The signals are the velocity, its sign and its magnitude: friction of a periodic motion has odd
-    and even harmonics that the velocity lacks.
+    and even harmonics that the velocity lacks. By their window a tone is four lines wide.
     """
     motion = stretch.motion
     n = len(motion.velocity)
     line = 1.0 / (n * motion.sample_time)
-    near = np.abs(np.fft.rfftfreq(n, motion.sample_time) - frequency) <= 3 * line
+    near = np.abs(np.fft.rfftfreq(n, motion.sample_time) - frequency) <= 2 * line
     size = np.abs(motion.velocity)
     parts = []
     for signal in (motion.velocity, np.sign(motion.velocity), size - size.mean()):

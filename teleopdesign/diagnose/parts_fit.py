@@ -18,7 +18,8 @@ from ..model import Model
 from .candidates import Candidate
 from .effort import EFFORTS, Effort
 from .error import force_error
-from .fit import Fit, command_error_of, estimate, free_parameters
+from .error_at_command import refer_to_command
+from .fit import Fit, estimate, free_parameters
 from .link_knowledge import common_links, joint_knowledge, with_others
 from .parts import PreparedParts, mean_inertias, remove_links, with_inertias
 from .solve import solve
@@ -194,5 +195,5 @@ def _evaluate_at(fit: Fit, model: Model, records: Prepared) -> Fit:
     check = records.of("check")
     if not check:
         return fit
-    at_command = command_error_of(model, check)
+    at_command = refer_to_command(model, check)
     return replace(fit, check_error=force_error(model, check), at_command=at_command)

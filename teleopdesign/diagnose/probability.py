@@ -41,7 +41,8 @@ class CandidateEvidence:
     belief: what the effect that was added on this step explains in the final model, beside free
         functions; None: it cannot be taken from this model
     from_noise: the step began with a model that leaves only noise
-    at_most: probability of the accepted effects that it requires: it cannot act without them
+    at_most: least probability of the accepted effects that it requires: it cannot act without
+        them; None: it requires none
     """
 
     ranked: Ranked
@@ -53,7 +54,7 @@ class CandidateEvidence:
     barred: str = ""
     belief: Belief | None = None
     from_noise: bool = False
-    at_most: float = 1.0
+    at_most: float | None = None
 
     def probability(self) -> float:
         """Probability that the effect is missing, 0 to 1."""
@@ -68,7 +69,8 @@ class CandidateEvidence:
             trusted = 0.0 if self.belief is None else self.belief.share**CRITERIA.believing
         if self.from_noise:  # a true effect explains nearly all force above the noise
             trusted *= self.explained
-        return float(np.clip(CRITERIA.true_of_accepted * real * trusted, 0.0, self.at_most))
+        alone = max(CRITERIA.true_of_accepted * real * trusted, 0.0)
+        return float(alone if self.at_most is None else min(alone, self.at_most))
 
 
 def evidence_of(end: LadderEnd) -> list[CandidateEvidence]:
@@ -77,7 +79,7 @@ def evidence_of(end: LadderEnd) -> list[CandidateEvidence]:
     accepted = {one.ranked.candidate.key: one.probability() for one in evidence if one.accepted}
     most = _limit_by_requirements(end, accepted)
     return [
-        replace(one, at_most=most.get(one.ranked.candidate.key, 1.0)) if one.accepted else one
+        replace(one, at_most=most.get(one.ranked.candidate.key)) if one.accepted else one
         for one in evidence
     ]
 

@@ -88,8 +88,7 @@ def are_dependent(columns: Array) -> bool:
     lengths = np.linalg.norm(columns, axis=0)
     if not lengths.all():
         return True
-    sizes = np.linalg.svd(columns / lengths, compute_uv=False)
-    return bool((sizes[-1] / sizes[0]) ** 2 <= 1e-12)
+    return bool(np.linalg.matrix_rank(columns / lengths, rtol=1e-6) < len(lengths))
 
 
 def best_product(columns: Array, errors: Array) -> tuple[Array, float]:
@@ -120,4 +119,4 @@ def _relative_columns(fit: Fit, names: Sequence[str], values: Array) -> Array:
 
 
 def _power(name: str, power: float) -> str:
-    return name if abs(power - 1.0) < 0.05 else f"{name}^{power:.1f}"
+    return name if f"{power:.1f}" == "1.0" else f"{name}^{power:.1f}"

@@ -16,7 +16,7 @@ from ..measurement.prepare import Prepared
 from ..model import Model
 from .bodies_apart import Apart, separate_bodies
 from .fit import Fit, free_parameters
-from .least_squares import add_damping, reduce_to_triangle, sum_of_squares
+from .least_squares import RIDGE, add_damping, reduce_to_triangle, sum_of_squares
 
 
 class Promises:
@@ -64,7 +64,7 @@ def _remaining_squares(columns: Array, residual: Array) -> float:
     size, triangle, target = reduce_to_triangle(columns, residual)
     if not np.isfinite(size).all():
         return math.inf
-    rows, right = add_damping(triangle, target, 1e-9)
+    rows, right = add_damping(triangle, target, RIDGE)
     step = np.linalg.lstsq(rows, right, rcond=None)[0]
     # least squares: the step is at right angles to what it leaves
     return sum_of_squares(residual) - float(right @ (rows @ step))

@@ -6,14 +6,14 @@ Candidates that count come first, in the order of their errors on the check reco
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 
 from ..base.errors import ModelError
+from ..effects import Effect
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .candidate_fits import ProgressLine, fit_each
-from .candidates import Candidate, bodies_with_measured_force, candidates
+from .candidates import Candidate, bodies_with_measured_force, candidates, make_starts
 from .cores import map_on_cores, one_thread_of_algebra
 from .criteria import CRITERIA
 from .decision import find_superfluous_effect, lowers_check_squares, refusal
@@ -23,9 +23,78 @@ from .fit import Fit, estimate, fit_squares
 from .identifiability import OpenWidths, is_identifiable
 from .order import rank_key
 from .plausibility import implausible_effects
+from .promise import Promises
 from .ranking import Ranked, Ranking
-from .search import base_of, keep_absent
+from .search import Base, base_of, estimate_from_starts, keep_absent
 from .search_plan import PLAN
+
+
+class ProgressLine(str):
+    """A line of text with a count, such as "step 2: stribeck at device (14 of 38)".
+
+    stage: the stage that the line belongs to, such as "step 2"; "": none
+    begun, total: parts of this stage: those that have started, and all
+    """
+
+    stage: str
+    begun: int
+    total: int
+
+    def __new__(cls, text: str, *, begun: int, total: int, stage: str = "") -> ProgressLine:
+        head = f"{stage}: " if stage else ""
+        line = super().__new__(cls, f"{head}{text} ({begun} of {total})")
+        line._text, line.stage, line.begun, line.total = text, stage, begun, total
+        return line
+
+    _text: str
+
+    def within(self, stage: str) -> ProgressLine:
+        """The same line as part of a stage."""
+        return ProgressLine(self._text, begun=self.begun, total=self.total, stage=stage)
+
+
+def _fit_each(
+    possible: Sequence[Candidate],
+    base: Base,
+    prepared: Prepared,
+    *,
+    worth: float,
+    progress: Callable[[ProgressLine], None] | None,
+) -> list[tuple[Candidate, Fit]]:
+    """Candidates with their rough fits, in the order of the candidates.
+
+    base: the fitted model to which each is added
+    worth: part of the base's squares on the fit records below which a gain is not pursued
+    progress: called before each candidate
+    """
+    # effects with hidden states take longest, so they begin first
+    ordered = sorted(possible, key=lambda c: not c.effect.states)
+
+    def fit_candidate(candidate: Candidate) -> Fit:
+        added = base.fit.model.with_effect(candidate.effect, at=candidate.at)
+        return estimate_from_starts(added, prepared, base, worth=worth)
+
+    def begun(i: int) -> None:
+        if progress is not None:
+            progress(ProgressLine(str(ordered[i]), begun=i + 1, total=len(ordered)))
+
+    def derive_laws() -> None:
+        for candidate in ordered:
+            _derive_law(candidate, base, prepared.coarse)
+
+    fits = map_on_cores(fit_candidate, ordered, begun=begun, before=derive_laws)
+    return sorted(zip(ordered, fits, strict=True), key=lambda cf: possible.index(cf[0]))
+
+
+def _derive_law(candidate: Candidate, base: Base, prepared: Prepared) -> None:
+    """Derive and compile the law of a candidate, once in this process, by using it."""
+    if candidate.effect not in _with_laws:
+        _with_laws.add(candidate.effect)
+        added = base.coarse.model.with_effect(candidate.effect, at=candidate.at)
+        Promises(prepared, base.coarse).squares(make_starts(added, prepared.scales)[0])
+
+
+_with_laws: set[Effect] = set()
 
 
 def _absent_if_it_runs_away(attempt: tuple[Candidate, Fit], base: Fit) -> tuple[Candidate, Fit]:
@@ -56,23 +125,12 @@ def _contenders_refined(
     *,
     widths: OpenWidths,
 ) -> list[tuple[Candidate, Fit]]:
-    """The attempts, with fine fits of the best ones.
-
-    The leading attempts are refined first: their fine fits decide which others are close enough.
-    """
-    attempts, refined = list(attempts), set[int]()
-    for contending in (PLAN.leading, PLAN.contending):
-        most = (1.0 + contending) * _least_squares_that_count(attempts, base, widths)
-        chosen = [
-            i
-            for i, (_, fit) in enumerate(attempts)
-            if i not in refined and fit_squares(fit) <= most
-        ]
-        finer = map_on_cores(lambda i: _refine_candidate(attempts[i], worthless, prepared), chosen)
-        for i, attempt in zip(chosen, finer, strict=True):
-            attempts[i] = attempt
-        refined.update(chosen)
-    return attempts
+    """The attempts, with fine fits of the best ones."""
+    most = (1.0 + PLAN.contending) * _least_squares_that_count(attempts, base, widths)
+    chosen = [i for i, (_, fit) in enumerate(attempts) if fit_squares(fit) <= most]
+    finer = map_on_cores(lambda i: _refine_candidate(attempts[i], worthless, prepared), chosen)
+    made = dict(zip(chosen, finer, strict=True))
+    return [made.get(i, attempt) for i, attempt in enumerate(attempts)]
 
 
 def _least_squares_that_count(
@@ -129,7 +187,7 @@ def rank_candidates(
     here = {body} if body is not None else set(base.model.bodies)
     possible = tuple(c for c in possible if c.key in wanted and base.model.holder(c.at) in here)
     start = base_of(base, prepared, stated)
-    fits = fit_each(possible, start, prepared, worth=worth, progress=progress)
+    fits = _fit_each(possible, start, prepared, worth=worth, progress=progress)
     if widely:
         fits = search_among_draws(fits, start, prepared)
     fits = [_absent_if_it_runs_away(cf, base) for cf in fits]

@@ -26,6 +26,7 @@ from ..measurement.prepare import Prepared, Stretch, stretch_of
 from ..model import Model
 from ..realise.simulated import UNDAMPED
 from .cores import map_in_threads
+from .criteria import CRITERIA
 from .effort import EFFORTS
 from .fit import Fit, estimate
 from .noise_floor import read_again
@@ -40,9 +41,6 @@ from .solve import solve, spans_decades
 #: stiffness 1e5 N/m, damping sqrt(1e5) N s/m at 1 kg. `UNDAMPED` stands for 0: then both ratios
 #: share one loop, which takes 2.5 s to compile
 BRISTLE_STEPS, DAMPED = (0.3, 0.1, 0.03), (UNDAMPED, 0.5)
-#: relative shift of an estimate (for logarithmic parameters and angles: absolute) from which the
-#: estimate is not corrected: a shift this large is not known well enough
-LARGEST = 0.5
 #: most successive simulations, while the shift still changes by more than its error
 ROUNDS = 4
 
@@ -147,13 +145,14 @@ def _subtract_shift(fit: Fit, shift: Array) -> tuple[Model, Array]:
     """
     model, moved = fit.model, np.zeros(len(fit.free), dtype=bool)
     there = coordinates(model, fit.free) - shift
-    decades = _decades(model, fit.free)
+    decades, largest = _decades(model, fit.free), CRITERIA.open_error
     there[decades] = np.exp(np.minimum(there[decades], 700.0))
     for i, name in enumerate(fit.free):
         declared = model.declared(name)
-        small = abs(shift[i]) < (LARGEST if decades[i] else LARGEST * model.from_absence(name))
+        # a larger shift is no better known than an open parameter
+        small = abs(shift[i]) < largest * (1.0 if decades[i] else model.from_absence(name))
         if declared.quantity == "angle":
-            small = abs(shift[i]) < LARGEST
+            small = abs(shift[i]) < largest
         inside = declared.lower <= there[i] <= declared.upper
         moved[i] = small and inside and name not in fit.at_bound
         if not moved[i]:

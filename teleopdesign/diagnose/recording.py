@@ -61,8 +61,7 @@ class DiagnosedRecording:
     def place(self) -> Path:
         """The folder of the experiment.
 
-        raises ExperimentError: an answer of an earlier version names no folder, or the folder is
-            absent
+        raises ExperimentError: the answer names no folder, or the folder is absent
         """
         if self.folder is None:
             raise ExperimentError(

@@ -46,8 +46,8 @@ class Repeatability:
     error: Size
     left: Size
     share: Size
-    squares: Size = 1.0
-    chance: Size = 0.0
+    squares: Size
+    chance: Size
 
     @property
     def repeating(self) -> float:

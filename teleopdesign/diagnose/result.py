@@ -31,7 +31,6 @@ from .statements import (
     Alternative,
     CandidateResult,
     LadderRow,
-    StepEvidence,
     StepResult,
     estimate_of,
     finite,
@@ -63,11 +62,10 @@ def diagnosis_of(end: LadderEnd) -> Diagnosis:
         repeats=end.repeats,
         on_all_records=end.on_all_records,
         at_bound=end.after.at_bound,
-        evidence=tuple(_evidence(one) for one in evidence if one.share > 0),
         fingerprint=fingerprint_of(experiment),
         reading=tuple(reading_data(experiment.reading)),
         estimated=end.estimated.model,
-        open=open_questions(end),
+        questions=open_questions(end),
         not_accepted=not_accepted(end),
         nearest=nearest(end),
         no_named_law=end.free_form,
@@ -134,7 +132,7 @@ def _row(end: LadderEnd, rung: Rung) -> LadderRow:
         added=rung.added,
         fit_error=finite(fit.fit_error),
         check_error=finite(fit.check_error),
-        fitted=fit.model,
+        model=fit.model,
         instead_of=None if instead is None else instead.effect.name,
         check_error_at_command=finite(fit.at_command.error),
         blind=finite(fit.at_command.blind),
@@ -222,17 +220,6 @@ def _result(
         lambda_=None if believed is None else finite(believed.lambda_),
         free_function="" if believed is None else believed.best,
         steps=steps,
-    )
-
-
-def _evidence(one: CandidateEvidence) -> StepEvidence:
-    return StepEvidence(
-        candidate=one.ranked.candidate,
-        accepted=one.accepted,
-        as_good=one.as_good,
-        score=finite(one.ranked.score),
-        share=float(one.share),
-        explained=float(one.explained),
     )
 
 

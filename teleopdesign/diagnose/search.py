@@ -7,6 +7,7 @@ the first ones of a ranking are fitted finely.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -91,14 +92,14 @@ def estimate_from_starts(
     models = make_starts(model, prepared.scales)
     absent = [model.body(at).effect(name) for name, at in model.absent]
     rugged = any(is_rugged(e) for e in absent)
-    wide = rugged or any(len(e.parameters) >= PLAN.many_parameters for e in absent)
-    kept = PLAN.wide if wide else PLAN.curved_stepped
+    wide = rugged or any(len(e.parameters) > 2 * PLAN.followed for e in absent)
+    kept = PLAN.wide if wide else PLAN.followed
     if base is not None:
         curved = strength_of_new(model) is None
         kept = kept if curved else 1
         if curved:
             models += starts_at_values_of_user(models, base.coarse, base.stated)
-        most = PLAN.wide if wide else PLAN.curved_predicted
+        most = PLAN.wide if wide else 2 * PLAN.followed
         others = with_what_they_need(model, models, prepared) if curved else []
         models = _select_promising(model, models, coarse, base, most=most, worth=worth)
         if others:
@@ -254,7 +255,7 @@ def _start_by_strength(
     starts = linear_starts(list(distinct.values()), effect, at, prepared, base.coarse)
     if starts[0].promised > base.least(worth):
         return []
-    return [s.model for s in starts[: PLAN.predicted]]
+    return [s.model for s in starts[: PLAN.followed]]
 
 
 def _best_stepped(
@@ -282,13 +283,12 @@ def _jolt(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) ->
     free = free_parameters(best.model)
     names = [n for effect, at in new for n in free if n.startswith(f"{at}.{effect}.")]
     model, least = best.model, squares_of(best)
-    for _ in range(PLAN.sweeps):
+    before = math.inf
+    while least < (1.0 - PLAN.onward) * before:
         before = least
         for name, factor in product(names, PLAN.jolts):
             jolted = model.with_values({name: model.parameters[name].value * factor})
             solution = follow_start(jolted, prepared, EFFORTS.first_steps)
             if squares_of(solution) < least:
                 least, model = squares_of(solution), solution.model
-        if least > (1.0 - PLAN.onward) * before:
-            break
     return best if model is best.model else follow_start(model, prepared, EFFORTS.rough)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from ..measurement.experiment import excerpt
 from ..measurement.prepare import Prepared, prepare
+from .effort import EFFORTS
 
 
 @dataclass(frozen=True)
@@ -23,17 +24,10 @@ class SearchPlan:
     #: ranking each. At each joint of an arm with more joints than that one is followed: a real arm
     #: always leaves more than noise, and with three, six joints took over twice the time
     beam: int = 3
-    #: whether the errors of the readings are taken out of the last fit. Not at a joint of an arm:
-    #: its readings are drawn with those of all joints
-    corrected: bool = True
-    #: whether an effect is barred that stands in for other values of the model, for the noise of
-    #: readings or for a few moments. Not at a joint of an arm: its effects are tested on all joints
-    stand_ins: bool = True
-    #: parameters of an effect from which it is searched from more starts. Five: `maxwell_slip`
-    many_parameters: int = 5
-    #: starts kept after the prediction by one linear step, of an effect linear in its strength; of
-    #: these one is kept after the first real steps
-    predicted: int = 2
+    #: starts of an effect linear in its strength that are kept after the prediction by one linear
+    #: step; of these one is kept after the first real steps. Of any other effect, of which one step
+    #: says less, twice as many, and these after the first steps; of draws, twice as many, too
+    followed: int = 2
     #: part of the force below which the strength of an effect that a new one needs counts as taken
     #: away. Of 30 simulated springs that slip late in a stroke, a bristle left 86 to 88 % of four
     #: from the usual starts, and leaves 9 to 15 % with the further ones; no error grew by 0.2 %
@@ -42,13 +36,10 @@ class SearchPlan:
     #: effect. Of nine simulated springs beside a bristle, six ended above it (up to 4.5 times its
     #: squares), one with the first two parts, none with three; two smaller ones changed nothing
     smaller: tuple[float, ...] = (0.3, 0.1, 0.03)
-    #: the same of an effect that is linear in no strength: one step says less of it
-    curved_predicted: int = 4
-    curved_stepped: int = 2
-    #: the same where hidden states are corrected, or parameters are many: states may still fall out
-    #: of step, and squares are rugged. All are followed: the first steps from a good start may all
-    #: fail (one search of a gap ended at 43 % with three, at 4 % with six; one of slipping springs
-    #: at 6.5 % with two, at 2.5 % with four)
+    #: the same where hidden states are corrected, or where parameters are more than starts: states
+    #: may fall out of step, and squares are rugged. All are followed: the first steps from a good
+    #: start may all fail (one search of a gap ended at 43 % with three, at 4 % with six; one of
+    #: slipping springs at 6.5 % with two, at 2.5 % with four)
     wide: int = 6
     #: parts of the time by which a log may be late at which the user's model begins, too: 12 and
     #: 35 ms of 50. From none alone, a log late by 8 rows of 2 ms ended at one row
@@ -59,37 +50,25 @@ class SearchPlan:
     #: factors on each parameter of an effect with rugged squares, from which a better place is
     #: sought
     jolts: tuple[float, ...] = (0.85, 1.18)
-    #: most sweeps of such jolts over the parameters
-    sweeps: int = 2
-    #: part of the squares that a sweep must take away for another to follow
+    #: part of the squares that a sweep of such jolts must take away for another to follow
     onward: float = 0.1
     #: part of the squares before that the best candidate leaves at least where a gap is also sought
     #: among draws: there nothing explains the records. A lower limit searches more records twice
     unexplained: float = 0.1
-    #: draws of the parameters of a gap; those that are improved and then followed; evaluations for
-    #: each. Of eight wide gaps four ended above 1.4 times the error of a fit from the true values,
-    #: with 200 draws one. A draw takes 5 ms on 6 s of records. 0: none, as at the joints of an arm,
-    #: where it was not measured
+    #: draws of the parameters of a gap, and evaluations that improve each of those followed. Of
+    #: eight wide gaps four ended above 1.4 times the error of a fit from the true values, with 200
+    #: draws one. A draw takes 5 ms on 6 s of records. 0: none
     draws: int = 200
-    draws_kept: int = 4
     draw_evaluations: int = 60
     #: first step of a search without derivatives, in the logarithm of each value: a third of it
     simplex: float = 0.3
     #: factor by which draws go beyond the usual starts on both sides
     draws_beyond: float = 3.0
-    #: part of the squares by which two fits must differ to count as two places: ten times what a
-    #: rough fit leaves open
-    elsewhere: float = 1e-3
     #: squares on the fit records above the least that a rough fit leaves, as a part of these, up to
-    #: which another candidate is fitted finely at once
-    leading: float = 0.05
-    #: the same above the least that these fine fits leave. A fine fit took away 2.7 % of what a
-    #: rough one left at most, in 136 fits on simulated and real records, but for four: those of the
-    #: candidates that led
+    #: which another candidate is fitted finely. A fine fit took away 2.7 % of what a rough one left
+    #: at most, in 136 fits on simulated and real records, but for four: those of the candidates
+    #: that led
     contending: float = 0.15
-    #: frequencies evaluated for a tone per inverse of the longest stretch: four, so that none falls
-    #: between two
-    tone_fineness: int = 4
     #: turns of finding the force of a tone on one stretch
     tone_turns: int = 4
     #: turns of finding that force and estimating the model beside it
@@ -97,23 +76,21 @@ class SearchPlan:
     #: most models that one open question holds: an experiment separates each from the others
     rivals: int = 4
 
+    @property
+    def elsewhere(self) -> float:
+        """Part of the squares by which two fits must differ to count as two places.
+
+        Ten times what a rough fit leaves open.
+        """
+        return 10.0 * EFFORTS.rough.tolerance
+
     def for_joints(self, count: int) -> SearchPlan:
         """The plan for each joint of an arm with `count` joints.
 
         An arm's records are searched whole, so the plan has the default sizes of windows.
         """
-        plan = replace(self, long=SearchPlan.long, windows=SearchPlan.windows)
-        return replace(
-            plan,
-            beam=self.beam if count <= self.beam else min(self.beam, 1),
-            corrected=False,
-            stand_ins=False,
-            draws=0,
-        )
-
-    def for_curve(self) -> SearchPlan:
-        """The plan for a friction curve, whose readings have no time: no motion is simulated."""
-        return replace(self, corrected=False, stand_ins=False, draws=0)
+        beam = self.beam if count <= self.beam else min(self.beam, 1)
+        return replace(self, long=SearchPlan.long, windows=SearchPlan.windows, beam=beam)
 
     def omissions(self) -> tuple[str, ...]:
         """Parts of the search with `PLAN` that this plan leaves out, in words; empty: none."""

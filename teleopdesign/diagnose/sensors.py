@@ -18,8 +18,8 @@ from ..measurement.filtering import Array
 class Sensor:
     """Errors of a sensor; step: between readings, 0 for none;  noise: rms (both SI)."""
 
-    step: float = 0.0
-    noise: float = 0.0
+    step: float
+    noise: float
 
     def read(self, signal: Array, generator: np.random.Generator) -> Array:
         """The signal (n,) as this sensor reads it, with drawn noise and offset of its steps."""

@@ -9,16 +9,11 @@ records.
 Errors of the readings: a structure transmits less of the noise in an acceleration. The error may
     then be smaller, and yet be more noise floors of the new model. In a record with few events (a
     motor that sticks and slips under a coarse encoder) a lag may follow the errors themselves.
-
-Few moments: in one log without a check record, the few starts and stops of a motion may share an
-    error, such as that of their time between two rows. An effect that acts only there follows it.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-
-import numpy as np
 
 from ..measurement.prepare import Prepared
 from .criteria import CRITERIA
@@ -75,8 +70,7 @@ def stands_in_for_readings(
 
     before, after: the noise floors of the two models, as drawn
     Where the readings alone explain the error of the base, an effect that weakens their error must
-    leave surely fewer noise floors. An effect that leaves less than the readings alone would, by
-    what it does at few moments, follows their errors.
+    leave surely fewer noise floors.
     returns: None where the effect leaves fewer noise floors too, or the base more than noise
     """
     if rung.added is None or not (before.drawn and after.drawn):
@@ -97,34 +91,6 @@ def stands_in_for_readings(
         f"{without} without it"
     )
     return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)
-
-
-def stands_in_for_moments(base: Fit, rung: Rung, prepared: Prepared) -> SetAside | None:
-    """The effect of a rung that so few moments of one log show that they may agree by chance.
-
-    Chance alone lets N moments agree once in 2^N; a check record would repeat them elsewhere.
-    returns: None with check records, or where enough moments agree
-    """
-    if rung.added is None or prepared.of("check"):
-        return None
-    moments = acting_moments(base, rung.fit)
-    if 0.5**moments < CRITERIA.by_chance:
-        return None
-    reason = (
-        f"explains about {max(moments, 1.0):.0f} moments of this log, such as starts and stops: "
-        "without a check record so few may agree by chance, or share an error of their time"
-    )
-    return SetAside(rung.added, rung.fit.check_error, reason)
-
-
-def acting_moments(base: Fit, fit: Fit) -> float:
-    """Effective number of blocks of the check records that hold what an effect explains.
-
-    (sum g)^2 / sum g^2 with the falls g of the sum of squares.
-    """
-    falls = np.bincount(base.check_blocks, base.check_residual**2 - fit.check_residual**2)
-    squares = float(np.sum(falls**2))
-    return float(falls.sum()) ** 2 / squares if squares > 0.0 else 0.0
 
 
 def is_of_readings(floors: float) -> bool:

@@ -43,7 +43,7 @@ def add_transmission(search: LadderSearch, state: LadderState) -> LadderState | 
     except those that the two could imitate.
     returns: None where no such pair is supported
     """
-    if is_adequate(state.fit, state.floor) or not search.plan.draws:
+    if is_adequate(state.fit, state.floor) or not search.draws_gaps:
         return None
     staying = _rungs_to_stay(search, state)
     for rungs in (staying, state.rungs) if len(staying) < state.step else (state.rungs,):

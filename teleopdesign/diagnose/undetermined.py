@@ -21,13 +21,6 @@ from .products import product_of
 from .rung import Rung
 from .statements import Undetermined
 
-#: standard error over value from which a parameter counts as open: then zero and twice the value
-#: both lie within two standard errors
-OPEN = 0.5
-#: a product of open parameters is known far better than each of them, if its relative error is
-#: below this part of the least relative error of the parameters
-PRODUCT = 0.5
-
 
 def find_undetermined(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Undetermined, ...]:
     """Parameters of the effects of a ladder that the records do not determine, by the last fit."""
@@ -80,9 +73,10 @@ def known_together(fit: Fit, candidate: Candidate) -> str:
     Parameters that are zero, angles and those at a bound have no part in a product.
     """
     product = product_of(fit, f"{candidate.at}.{candidate.effect.name}")
-    if product is None or max(product.errors) < OPEN:
+    if product is None or max(product.errors) < CRITERIA.open_error:
         return ""
-    if product.known >= PRODUCT * min(product.errors):
+    # known far better than each of them: by the same part
+    if product.known >= CRITERIA.open_error * min(product.errors):
         return ""
     each = ", ".join(f"{100 * error:.2g} %" for error in product.errors)
     return f"{product} is known within {100 * product.known:.2g} %, each factor only within {each}"
@@ -91,7 +85,7 @@ def known_together(fit: Fit, candidate: Candidate) -> str:
 def open_parameters_line(model: Model) -> str | None:
     """A sentence where every estimated parameter of a model is open; else None."""
     estimated = [value for value in model.parameters.values() if not value.fixed]
-    known = [v for v in estimated if not v.stderr >= OPEN * abs(v.value)]
+    known = [v for v in estimated if not v.stderr >= CRITERIA.open_error * abs(v.value)]
     if not estimated or known:
         return None
     return (

@@ -18,7 +18,8 @@ import numpy as np
 
 from ..diagnose.candidates import Candidate
 from ..diagnose.criteria import CRITERIA
-from ..diagnose.fit import Fit, weigh_residuals
+from ..diagnose.error import weigh_residuals
+from ..diagnose.fit import Fit
 from ..diagnose.residual import relative_residuals
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch

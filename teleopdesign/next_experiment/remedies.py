@@ -109,7 +109,9 @@ def setups(
             f"a known inertia of {mass:.2g} {unit_of(INERTIA.quantity, axis)} is attached to the "
             f"{place} for the new record",
             replace(
-                bench, attached={place: mass}, sensors={**bench.sensors, interaction: Sensor()}
+                bench,
+                attached={place: mass},
+                sensors={**bench.sensors, interaction: Sensor(0.0, 0.0)},
             ),
             setting,
             limits,
@@ -120,7 +122,7 @@ def setups(
                 [s.motion for s in prepared.of("fit") if s.motion.body == place], prepared.bandwidth
             )["force"]
         )
-        sensor = bench.sensors.get(interaction, Sensor(noise=SENSOR_NOISE * force))
+        sensor = bench.sensors.get(interaction, Sensor(step=0.0, noise=SENSOR_NOISE * force))
         yield ChangedSetUp(
             f"a hand pushes the {place} with {force:.2g} {unit_of('force', axis)} (rms) and the "
             "force is measured",

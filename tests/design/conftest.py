@@ -39,7 +39,7 @@ def rod(experiment):
     """The rod as a diagnosis leaves it, with Stribeck friction."""
     model = td.Model.from_experiment(experiment).with_effect("stribeck")
     model = model.with_values({n: Value(v, stderr=e) for n, (v, e) in ROD.items()})
-    row = LadderRow(None, 0.0105, 0.0105, model, check_error_at_command=0.0105)
+    row = LadderRow(None, 0.0105, 0.0105, model, 0.0, check_error_at_command=0.0105)
     floor = NoiseFloor(0.01, "stated", drawn=0.01)
     recording = DiagnosedRecording(stated=experiment)
     return Diagnosis("effects_missing", (row,), floor, (), (), recording=recording)

@@ -7,7 +7,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.cli import main
-from teleopdesign.diagnose.curve_band import friction_at
+from teleopdesign.diagnose.covariance import friction_at
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.measurement.prepare import prepare

@@ -44,7 +44,7 @@ def test_a_coarse_and_filtered_position_is_reported_to_need_forces_that_nothing_
     narrower = narrower_band(model, prepared)
     assert narrower is not None and narrower.chosen == prepared.bandwidth
     assert narrower.bandwidth < narrower.chosen
-    assert CRITERIA.falls * narrower.error < narrower.error_at_chosen
+    assert CRITERIA.far_larger * narrower.error < narrower.error_at_chosen
     assert f"bandwidth = {{ value = {narrower.bandwidth:.3g}" in str(narrower)
 
 

@@ -8,8 +8,9 @@ from diagnose.made_records import write_made
 from diagnose.simulated_cases import write_simulated
 
 import teleopdesign as td
+from teleopdesign.diagnose.error import weigh_residuals
 from teleopdesign.diagnose.evidence import check_squares
-from teleopdesign.diagnose.fit import estimate, weigh_residuals
+from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.outside_tone import _tone_squares, best_tone
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.measurement.prepare import prepare

@@ -1,7 +1,5 @@
 """Parameters that the fit records leave open are not mistaken for a missing effect."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from diagnose.made_records import write_made
@@ -13,7 +11,6 @@ from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.rung import Rung
 from teleopdesign.diagnose.stand_in import (
     estimable_on_all,
-    stands_in_for_moments,
     stands_in_for_values,
 )
 from teleopdesign.diagnose.stated_fit import estimate_stated
@@ -108,23 +105,3 @@ def test_an_adequate_model_gets_no_tip_for_the_steps_of_its_encoder(tmp_path):
     assert [r.added for r in diagnosis.rungs] == [None]
     assert diagnosis.verdict == "model_adequate"
     assert [one.candidate.effect.name for one in diagnosis.set_aside] == ["transmission_compliance"]
-
-
-def fits_of(falls):
-    """Two fits, the second of which leaves less by these squares in successive blocks."""
-    blocks = np.repeat(np.arange(len(falls)), 5)
-    left = np.sqrt(np.repeat(np.asarray(falls, float), 5) / 5.0)
-    base = SimpleNamespace(check_blocks=blocks, check_residual=left)
-    return base, SimpleNamespace(check_residual=np.zeros(len(left)), check_error=0.1)
-
-
-@pytest.mark.parametrize("falls, is_few", [([1] * 6, True), ([1] * 7, False)])
-def test_an_effect_of_few_moments_is_set_aside_where_no_check_record_repeats_them(falls, is_few):
-    """Six moments agree by chance once in 64, seven once in 128."""
-    base, fit = fits_of(falls)
-    rung = SimpleNamespace(added="an effect", fit=fit)
-    for check, barred in (((), is_few), (("a stretch",), False)):
-        prepared = SimpleNamespace(of={"check": check}.get)
-        none = stands_in_for_moments(base, rung, prepared)
-        assert (none is not None) == barred
-        assert none is None or "6 moments" in none.reason

@@ -10,7 +10,7 @@ import numpy as np
 from ...base.finding import Finding, Graph, Series
 from ...base.sentences import unit_at_axis
 from ...base.units import unit_of
-from ...diagnose.curve_band import friction_at
+from ...diagnose.covariance import friction_at
 from ...measurement.filtering import Array
 from .style import MEASURED
 

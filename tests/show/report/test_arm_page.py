@@ -27,7 +27,7 @@ def two_joints(diagnosis):
     def row(added, check, one, other):
         joints = {"j1": JointErrors(one, one), "j2": JointErrors(other, other)}
         return LadderRow(
-            added, 0.5 * check, check, diagnosis.model, joints=joints, named=added is not None
+            added, 0.5 * check, check, diagnosis.model, 0.0, joints=joints, named=added is not None
         )
 
     return Diagnosis(
