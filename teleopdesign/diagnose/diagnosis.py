@@ -39,6 +39,7 @@ from .statements import (
     NotAccepted,
     OpenQuestion,
     SetAside,
+    StepEvidence,
     Undetermined,
     estimate_of,
 )
@@ -112,6 +113,7 @@ class Diagnosis(Shown, ByValue):
     repeats: Repeatability | None = None
     on_all_records: Error | None = None
     at_bound: tuple[str, ...] = ()
+    evidence: tuple[StepEvidence, ...] = ()
     fingerprint: Annotated[Fingerprint | None, At("experiment")] = None
     reading: tuple[Any, ...] = ()
     estimated: Annotated[Model | None, At("models.estimated")] = None

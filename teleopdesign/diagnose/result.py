@@ -31,6 +31,7 @@ from .statements import (
     Alternative,
     CandidateResult,
     LadderRow,
+    StepEvidence,
     StepResult,
     estimate_of,
     finite,
@@ -62,6 +63,7 @@ def diagnosis_of(end: LadderEnd) -> Diagnosis:
         repeats=end.repeats,
         on_all_records=end.on_all_records,
         at_bound=end.after.at_bound,
+        evidence=tuple(_evidence(one) for one in evidence if one.share > 0),
         fingerprint=fingerprint_of(experiment),
         reading=tuple(reading_data(experiment.reading)),
         estimated=end.estimated.model,
@@ -220,6 +222,17 @@ def _result(
         lambda_=None if believed is None else finite(believed.lambda_),
         free_function="" if believed is None else believed.best,
         steps=steps,
+    )
+
+
+def _evidence(one: CandidateEvidence) -> StepEvidence:
+    return StepEvidence(
+        candidate=one.ranked.candidate,
+        accepted=one.accepted,
+        as_good=one.as_good,
+        score=finite(one.ranked.score),
+        share=float(one.share),
+        explained=float(one.explained),
     )
 
 

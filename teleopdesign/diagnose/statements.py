@@ -139,6 +139,18 @@ class CandidateResult(ByValue):
 
 
 @dataclass(frozen=True, eq=False)
+class StepEvidence(ByValue):
+    """The basis of the probability of a candidate at one step; see `probability`."""
+
+    candidate: Annotated[Candidate, INLINE]
+    accepted: bool
+    as_good: bool
+    score: float
+    share: float
+    explained: float
+
+
+@dataclass(frozen=True, eq=False)
 class OpenRival(ByValue):
     """A candidate that could replace an accepted effect, with the model it was compared by."""
 

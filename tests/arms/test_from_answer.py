@@ -150,13 +150,13 @@ def test_a_bad_pose_is_one_line(answer, capsys, pose):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda a: a.pop("models"), 'no key "models"'),
+        (lambda a: a.pop("models"), 'no key "joint1.inertia"'),
         (lambda a: a["models"]["ladder"].pop(), "models.ladder: found 1 models, expected 2"),
         (lambda a: a["models"]["ladder"][-1]["links"].pop(), "base parameters, expected"),
         (lambda a: a["models"]["ladder"][0].update(links=["1"]), "links"),
         (lambda a: a["joints"].pop("joint2"), 'no joint "joint2", has joint1'),
         (lambda a: a["joints"]["joint1"].pop("candidates"), 'joints.joint1: no key "candidates"'),
-        (lambda a: a["joints"].update(joint1={"verdict": "undecided"}), 'joint1: no key "ladder"'),
+        (lambda a: a["joints"].update(joint1={"verdict": "undecided"}), 'joint1: no key "missing"'),
         (lambda a: a["models"]["ladder"][1].update(arm={}), 'found "arm", expected a name'),
     ],
 )
