@@ -1,10 +1,11 @@
-"""Files that were saved: answers, an experiment, a diagram."""
+"""Files that earlier versions wrote: an answer and an older one, an experiment, a diagram."""
 
 from pathlib import Path
 
 import pytest
 
 import teleopdesign as td
+from teleopdesign.base.errors import ExperimentError
 
 SAVED = Path(__file__).parent / "saved_files"
 
@@ -34,6 +35,20 @@ def test_an_answer_loads_as_the_diagnosis_that_it_was():
     left = diagnosis.fit(diagnosis.model)
     assert left.check_error == pytest.approx(diagnosis.after.check_error, rel=1e-9)
     assert diagnosis.questions == ()
+
+
+def test_of_an_older_answer_the_final_model_is_there():
+    diagnosis, older = (td.load_answer(SAVED / f"{n}.json") for n in ("answer", "older_answer"))
+    values = {n: v.value for n, v in diagnosis.model.parameters.items()}
+    assert {n: v.value for n, v in older.model.parameters.items()} == values
+    assert (older.verdict, older.left) == (diagnosis.verdict, diagnosis.left)
+    for more in ("questions", "experiment"):
+        with pytest.raises(ExperimentError, match="earlier version|does not say where"):
+            getattr(older, more)
+    design = td.load_answer(
+        SAVED / "older_answer.json", experiment=td.load_experiment(SAVED / "rod")
+    )
+    assert design.model.parameters["device.inertia"].fixed is False
 
 
 def test_an_answer_on_an_arm_loads_with_its_joints_and_links():

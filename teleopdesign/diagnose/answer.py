@@ -12,12 +12,12 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
 from ..base.arguments import check_types
-from ..base.codec import At, DataForm, DataForms, Filled, from_data, to_data
+from ..base.codec import At, DataForm, DataForms, from_data, to_data
 from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
 from ..base.files import read_whole, write_json
 from ..blocks import with_block_effects
@@ -28,8 +28,8 @@ from .by_simulation import SimulationComparison, simulation_data
 from .candidates import Candidate
 from .diagnosis import Diagnosis
 from .model_data import Place, known_effect, model_data, model_from, place_data
+from .older_answers import upgrade_content
 from .recording import DiagnosedRecording
-from .statements import JointErrors
 
 WRITER = "an answer of `teleopdesign diagnose --json`"
 
@@ -81,7 +81,8 @@ def load_answer(
 ) -> Diagnosis:
     """The diagnosis in an answer that `teleopdesign diagnose --json` or `write_answer` wrote.
 
-    Nothing is searched or estimated again.
+    Nothing is searched or estimated again. Of an answer of an earlier version the final model is
+    there, and what else it holds.
     known: effects by name, with those of the user
     experiment: of this answer; None: it is read from the folder that the answer names, when it is
         first needed
@@ -103,7 +104,7 @@ def diagnosis_in(
     raises ExperimentError: as `load_answer`
     """
     try:
-        diagnosis = _diagnosis_from(content, known)
+        diagnosis = _diagnosis_from(content, known, experiment)
         recording = replace(_recording_of(content, path), stated=experiment)
     except (ExperimentError, ModelError) as error:
         raise ExperimentError(f"{path}: {error}") from error
@@ -140,11 +141,11 @@ def with_recording(diagnosis: Diagnosis, recording: DiagnosedRecording) -> Diagn
     here = replace(
         recording,
         bandwidth=bandwidth if bandwidth == bandwidth else None,
-        model=diagnosis.model,
+        model=diagnosis.after.fitted,
         other_motion=diagnosis.other_motion,
     )
     joints = {
-        name: replace(one, recording=here.of_joint(name, one.model))
+        name: replace(one, recording=here.of_joint(name, one.after.fitted))
         for name, one in diagnosis.joints.items()
     }
     return replace(diagnosis, recording=here, joints=joints)
@@ -178,12 +179,14 @@ def _constant(name: str) -> NoReturn:
     raise ValueError(f"found {name}, expected a finite number or null")
 
 
-def _diagnosis_from(content: dict[str, Any], known: Mapping[str, Effect]) -> Diagnosis:
+def _diagnosis_from(
+    content: dict[str, Any], known: Mapping[str, Effect], experiment: Experiment | None
+) -> Diagnosis:
     """The diagnosis that the content of a file describes.
 
     raises ExperimentError: with the key in front, without the file
     """
-    from_data(_Written, content, "", {}, whole=WRITER)
+    content = upgrade_content(content, known, experiment, whole=WRITER)
     names = from_data(tuple[str, ...], content.get("considered", []), "considered", {})
     effects, considered = with_block_effects(known), {n: known[n] for n in names if n in known}
     may_take = considered if 0 < len(considered) < len(known) else known
@@ -216,6 +219,8 @@ def _with_models_beside(content: dict[str, Any], forms: DataForms, at: str = "")
             f"{at}models.ladder: found {len(models)} models, expected {len(rows)}, one for each "
             "row of the ladder"
         )
+    if models[-1] is None:
+        raise ExperimentError(f"{at}models.ladder[{len(models)}]: found null, expected a table")
     joints = {
         name: _with_models_beside(one, forms, f"{at}joints.{name}.")
         for name, one in content.get("joints", {}).items()
@@ -226,17 +231,7 @@ def _with_models_beside(content: dict[str, Any], forms: DataForms, at: str = "")
 
 @dataclass(frozen=True)
 class _Models:
-    ladder: tuple[Model, ...]
-
-
-@dataclass(frozen=True)
-class _Written:
-    """What the models of an answer are read by, before its other keys."""
-
-    verdict: str
-    ladder: Annotated[tuple[JointErrors, ...], Filled(1)]
-    models: Mapping[str, Any]
-    joints: Mapping[str, _Written] = field(default_factory=dict)
+    ladder: tuple[Model | None, ...]
 
 
 def _check_parts(diagnosis: Diagnosis, at: str = "") -> None:
@@ -252,14 +247,15 @@ def _check_parts(diagnosis: Diagnosis, at: str = "") -> None:
         )
     if first.instead_of is not None:
         raise ExperimentError(f"{at}ladder: instead_of: found it beside added: null")
-    last = [m for m in (diagnosis.model, diagnosis.estimated) if m is not None]
+    last = [m for m in (diagnosis.after.fitted, diagnosis.estimated) if m is not None]
     for row in others:
         if row.added is not None:
             _require_effect(row.added, last, f"{at}ladder")
-        if row.instead_of is not None and row.added is not None:
-            if not first.model.body(row.added.at).has(row.instead_of):
+        if row.instead_of is not None and first.fitted is not None and row.added is not None:
+            there = first.model.body(row.added.at)
+            if not there.has(row.instead_of):
                 raise ExperimentError(f"{at}ladder: instead_of: no {quote(row.instead_of)} there")
-    for question in diagnosis.questions:
+    for question in diagnosis.open or ():
         if question.added is not None:
             _require_effect(question.added, last, f"{at}open")
         for rival in question.others:

@@ -13,6 +13,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from ..base.codec import INLINE, NEVER, OMIT, At, Bounds, Error, Filled, InUnit
+from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
 from ..measurement.experiment import Experiment
@@ -32,6 +33,7 @@ from .record_shift import RecordShift
 from .recording import DiagnosedRecording
 from .repeats import Repeatability
 from .statements import (
+    ANEW,
     CandidateResult,
     EstimatedValue,
     LadderRow,
@@ -76,8 +78,8 @@ class Diagnosis(Shown, ByValue):
     on_all_records: check error of the final model estimated on all records; None: not computed,
         because the check error is not much larger than the fit error
     fingerprint: of the experiment;  reading: corrections of its logs, as plain data
-    estimated: the final model, not yet corrected for errors of the readings; None: as `model`
-    questions: those that the records leave open
+    estimated: the final model, not yet corrected for errors of the readings; None: as `fitted`
+    open: questions that the records leave open; None: an older answer does not say
     not_accepted, nearest: candidates that leave less than the final model, and do not count
     no_named_law: the final model with a curve through values, which surely leaves less and explains
         nothing; None: there is none
@@ -89,7 +91,7 @@ class Diagnosis(Shown, ByValue):
     other_motion: joint -> the joint whose motion is its channel `other_position`
     links: name -> base parameter of the links of an arm
     friction_cells: body -> least friction that model and residual show together, by cells of its
-        travel; an arm's joint has none
+        travel; an older answer, and an arm's joint, have none
     kind: "friction curve": the records have no time, and the bandwidth is NaN; "": others
     simulation: comparison of the final model by simulation, as plain data
     recording: of the experiment; no part of the content
@@ -117,7 +119,7 @@ class Diagnosis(Shown, ByValue):
     fingerprint: Annotated[Fingerprint | None, At("experiment")] = None
     reading: tuple[Any, ...] = ()
     estimated: Annotated[Model | None, At("models.estimated")] = None
-    questions: Annotated[tuple[OpenQuestion, ...], At("open")] = ()
+    open: tuple[OpenQuestion, ...] | None = None
     not_accepted: tuple[NotAccepted, ...] = ()
     nearest: Nearest | None = None
     no_named_law: Annotated[FreeForm | None, OMIT] = None
@@ -238,6 +240,13 @@ class Diagnosis(Shown, ByValue):
         return floors_left(self.after, self.floor)
 
     @property
+    def questions(self) -> tuple[OpenQuestion, ...]:
+        """The open questions; raises ExperimentError: an older answer does not say them."""
+        if self.open is None:
+            raise ExperimentError(f'no key "open": {ANEW}; diagnose anew, or leave --answer out')
+        return self.open
+
+    @property
     def experiment(self) -> Experiment:
         """The experiment: as given, or read now from the folder that the answer names.
 
@@ -252,7 +261,7 @@ class Diagnosis(Shown, ByValue):
 
     def with_final_model(self, model: Model) -> Diagnosis:
         """The same diagnosis with another final model, such as one body of several."""
-        return replace(self, rungs=(*self.rungs[:-1], replace(self.after, model=model)))
+        return replace(self, rungs=(*self.rungs[:-1], replace(self.after, fitted=model)))
 
     def parts(self, row: int = -1) -> list[tuple[Prepared, Model]]:
         """Records and model of each part that is compared alone: all bodies, or each joint.

@@ -64,6 +64,7 @@ def diagnosis_of_parts(
         fingerprint=fingerprint_of(experiment),
         reading=tuple(reading_data(experiment.reading)),
         estimated=rows[-1].model,
+        open=(),
         left_out=tuple(dict.fromkeys(words for d in each for words in d.left_out)),
         considered=first.considered,
         joints=joints,
@@ -98,7 +99,7 @@ def _row(
         added=added,
         fit_error=finite(fit.fit_error),
         check_error=finite(fit.check_error),
-        model=fit.model,
+        fitted=fit.model,
         blind=max(one.blind for one in fit.fits.values()),
         instead_of=None if rung.instead_of is None else rung.instead_of.effect.name,
         alternatives=() if of_joint is None else of_joint.alternatives,
@@ -185,7 +186,7 @@ def _with_inertias(diagnosis: Diagnosis, whole: Mapping[str, float]) -> Diagnosi
     )
     return replace(
         diagnosis,
-        rungs=tuple(replace(r, model=moved(r.model)) for r in diagnosis.rungs),
+        rungs=tuple(replace(r, fitted=moved(r.model)) for r in diagnosis.rungs),
         estimated=None if diagnosis.estimated is None else moved(diagnosis.estimated),
-        questions=questions,
+        open=questions,
     )

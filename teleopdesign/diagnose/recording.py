@@ -61,7 +61,8 @@ class DiagnosedRecording:
     def place(self) -> Path:
         """The folder of the experiment.
 
-        raises ExperimentError: the answer names no folder, or the folder is absent
+        raises ExperimentError: an answer of an earlier version names no folder, or the folder is
+            absent
         """
         if self.folder is None:
             raise ExperimentError(

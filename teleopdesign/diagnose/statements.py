@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from ..base.codec import INLINE, OMIT, At, Error, Size
+from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
 from ..model import Model
 from .candidates import Candidate
@@ -18,6 +19,8 @@ from .ranking import named_instead
 
 #: why a candidate that leaves less does not count
 Why = Literal["refused", "not determined"]
+#: what the error of an older answer lacks
+ANEW = "the answer of an earlier version, from which a diagnosis cannot be taken up again"
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +36,7 @@ class EstimatedValue(ByValue):
 class Alternative(ByValue):
     """An effect that explains the records as well as the one that was accepted at the same step.
 
-    apart: standard deviations of chance between the two;  NaN: not compared at one step
+    apart: standard deviations of chance between the two;  NaN: not known, as in an older answer
     likeness: correlation of the changes that the two make to the residual of the check records
     """
 
@@ -57,7 +60,7 @@ class LadderRow(ByValue):
 
     added: None: the user's model, re-estimated
     fit_error, check_error: relative force errors; NaN where there is no such record
-    model: with its parameters re-estimated
+    fitted: the model; None: an older answer holds that of the last row only
     instead_of: name of the effect of the user's model, at the same place, that the added replaced
     check_error_at_command: the check error as one of the recorded command; NaN: all is blind
     blind: share of the sliding samples in which the command has no influence
@@ -72,15 +75,22 @@ class LadderRow(ByValue):
     added: Candidate | None
     fit_error: Error
     check_error: Error
-    model: Model
-    blind: Error
-    check_error_at_command: Error = math.nan
+    fitted: Annotated[Model | None, At("model")]
     instead_of: str | None = None
+    check_error_at_command: Error = math.nan
+    blind: Error = 0.0
     could_be: tuple[Candidate, ...] | None = None
     alternatives: tuple[Alternative, ...] = ()
     named: bool = False
     follows: Annotated[str | None, OMIT] = None
     joints: Annotated[Mapping[str, JointErrors], OMIT] = field(default_factory=dict)
+
+    @property
+    def model(self) -> Model:
+        """The model, its parameters re-estimated; raises ExperimentError: an older answer."""
+        if self.fitted is None:
+            raise ExperimentError(f'no key "models": {ANEW}; diagnose anew, or leave --answer out')
+        return self.fitted
 
     @property
     def errors(self) -> LadderRow:
@@ -129,8 +139,8 @@ class CandidateResult(ByValue):
     probability: Size
     check_error: Error
     parameters: Mapping[str, EstimatedValue]
-    check_error_at_command: Error
-    blind: Error
+    check_error_at_command: Error = math.nan
+    blind: Error = 0.0
     refused: str | None = None
     rho: Annotated[float | None, OMIT] = None
     lambda_: Annotated[float | None, OMIT, At("lambda")] = None

@@ -56,7 +56,7 @@ class Rival:
 def rivals_of(diagnosis: Diagnosis) -> tuple[Rival, ...]:
     """Models that the records of a diagnosis leave open; empty where the records decide.
 
-    For each accepted effect, those that could replace it (`Diagnosis.questions`) do so in turn.
+    For each accepted effect, the effects that could replace it (`Diagnosis.open`) do so in turn.
     Where there are none, and the verdict is undecided or more is missing: the best few effects that
     would be added next.
     """

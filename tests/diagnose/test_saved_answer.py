@@ -11,6 +11,7 @@ from measurement.rod_example import PAIR, rows
 
 import teleopdesign as td
 from teleopdesign import EFFECTS, ExperimentError, Model, Value
+from teleopdesign.base.files import write_json
 from teleopdesign.blocks import CONTACT, Body
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import answer, load_answer, write_answer
@@ -19,6 +20,9 @@ from teleopdesign.diagnose.model_data import model_data, model_from
 from teleopdesign.diagnose.predictions import write_predictions
 from teleopdesign.effects import catalogue
 from teleopdesign.show.report import write_report
+
+#: what came later than the rest of the format
+LATER = ("experiment", "models", "floor", "open")
 
 
 @pytest.fixture(scope="module")
@@ -88,8 +92,25 @@ def test_a_diagnosis_needs_no_recording_for_what_it_says(path, diagnosis, tmp_pa
         read.plot()
 
 
-def test_the_answer_to_another_experiment_is_refused(changed):
-    file = changed()
+def test_an_older_answer_is_read_with_what_its_experiment_says(changed, diagnosis, experiment):
+    file = changed(**dict.fromkeys(LATER, ...))
+    older = load_answer(file, FEW, experiment=experiment)
+    assert_same(older.model, diagnosis.model)
+    assert (older.verdict, older.left) == (diagnosis.verdict, diagnosis.left)
+    assert str(older).splitlines()[-1] == str(diagnosis).splitlines()[-1]
+    alone = load_answer(file, FEW).model
+    assert alone.bodies["device"].axis == "revolute", "the inertia is in kg*m^2"
+    values = {n: v.value for n, v in diagnosis.model.parameters.items()}
+    assert {n: v.value for n, v in alone.parameters.items()} == values
+    with pytest.raises(ExperimentError, match='no key "models": the answer of an earlier version'):
+        older.before.model  # noqa: B018
+    with pytest.raises(ExperimentError, match='no key "open": the answer of an earlier version'):
+        older.questions  # noqa: B018
+
+
+@pytest.mark.parametrize("old", [False, True])
+def test_the_answer_to_another_experiment_is_refused(old, changed):
+    file = changed(**dict.fromkeys(LATER, ...)) if old else changed()
     rod = td.load_experiment(td.example("rod"))
     with pytest.raises(ExperimentError, match="is not an answer to rod but to another") as why:
         load_answer(file, experiment=rod)
@@ -137,6 +158,17 @@ def test_a_modelled_environment_comes_back(tmp_path):
     data = json.loads(json.dumps(model_data(model)))
     assert_same(model_from(data, EFFECTS, "models"), model)
     assert model.places[-1] == "environment"
+    older = {
+        "verdict": "undecided", "missing": [], "noise_floor": 0.1, "indistinguishable": [],
+        "ladder": [{"added": None, "fit_error": 0.2, "check_error": 0.2}], "candidates": [],
+        "model_parameters": {
+            n: {"value": v.value, "stderr": None if v.stderr != v.stderr else v.stderr,
+                "unit": model.unit(n)} for n, v in model.parameters.items()
+        },
+    }  # fmt: skip
+    write_json(tmp_path / "older.json", older)
+    assert_same(load_answer(tmp_path / "older.json", experiment=experiment).model, model)
+    assert load_answer(tmp_path / "older.json").model.body("environment").axis == "revolute"
 
 
 @pytest.mark.parametrize("name", sorted(EFFECTS))

@@ -240,6 +240,6 @@ def test_a_rod_that_stands_for_itself_needs_no_next_experiment(tmp_path):
 def test_one_candidate_beside_named_effects_has_no_rival(diagnosis):
     """More is missing, and one effect comes near: only longer check records decide."""
     nearest = OpenRival(Candidate(EFFECTS["cogging"], "device"), diagnosis.model)
-    proposal = propose(replace(diagnosis, questions=(OpenQuestion(None, (nearest,)),)))
+    proposal = propose(replace(diagnosis, open=(OpenQuestion(None, (nearest,)),)))
     assert not proposal.separations
     assert "only cogging at device comes near" in proposal.sentence
