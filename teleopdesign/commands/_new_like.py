@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
+from ..base.files import read_whole, write_text
 from ._paths import shell_word
 
 if TYPE_CHECKING:
@@ -39,14 +40,14 @@ def make_like(
     written = folder / "experiment.toml"
     title = options.title or options.logs[0].name.split(".")[0]
     present = set(folder.iterdir()) if folder.is_dir() else None
-    before = written.read_bytes() if written.is_file() else None
+    before = read_whole(written).decode() if written.is_file() else None
     try:
         make_folder_like(source, options.logs, folder, title=title, spans=spans)
         experiment = load_experiment(folder)
     except ExperimentError:
         _remove_new(folder, present)
         if before is not None:
-            written.write_bytes(before)
+            write_text(written, before)
         raise
     print(f"columns, units, signs and model are those of {options.like}\n\n{experiment}")
     if isinstance(experiment, Experiment):
