@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -25,6 +26,8 @@ _SHADES = {"fit": "tab:blue", "check": "tab:orange"}
 #: columns in no channel that are named below the picture; inches that a line of theirs takes
 _UNUSED = 12
 _LINE = 0.16
+#: most letters of such a line
+_LETTERS = 125
 #: width of the picture, inches beside, below and above its axes, and part of their height between
 _WIDTH, _MARGINS, _BETWEEN = 9.0, (0.95, 0.55, 0.15, 0.3), 0.45
 _KINDS = {"actuator_force": "force", "interaction_force": "force"}
@@ -49,7 +52,8 @@ def draw_survey(survey: Survey, experiment: Experiment) -> Figure:
 
 def _draw_survey(survey: Survey, experiment: Experiment) -> Figure:
     keys = [k for k in experiment.channels if experiment.channels[k].body is not None]
-    unused = unused_lines(survey.unused)
+    lines = (textwrap.wrap(line, _LETTERS) for line in unused_lines(survey.unused))
+    unused = [part for line in lines for part in line]
     height = 1.7 * len(keys) + 2.6 + _LINE * len(unused)
     below = _MARGINS[1] + _LINE * len(unused)
     figure = Figure(figsize=(_WIDTH, height))
