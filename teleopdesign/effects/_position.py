@@ -14,8 +14,8 @@ _POINTS = (
     (sp.Rational(-17, 19), sp.Rational(5, 23)),
     (sp.Rational(29, 31), sp.Rational(-2, 37)),
 )
-#: relative difference of two values of one law that is rounding (30 digits are computed)
-_SAME = sp.Float("1e-20")
+#: digits of the values, and relative difference of two values of one law that is rounding
+_DIGITS, _SAME = 30, 1e-20
 
 
 @lru_cache(maxsize=256)
@@ -45,35 +45,32 @@ def period(effect: Effect) -> str | float | None:
 
 def _is_same_at(effect: Effect, offset: sp.Expr) -> bool:
     """Whether the effect is unchanged if its position and hidden positions move by `offset`."""
-    moved = {SIGNALS["position"]: SIGNALS["position"] + offset}
-    for name, symbol in effect.state_symbols().items():
-        if effect.states[name].start == "position":
-            moved[symbol] = symbol + offset
+    hidden = effect.state_symbols().items()
+    moving = [symbol for name, symbol in hidden if effect.states[name].start == "position"]
     laws = (effect.expression(), *effect.rates().values())
-    return all(_is_same(law, law.xreplace(moved)) for law in laws)
+    return all(_is_unmoved(law, {SIGNALS["position"], *moving}, offset) for law in laws)
 
 
-def _is_same(one: sp.Expr, other: sp.Expr) -> bool:
-    if one == other:
+def _is_unmoved(law: sp.Expr, moving: set[sp.Symbol], offset: sp.Expr) -> bool:
+    """Whether a law has the same values where these symbols are larger by an offset."""
+    import mpmath  # of sympy
+
+    if not law.free_symbols & moving:
         return True
-    symbols = sorted(one.free_symbols | other.free_symbols, key=str)
-    for first, step in _POINTS:
-        # parameters may be bounded from below by zero: all points but signals' are positive
-        values = {
-            s: (first if s in SIGNALS.values() else abs(first)) + step * (k + 1) ** 2 / 97
-            for k, s in enumerate(symbols)
-        }
-        a, b = (_value_at(law, values) for law in (one, other))
-        if a != b and not (
-            (a - b).is_number and abs(sp.N(a - b, 30)) <= _SAME * (1 + abs(sp.N(a, 30)))
-        ):
-            return False
+    symbols = sorted(law.free_symbols | offset.free_symbols, key=str)
+    value = sp.lambdify(symbols, law, "mpmath", cse=True)
+    shift = sp.lambdify(symbols, offset, "mpmath")
+    with mpmath.workdps(_DIGITS):
+        for first, step in _POINTS:
+            # parameters may be bounded from below by zero: all points but signals' are positive
+            point = [
+                (first if s in SIGNALS.values() else abs(first)) + step * (k + 1) ** 2 / 97
+                for k, s in enumerate(symbols)
+            ]
+            here = [mpmath.mpf(x.p) / x.q for x in point]
+            pairs = zip(symbols, here, strict=True)
+            there = [x + shift(*here) if s in moving else x for s, x in pairs]
+            before, after = value(*here), value(*there)
+            if abs(after - before) > _SAME * (1 + abs(before)):
+                return False
     return True
-
-
-def _value_at(law: sp.Expr, values: dict[sp.Symbol, sp.Rational]) -> sp.Expr:
-    """The law with numbers in place of all symbols, to 30 digits.
-
-    First as inexact numbers: in exact ones, sympy would look for the exact sine of each angle.
-    """
-    return sp.N(law.evalf(30, subs=values).xreplace(values), 30)
