@@ -1,12 +1,13 @@
 """Right and false names on drawn interfaces and teleoperators, with one hidden effect or none.
 
     PYTHONPATH=tests python -m block_cuts.campaign FOLDER --level clear|weak|adequate [--first 0]
+        [--without R_A]
 
 Each hidden effect of `HIDDEN` is planted once, in a diagram of its own; `weak` has a quarter of its
 size. A row a case is added to `campaign.csv` beside this file. Of effects in the computer only the
 cuts of the computer are compared, of those in a body only its cut, since all signals between
 were recorded: what is planted on one side of a cut changes nothing on the other. Where nothing is
-planted, all cuts are compared.
+planted, all cuts are compared. `--without` leaves a signal out of the records of interfaces.
     PYTHONPATH=tests python -m block_cuts.campaign --table       what the file says
 """
 
@@ -16,7 +17,7 @@ import json
 from pathlib import Path
 
 import numpy as np
-from block_cuts.interface_simulator import draw_interface, write_case
+from block_cuts.interface_simulator import draw_interface, leave_out, write_case
 from block_cuts.teleoperator_simulator import draw_teleoperator, write_teleoperator
 
 import teleopdesign as td
@@ -79,8 +80,8 @@ def judge(diagnosis, hidden):
     return diagnosis.missing == (true,) or (not diagnosis.missing and listed)
 
 
-def diagnose(level, number, hidden, of_two, place):
-    """Write the case, and diagnose it."""
+def diagnose(level, number, hidden, of_two, place, without=None):
+    """Write the case, and diagnose it;  without: a signal that is not recorded."""
     random = np.random.default_rng([("clear", "weak", "adequate").index(level), number])
     if of_two:
         teleoperator = draw_teleoperator(random)
@@ -90,6 +91,8 @@ def diagnose(level, number, hidden, of_two, place):
         interface = draw_interface(random)
         interface.hidden, interface.loop = hidden, any(at == "K" for _, at in hidden)
         write_case(interface, place, random)
+        if without is not None:
+            leave_out(place, without)
     experiment = td.load_experiment(place)
     touched = {at for _, at in hidden}
     cuts = experiment.cuts.tested
@@ -99,15 +102,19 @@ def diagnose(level, number, hidden, of_two, place):
     return td.find_missing(experiment, at=at)
 
 
-def run(folder, level, first, last):
+def run(folder, level, first, last, without=None):
     for number, (hidden, of_two) in list(enumerate(cases(level)))[first : last + 1]:
-        diagnosis = diagnose(level, number, hidden, of_two, Path(folder) / level / f"{number:03}")
+        if without is not None and of_two:
+            continue
+        place = Path(folder) / level / f"{number:03}"
+        diagnosis = diagnose(level, number, hidden, of_two, place, without)
         probabilities = [
             [c["effect"], c["at"], round(c["probability"], 4)]
             for c in diagnosis.answer()["candidates"]
         ]
         row = {
-            "level": level, "number": number, "planted": list(hidden.items()),
+            "level": level if without is None else f"{level} without {without}",
+            "number": number, "planted": list(hidden.items()),
             "right": judge(diagnosis, hidden),
             "false": [key for key in diagnosis.missing if key not in hidden],
             "verdict": diagnosis.verdict, "missing": diagnosis.missing,
@@ -124,7 +131,7 @@ def table():
     """Right and false names by level, and the calibration of every candidate's probability."""
     with TABLE.open() as file:
         rows = [{k: json.loads(v) for k, v in row.items()} for row in csv.DictReader(file, FIELDS)]
-    for level in ("clear", "weak", "adequate"):
+    for level in dict.fromkeys(r["level"] for r in rows):
         here = [r for r in rows if r["level"] == level]
         right, false = sum(r["right"] for r in here), sum(bool(r["false"]) for r in here)
         print(f"{level}: {right} of {len(here)} right, {false} with a false name")
@@ -153,6 +160,10 @@ if __name__ == "__main__":
     parser.add_argument("--level", choices=("clear", "weak", "adequate"))
     parser.add_argument("--first", type=int, default=0, help="number of the first case")
     parser.add_argument("--last", type=int, default=99, help="number of the last case")
+    parser.add_argument("--without", help="signal that is not recorded")
     parser.add_argument("--table", action="store_true", help="print what the file says")
     options = parser.parse_args()
-    table() if options.table else run(options.folder, options.level, options.first, options.last)
+    if options.table:
+        table()
+    else:
+        run(options.folder, options.level, options.first, options.last, options.without)
