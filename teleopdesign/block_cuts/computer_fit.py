@@ -159,7 +159,7 @@ class ControlData(ControlRows):
         """Least squares over the values, from these ones."""
         from scipy.optimize import least_squares
 
-        scaled = self.scaled(placed)
+        scaled = self.coordinates(placed)
 
         def residual(x: Array) -> Array:
             one = self.residuals(self.predictions(scaled.at(x)), shift, "fit")

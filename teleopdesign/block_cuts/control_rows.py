@@ -105,7 +105,7 @@ class ControlRows(ABC):
             return next(c.signal for c in self.part.cuts if COMPUTER in c.blocks)
         return self.part.diagram.block(at).outputs[0]
 
-    def scaled(self, placed: Sequence[Placed]) -> ScaledValues:
+    def coordinates(self, placed: Sequence[Placed]) -> ScaledValues:
         """The values of effects as coordinates of a search."""
         return ScaledValues(tuple(placed), np.array([self._unit(p) for p in placed]))
 

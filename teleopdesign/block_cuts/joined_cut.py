@@ -71,7 +71,7 @@ class JoinedData(ControlRows):
         self.places = tuple(b.name for b in blocks if isinstance(b, Control))
         self._feeding = feeding(experiment.diagram, cut)
         self._bandwidth = experiment.bandwidth
-        self._stated = self._last = self._estimated((), model)
+        self._stated = self._last = self._estimate_body((), model)
         self._bandwidth = self._stated.prepared.bandwidth
         counts = [
             len(next(iter(r.signals.values()))) for r in self._stated.prepared.experiment.records
@@ -92,10 +92,10 @@ class JoinedData(ControlRows):
     def body(self, placed: Sequence[Placed]) -> _Body:
         """The body with the command of these effects."""
         if self._last.placed != tuple(placed):
-            self._last = self._estimated(placed, self._last.fit.model)
+            self._last = self._estimate_body(placed, self._last.fit.model)
         return self._last
 
-    def _estimated(self, placed: Sequence[Placed], start: Model) -> _Body:
+    def _estimate_body(self, placed: Sequence[Placed], start: Model) -> _Body:
         here = body_experiment(self.experiment, self.cut, placed)
         prepared = prepare(here, bandwidth=self._bandwidth)
         return _Body(tuple(placed), prepared, estimate(start, prepared, effort=EFFORTS.near))
@@ -124,14 +124,14 @@ class JoinedData(ControlRows):
         placed, rough = min(first, key=lambda one: sum_of_squares(one[1].residual))
         placed, best = self._solve(here, placed, rough.model, EFFORTS.near)
         errors = standard_errors(best.jacobian, best.residual, self.blocks["fit"])
-        stderr = errors[: len(placed)] * self.scaled(placed).unit
-        return self._fit(self._estimated(placed, best.model), stderr.tolist())
+        stderr = errors[: len(placed)] * self.coordinates(placed).unit
+        return self._fit(self._estimate_body(placed, best.model), stderr.tolist())
 
     def _solve(
         self, here: _Body, placed: Sequence[Placed], model: Model, effort: Effort
     ) -> tuple[tuple[Placed, ...], CommandSolution]:
         """The best values of effects and of the body's parameters."""
-        scaled = self.scaled(placed)
+        scaled = self.coordinates(placed)
 
         def stretches(x: Array) -> list[Stretch]:
             there = scaled.at(x)
