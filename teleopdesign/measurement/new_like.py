@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -40,10 +41,18 @@ def make_folder_like(
         records = [{"file": names[0], "use": use, "span": span} for use, span in uses]
     text = _without_records(read_whole(source / _FILE).decode("utf-8"))
     text = re.sub(r"(?m)^title\s*=.*$", lambda _: f"title = {string_text(title)}", text, count=1)
-    named = {k: v for k, v in content.items() if k != "records"}
-    beside = [path for name in texts_in(named) if (path := source / name).is_file()]
-    copy_logs([*logs, *dict.fromkeys(beside)], folder)
+    copy_logs(logs, folder)
+    others = {key: value for key, value in content.items() if key != "records"}
+    for name in dict.fromkeys(texts_in(others)):
+        if _is_file_in(source, name):
+            copy_logs([source / name], (folder / name).parent)
     write_text(folder / _FILE, "\n".join([text.rstrip(), "", *records_text(records), ""]))
+
+
+def _is_file_in(folder: Path, name: str) -> bool:
+    """Whether a text is the name of a file within a folder; a sentence may be too long for one."""
+    whole = os.path.realpath(folder / name)
+    return os.path.isfile(whole) and Path(whole).is_relative_to(os.path.realpath(folder))
 
 
 def _without_records(text: str) -> str:

@@ -60,3 +60,40 @@ def test_a_log_of_another_logger_is_refused_and_nothing_stays(second, capsys):
     assert "--like" in capsys.readouterr().err
     assert main(["new", second.name, "--like", "frist"]) == 2
     assert "first" in capsys.readouterr().err
+
+
+def test_files_that_the_experiment_names_are_copied_from_its_folder_alone(second):
+    """A diagram in a folder of its own is; what lies elsewhere, or a sentence, is no such file."""
+    first, outside = second.parent / "first", second.parent / "private.toml"
+    outside.write_text("")
+    (first / "wired").mkdir()
+    diagram = first / "wired" / "interface.toml"
+    td.write_diagram(td.haptic_interface(td.Body("prismatic", {"inertia": 0.2})), diagram)
+    (first / "experiment.toml").write_text(
+        f"""
+title = "{outside}"
+[diagram]
+file = "wired/interface.toml"
+sample_period = {{ value = 1, unit = "ms" }}
+[channels]
+time = {{ column = "t", unit = "s" }}
+"R_A" = {{ column = "u", unit = "N", resolution = 0.004 }}
+"R_M" = {{ column = "f_h", unit = "N", noise = 0.01 }}
+"L" = {{ column = "x", unit = "m", resolution = 1e-6 }}
+[[records]]
+file = "fit.csv.gz"
+use = "fit"
+"""
+    )
+    assert main(["new", second.name, "--like", "first", "--output", "again"]) == 0
+    again = second.parent / "again"
+    present = {p.relative_to(again).as_posix() for p in again.rglob("*") if p.is_file()}
+    assert present == {"experiment.toml", "second.csv", "wired/interface.toml"}
+    assert td.load_experiment(again).recorded == ("R_A", "R_M", "L")
+
+
+def test_a_long_reason_of_a_guess_is_no_file(second):
+    text = (second.parent / "first" / "experiment.toml").read_text()
+    longer = text.replace('"first"', f'"{"the first column that rises " * 20}"')
+    (second.parent / "first" / "experiment.toml").write_text(longer)
+    assert main(["new", second.name, "--like", "first", "--output", "again"]) == 0
