@@ -17,7 +17,7 @@ import numpy as np
 
 from ..diagrams import Attached, Moving
 from ..measurement.filtering import Array
-from .computer import ComputerPart, Placed, passes_of
+from .computer import ComputerPart, Passes, Placed, passes_of
 from .cuts import Cut
 from .diagram_experiment import DiagramExperiment, RecordedLog
 
@@ -72,7 +72,14 @@ def command_of(
     if moving.command in experiment.channels:
         return experiment.signal(moving.command, log)
     part = laws_of_command(experiment, moving)
-    made, count = part.signal(part.cuts[0], passes_of(experiment, log), placed), log.count
+    return command_by_laws(part, passes_of(experiment, log), log.count, placed)
+
+
+def command_by_laws(
+    part: ComputerPart, rows: Passes, count: int, placed: Sequence[Placed] = ()
+) -> Array:
+    """The command that laws give, held between the passes of the computer, at `count` rows."""
+    made = part.signal(part.cuts[0], rows, placed)
     return np.repeat(made, -(-count // len(made)))[:count]
 
 

@@ -37,7 +37,7 @@ from .computer_search import ComputerLadder, ComputerStep, are_alike, climb
 from .control_rows import ControlFit, ControlRows
 from .cuts import Cut
 from .diagram_experiment import DiagramExperiment
-from .half_steps import laws_of_command
+from .half_steps import command_by_laws, laws_of_command
 from .look_alikes import feeding
 
 #: starts of an effect that are followed, of those that promise most
@@ -160,9 +160,8 @@ class JoinedData(ControlRows):
 
     def _command(self, log: int, placed: Sequence[Placed]) -> Array:
         """The command that the laws give, at the rows of a log."""
-        made = self.part.signal(self.part.cuts[0], self.rows[log], placed)
         count = self.experiment.logs[log].count
-        return np.repeat(made, -(-count // len(made)))[:count]
+        return command_by_laws(self.part, self.rows[log], count, placed)
 
     def _fit(self, body: _Body, stderr: Sequence[float] = ()) -> ControlFit:
         """The fit of a body, as one of the effects in its command."""
