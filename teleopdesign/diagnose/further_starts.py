@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .fit import Fit
+from .fit import Fit, free_parameters
 from .search_plan import PLAN
+from .solve import Solution, spans_decades
 
 
 def starts_at_values_of_user(
@@ -26,6 +27,28 @@ def starts_at_values_of_user(
         return []
     values = {n: v.value for n, v in there.items() if n in models[0].parameters}
     return [m.with_values(values) for m in models]
+
+
+def without_endless(best: Solution, new: Collection[tuple[str, str]]) -> Model:
+    """The model of a solution, with the effects absent whose search ran to the end of its range.
+
+    There an effect is another one, or none: the Stribeck law at an endless speed is one more
+    Coulomb level. No search returns from there, because no residual depends on the parameter.
+
+    new: (effect, place) that have begun at all of their starting values
+    returns: the model itself where there is no such effect
+    """
+    model = best.model
+    values: dict[str, float] = {}
+    for name, at_bound in zip(free_parameters(model), best.at_bound, strict=True):
+        at, effect, _ = (*name.split("."), "")[:3]
+        if not at_bound or not spans_decades(model, name) or (effect, at) in new:
+            continue
+        law = model.body(at).effect(effect)
+        absent = {f"{at}.{effect}.{n}": law.default(n) for n in law.parameters}
+        if not any(model.parameters[n].fixed for n in absent):
+            values |= absent
+    return model.with_values(values) if values else model
 
 
 def with_what_they_need(model: Model, models: Sequence[Model], prepared: Prepared) -> list[Model]:

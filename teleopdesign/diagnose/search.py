@@ -19,7 +19,7 @@ from .candidates import make_starts
 from .criteria import CRITERIA
 from .effort import EFFORTS, Effort
 from .fit import Fit, estimate, fit_of, fit_squares, free_parameters
-from .further_starts import starts_at_values_of_user, with_what_they_need
+from .further_starts import starts_at_values_of_user, with_what_they_need, without_endless
 from .least_squares import sum_of_squares
 from .linear_start import linear_starts
 from .promise import Promises
@@ -89,7 +89,7 @@ def estimate_from_starts(
         base = base_of(base, prepared)
     if base is not None:
         model = with_parameters_of(model, base.coarse.model)
-    models = make_starts(model, prepared.scales)
+    models, new = make_starts(model, prepared.scales), model.absent
     absent = [model.body(at).effect(name) for name, at in model.absent]
     rugged = any(is_rugged(e) for e in absent)
     wide = rugged or any(len(e.parameters) > 2 * PLAN.followed for e in absent)
@@ -113,6 +113,9 @@ def estimate_from_starts(
     best = min((follow_start(m, coarse, EFFORTS.rough) for m in models), key=squares_of)
     if base is not None and squares_of(best) > fit_squares(base.coarse):
         best = from_smaller_strengths(model, models, best, coarse)
+    if (less := without_endless(best, new)) is not best.model:
+        anew = (follow_start(m, coarse, EFFORTS.rough) for m in make_starts(less, coarse.scales))
+        best = min((best, *anew), key=squares_of)
     best = _sort_elements(best, coarse)
     if base is not None and coarse is prepared:
         return fit_of(best, prepared)

@@ -4,7 +4,7 @@ import pytest
 from diagnose.simulated_cases import write_simulated
 
 import teleopdesign as td
-from teleopdesign.diagnose.fit import fit_squares
+from teleopdesign.diagnose.fit import estimate, fit_squares
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.stated_fit import estimate_stated
 from teleopdesign.measurement.prepare import prepare
@@ -48,3 +48,15 @@ def test_values_and_what_is_held_stay_as_they_are_stated(lacking):
     held = td.Value(0.013, fixed=True)
     fit = estimate_stated(stated.with_values({name: held}), prepared)
     assert fit.model.parameters[name].value == 0.013 and name not in fit.free
+
+
+@pytest.mark.slow
+def test_an_effect_at_the_end_of_its_search_range_begins_anew_beside_a_candidate(lacking):
+    """At an endless Stribeck speed the law is one more Coulomb level: no search returns."""
+    prepared, model = lacking
+    endless = {"extra_static_level": 1e-3, "stribeck_velocity": 1e12}
+    stuck = estimate(model.with_effect("stribeck", values=endless), prepared)
+    assert stuck.at_bound == ("device.stribeck.stribeck_velocity",)
+    beside = estimate_from_starts(stuck.model.with_effect("bias"), prepared, stuck, worth=0.0)
+    assert fit_squares(beside) < 0.1 * fit_squares(stuck)
+    assert not beside.at_bound
