@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from .adequacy import is_adequate
-from .candidates import Candidate, list_look_alikes
+from .candidates import Candidate, are_alike, list_look_alikes
 from .criteria import CRITERIA
 from .decision import is_better, is_supported
 from .evidence import check_squares, whole_score
@@ -182,11 +182,14 @@ def swap(search: LadderSearch, state: LadderState) -> LadderState | None:
     Over a part of a turn, a spring and the gravity of a link are nearly the same torque. Where only
     noise is left, the simpler of the two takes the place; where more is left, an unknown effect
     acts too, and may be as large as the difference of the two: then the commoner one does.
+    A simpler effect takes the place, too, that explained less alone and as much beside later ones.
     """
     for rung in state.rungs[1:]:
         assert rung.added is not None
-        equals = rung.alternatives if _is_followed(rung, state) else ()
+        followed = _is_followed(rung, state)
+        equals = rung.alternatives if followed else ()
         preferred = _list_preferred(search, state, rung.added)
+        preferred += _list_simpler(rung, state) if followed else ()
         if rung.replaced is not None or not (equals or preferred):
             continue
         without = estimate_without(state.fit.model, rung, search.prepared)
@@ -249,6 +252,25 @@ def _list_preferred(
     if alike and undetermined_of(added.effect, added.at, state.fit.model, search.prepared) is None:
         return ()
     return tuple(alike)
+
+
+def _list_simpler(rung: Rung, state: LadderState) -> tuple[Candidate, ...]:
+    """Effects with fewer parameters that explained a good part of what a rung did when it came.
+
+    Look-alikes of which one is the commoner are not among them: `_list_preferred` has those.
+    """
+    ranked = () if rung.ranking is None else rung.ranking.ranked
+    best = next((r for r in ranked if r.candidate == rung.added), None)
+    if rung.ranking is None or best is None:
+        return ()
+    helpers = select_other_helpers(best, rung.ranking)
+    return tuple(
+        c
+        for c in helpers
+        if c.key not in state.gone | state.effects
+        and simplicity(c)[0] < simplicity(best.candidate)[0]
+        and not are_alike(c.effect, best.candidate.effect)
+    )
 
 
 def _is_followed(rung: Rung, state: LadderState) -> bool:
