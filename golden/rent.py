@@ -48,7 +48,6 @@ RULES: dict[str, tuple[str, Off]] = {
     "two at once": ("moves.add_two", _nothing),
     "swap": ("moves.swap", _nothing),
     "superfluous is removed": ("moves.remove", _nothing),
-    "straight line": ("straight.straighten", _nothing),
     "transmission with friction": ("transmission.add_transmission", _nothing),
     "readings": ("stand_in.stands_in_for_readings", _nothing),
     "other values": ("stand_in.stands_in_for_values", _nothing),

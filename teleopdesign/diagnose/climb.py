@@ -11,7 +11,6 @@ from .moves import add, add_two, swap
 from .noise_floor import noise_floor
 from .rung import Rung
 from .stand_in import stands_in_for_readings, stands_in_for_values
-from .straight import straighten
 from .transmission import add_transmission
 
 
@@ -82,12 +81,11 @@ def make_next_move(search: LadderSearch, state: LadderState, *, pairs: bool) -> 
 
     pairs: whether two effects may be added at once
     """
-    moves = [straighten] if state.step > search.plan.most_effects else [add, straighten, swap]
-    for move in moves:
-        if (moved := move(search, state)) is not None:
-            return moved
-    if state.step > search.plan.most_effects or not pairs:
-        return None
+    may_grow = state.step <= search.plan.most_effects
+    moved = add(search, state) if may_grow else None
+    moved = moved or swap(search, state)
+    if moved is not None or not (may_grow and pairs):
+        return moved
     if is_a_tone(state.fit, state.tone, state.floor):
         return None
     return add_two(search, state) or add_transmission(search, state)

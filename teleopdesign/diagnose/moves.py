@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from .adequacy import is_adequate
-from .candidates import Candidate, are_alike, list_look_alikes
+from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA
 from .decision import is_better, is_supported
 from .evidence import check_squares, whole_score
@@ -182,7 +182,8 @@ def swap(search: LadderSearch, state: LadderState) -> LadderState | None:
     Over a part of a turn, a spring and the gravity of a link are nearly the same torque. Where only
     noise is left, the simpler of the two takes the place; where more is left, an unknown effect
     acts too, and may be as large as the difference of the two: then the commoner one does.
-    A simpler effect takes the place, too, that explained less alone and as much beside later ones.
+    So does a simpler effect that explains as much beside later ones, in the place of one of these,
+    too: a spring and a constant force in that of gravity and what cancels its curvature.
     """
     for rung in state.rungs[1:]:
         assert rung.added is not None
@@ -197,15 +198,22 @@ def swap(search: LadderSearch, state: LadderState) -> LadderState | None:
             continue
         among = (rung.added, *equals, *preferred)
         ranking = search.rank(without, step=state.step, among=among)
+        ours = [None, *(r.added for r in state.rungs if r.added is not None)]
         supported = [
             r
             for r in ranking.ranked
-            if r.instead_of is None and is_supported(without, r, state.floor)
+            if r.instead_of in (ours if r.candidate in preferred else [None])
+            and is_supported(without, r, state.floor)
         ]
         new = _in_place(search, state, rung, preferred, replace(ranking, ranked=tuple(supported)))
         if new is None:
             continue
-        rungs = [new if r is rung else r for r in state.rungs]
+        left = new.fit.model.effects
+        rungs = [
+            new if r is rung else r
+            for r in state.rungs
+            if r is rung or r.added is None or r.added.key in left
+        ]
         moved = _in_order(search, state, rungs, new.fit)
         if moved is not None and (new.added == rung.added or moved.effects not in state.visited):
             return _without_superfluous(search, state, moved)
@@ -255,21 +263,20 @@ def _list_preferred(
 
 
 def _list_simpler(rung: Rung, state: LadderState) -> tuple[Candidate, ...]:
-    """Effects with fewer parameters that explained a good part of what a rung did when it came.
+    """Effects of the same role with fewer parameters, which may do as much beside later effects.
 
-    Look-alikes of which one is the commoner are not among them: `_list_preferred` has those.
+    Of look-alikes the commoner one stays where more than noise is left.
     """
-    ranked = () if rung.ranking is None else rung.ranking.ranked
-    best = next((r for r in ranked if r.candidate == rung.added), None)
-    if rung.ranking is None or best is None:
-        return ()
-    helpers = select_other_helpers(best, rung.ranking)
+    added = rung.added
+    assert added is not None
+    model, noise = state.fit.model, is_adequate(state.fit, state.floor)
+    possible = [Candidate(e, added.at) for e in model.known.values() if e.role == added.effect.role]
     return tuple(
         c
-        for c in helpers
+        for c in possible
         if c.key not in state.gone | state.effects
-        and simplicity(c)[0] < simplicity(best.candidate)[0]
-        and not are_alike(c.effect, best.candidate.effect)
+        and simplicity(c)[0] < simplicity(added)[0]
+        and (noise or c.effect.commoner != added.effect.name)
     )
 
 

@@ -68,7 +68,7 @@ def test_a_simpler_effect_takes_the_place_that_is_as_good_beside_later_ones(use,
         frozenset({"stops", "hardening_spring"}): 0.1,
         frozenset({"spring", "hardening_spring"}): beside,
     }
-    table = use(left.__getitem__)
+    table = use(lambda names: left.get(names, 0.9))
     first, stops, hard = table.rungs("stops", "hardening_spring")
     stops = replace(stops, ranking=table.rank(first.fit, among=[STOPS, SPRING]))
     state = table.state((first, stops, hard))
