@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from ..diagnose.command_values import CommandSolution, CommandValues, solve_with_command
 from ..diagnose.criteria import CRITERIA
-from ..diagnose.effort import EFFORTS, Effort
 from ..diagnose.error import weigh_residuals
 from ..diagnose.evidence import check_score
 from ..diagnose.fit import Fit, estimate, standard_errors
@@ -26,6 +25,7 @@ from ..diagnose.least_squares import sum_of_squares
 from ..diagnose.noise_floor import noise_floor
 from ..diagnose.rank import rank_candidates
 from ..diagnose.residual import relative_residuals
+from ..diagnose.search_plan import EFFORTS, Effort
 from ..diagrams import Control, Moving
 from ..effects.of_blocks.controllers import ControlEffect
 from ..measurement.filtering import Array

@@ -18,8 +18,8 @@ from ..measurement.filtering import Array
 from ..measurement.prepare import Stretch
 from ..model import Model
 from ..realise.tangent_columns import Probe
-from .effort import EFFORTS
 from .residual import relative_residuals
+from .search_plan import EFFORTS
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,9 +14,9 @@ import numpy as np
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
-from .effort import Effort
 from .fit import free_parameters
 from .least_squares import minimise
+from .search_plan import Effort
 from .solve import SearchResiduals, search_problem
 
 #: step of a value of size one, for a derivative

@@ -16,11 +16,9 @@ from ..check import why_silent
 from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .adequacy import records_differ
+from .adequacy import records_differ, verdict
 from .candidates import Candidate
-from .effort import EFFORTS
-from .error import force_error
-from .error_at_command import refer_to_command
+from .error import force_error, refer_to_command
 from .estimates import correct_fit
 from .fit import Fit, estimate
 from .free_functions import Belief, belief
@@ -33,12 +31,11 @@ from .order import select_other_helpers
 from .plausibility import implausible_effects
 from .probability import probable
 from .repeats import repeatability
-from .rung import Rung
-from .rungs import estimate_without, first_rise, reorder_and_refit, without_rise
+from .rung import Rung, estimate_without, first_rise, reorder_and_refit, without_rise
+from .search_plan import EFFORTS
 from .stand_in import check_error_on_all
 from .statements import SetAside
 from .undetermined import find_undetermined
-from .verdict import verdict
 
 
 def conclude(

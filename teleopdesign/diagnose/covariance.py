@@ -1,11 +1,17 @@
-"""Covariance of the estimates of a fit: of its parameters, and as those of a diagram's blocks."""
+"""Covariance of the estimates of a fit: of its parameters, and as those of a diagram's blocks.
+
+And correlations of what it leaves: a right model leaves a residual that depends neither on its own
+past nor on the command. The residual is low-passed: below its bandwidth B only samples 1/(2 B)
+apart are new, and only these count.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import ndtri
 
 from ..base.errors import ModelError, unknown
 from ..frequency.confidence import ParameterCovariance
@@ -14,8 +20,9 @@ from ..measurement.friction_curve import points_as_motion
 from ..measurement.prepare import Prepared
 from ..model import Model
 from ..realise.along_motion import residual_along
-from .effort import EFFORTS
 from .fit import Fit, estimate, sandwich
+from .record_offsets import as_logged
+from .search_plan import EFFORTS
 
 
 def covariance_of(fit: Fit) -> Array:
@@ -77,3 +84,53 @@ def friction_at(fit: Fit, velocity: Array) -> tuple[Array, Array]:
     left = residual_along(fit.model.bodies[place], motion, names).residual
     variance = np.einsum("pn,pq,qn->n", left.tangent, covariance_of(fit), left.tangent)
     return -left.value, np.sqrt(np.maximum(variance, 0.0))
+
+
+#: standard deviations of an interval of 99 %
+NINETY_NINE = float(ndtri(0.995))
+#: most lags that are looked at, in samples 1/(2 B) apart
+LAGS = 25
+
+
+@dataclass(frozen=True)
+class ResidualCorrelations:
+    """Correlations of the residual force of one body, dimensionless, -1 to 1.
+
+    lag: s, (2 k + 1,);  itself: with its own past, by the lag;  command: with the command, the
+        residual later by the lag
+    band: 99 % of the correlations of a residual that depends on neither are smaller
+    """
+
+    lag: Array
+    itself: Array
+    command: Array
+    band: float
+
+
+def residual_correlations(model: Model, prepared: Prepared, place: str) -> ResidualCorrelations:
+    """Of the longest stretch of the check records, or of the fit records if there are none.
+
+    raises ModelError: the model has no residual along the records
+    """
+    stretches = [s for s in prepared.of("check") or prepared.of("fit") if s.motion.body == place]
+    stretch = max(stretches, key=lambda s: s.counted_time)
+    motion, body = as_logged(model, stretch.motion), model.body(place)
+    every = max(round(0.5 / stretch.motion.bandwidth / motion.sample_time), 1)
+    at = stretch.keep[::every]
+    left = motion.lowpassed(residual_along(body, motion).residual.value)[at]
+    command = motion.lowpassed(motion.at_rows(motion.command))[at]
+    count = min(LAGS, len(at) // 4)
+    return ResidualCorrelations(
+        np.arange(-float(count), count + 1) * (every * motion.sample_time),
+        _correlation(left, left, count),
+        _correlation(command, left, count),
+        NINETY_NINE / float(np.sqrt(len(at))),
+    )
+
+
+def _correlation(cause: Array, effect: Array, count: int) -> Array:
+    """Correlation of two signals, the second later by -count to count samples."""
+    a, b = cause - np.mean(cause), effect - np.mean(effect)
+    whole = np.correlate(b, a, "full") / max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-300)
+    middle = len(a) - 1
+    return np.asarray(whole[middle - count : middle + count + 1])

@@ -20,7 +20,7 @@ from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared
 from ..model import Model
 from ..realise.friction_cells import FrictionCell
-from .adequacy import floors_left, is_adequate
+from .adequacy import VerdictName, floors_left, is_adequate, verdict
 from .candidates import Candidate
 from .covariance import covariance_in_blocks
 from .fingerprint import Fingerprint
@@ -45,7 +45,6 @@ from .statements import (
     Undetermined,
     estimate_of,
 )
-from .verdict import VerdictName, verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

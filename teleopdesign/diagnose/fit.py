@@ -14,13 +14,12 @@ from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from .bodies_apart import select_bodies
-from .effort import EFFORTS, Effort
-from .error import error_of, force_error, weigh_residuals
-from .error_at_command import AtCommand, refer_to_command
+from .error import AtCommand, error_of, force_error, refer_to_command, weigh_residuals
 from .folds import folds
 from .least_squares import column_sizes, sum_of_squares
 from .record_offsets import follow_records
 from .residual import both_residuals
+from .search_plan import EFFORTS, Effort
 from .solve import BLOCK, Solution, model_without, solve
 
 

@@ -17,10 +17,10 @@ from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
 from .criteria import CRITERIA
-from .effort import EFFORTS
 from .evidence import check_squares, whole_score
 from .fit import Fit, estimate, fit_squares
 from .products import product_of
+from .search_plan import EFFORTS
 
 
 def is_identifiable(fit: Fit, base: Fit) -> bool:

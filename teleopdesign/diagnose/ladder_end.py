@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ..base.frozen import ByValue
-from .adequacy import is_adequate
+from .adequacy import VerdictName, is_adequate
 from .candidates import Candidate
 from .fit import Fit
 from .free_functions import Belief
@@ -18,7 +18,6 @@ from .ranking import Ranking
 from .repeats import Repeatability
 from .rung import Rung
 from .statements import SetAside, Undetermined
-from .verdict import VerdictName
 
 
 @dataclass(frozen=True, eq=False)

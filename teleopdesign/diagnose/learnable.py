@@ -29,12 +29,12 @@ from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared, Stretch, measured_force
 from ..measurement.reversals import mark_reversals
 from ..model import Model
-from .effort import EFFORTS
 from .error import error_of
 from .fit import estimate
 from .folds import folds
 from .record_offsets import apply_record_offsets
 from .residual import residuals
+from .search_plan import EFFORTS
 from .tree_inputs import inputs_along
 
 #: s to either side of a reversal that count as near: there presliding, gaps and lags show

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from .adequacy import is_adequate
+from .adequacy import explained_share, is_adequate
 from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA
 from .decision import is_better, is_supported
@@ -28,9 +28,7 @@ from .order import (
 )
 from .plausibility import undetermined_of
 from .ranking import Ranked, Ranking
-from .rung import Rung, make_replaced
-from .rungs import estimate_without, order_by_falling_error, reorder_and_refit
-from .verdict import explained_share
+from .rung import Rung, estimate_without, make_replaced, order_by_falling_error, reorder_and_refit
 
 
 def add(search: LadderSearch, state: LadderState) -> LadderState | None:

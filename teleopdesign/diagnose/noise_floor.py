@@ -27,8 +27,7 @@ from ..measurement.motion import Motion, motion_of
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from .criteria import CRITERIA
-from .error import error_of
-from .error_at_command import refer_to_command
+from .error import error_of, refer_to_command
 from .residual import residuals
 from .sensors import is_noise_estimated, sensor_of
 

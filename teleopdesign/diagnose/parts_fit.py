@@ -16,12 +16,11 @@ from ..base.frozen import ByValue
 from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
-from .effort import EFFORTS, Effort
-from .error import force_error
-from .error_at_command import refer_to_command
+from .error import force_error, refer_to_command
 from .fit import Fit, estimate, free_parameters
 from .link_knowledge import common_links, joint_knowledge, with_others
 from .parts import PreparedParts, mean_inertias, remove_links, with_inertias
+from .search_plan import EFFORTS, Effort
 from .solve import solve
 from .stated_fit import estimate_values
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from ..measurement.reading import reading_data
 from ..model import Model
+from .adequacy import VerdictName
 from .answer import with_recording
 from .diagnosis import Diagnosis
 from .fingerprint import fingerprint_of
@@ -20,7 +21,6 @@ from .parts_fit import PartsRung, error_over_joints, with_body_inertia
 from .recording import DiagnosedRecording
 from .result import diagnosis_of
 from .statements import EstimatedValue, JointErrors, LadderRow, finite
-from .verdict import VerdictName
 
 
 def diagnosis_of_parts(

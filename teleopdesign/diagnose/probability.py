@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .adequacy import floors_left, is_adequate
+from .adequacy import floors_left, is_adequate, removed_share
 from .candidates import Candidate
 from .criteria import CRITERIA
 from .decision import helps_but_is_barred
@@ -25,7 +25,6 @@ from .free_functions import Belief
 from .ladder_end import LadderEnd
 from .ranking import Ranked, Ranking
 from .rung import Rung
-from .verdict import removed_share
 
 
 @dataclass(frozen=True)

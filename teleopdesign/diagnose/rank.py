@@ -21,9 +21,9 @@ from .draws import search_among_draws
 from .evidence import check_score, check_squares, whole_score
 from .fit import Fit, estimate, fit_squares
 from .identifiability import OpenWidths, is_identifiable
+from .linear_start import Promises
 from .order import rank_key
 from .plausibility import implausible_effects
-from .promise import Promises
 from .ranking import Ranked, Ranking
 from .search import Base, base_of, estimate_from_starts, keep_absent
 from .search_plan import PLAN

@@ -27,10 +27,10 @@ from ..model import Model
 from ..realise.simulated import UNDAMPED
 from .cores import map_in_threads
 from .criteria import CRITERIA
-from .effort import EFFORTS
 from .fit import Fit, estimate
 from .noise_floor import read_again
 from .record_offsets import apply_record_offsets
+from .search_plan import EFFORTS
 from .simulated_course import as_led, dead_times, simulated_course, with_whole_dead_times
 from .solve import solve, spans_decades
 

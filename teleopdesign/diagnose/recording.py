@@ -14,12 +14,11 @@ from ..base.errors import ExperimentError, did_you_mean, quote
 from ..measurement.experiment import Experiment, load_experiment
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .effort import EFFORTS
 from .fingerprint import Fingerprint, bodies_text
 from .fit import Fit, estimate
 from .other_motion import with_other_motions
 from .parts import PreparedParts, isolate_joint, prepare_parts, with_bodies_of
-from .search_plan import cut_to_windows
+from .search_plan import EFFORTS, cut_to_windows
 
 
 @dataclass(frozen=True, eq=False)

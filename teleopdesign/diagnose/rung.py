@@ -1,15 +1,21 @@
-"""One step of a ladder of effects."""
+"""One step of a ladder of effects; and rungs in order: the check error falls with each."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
+from ..base.errors import ModelError
 from ..base.frozen import ByValue
 from ..blocks import Value
+from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
-from .fit import Fit
+from .fit import Fit, estimate
+from .rank import make_ranked
 from .ranking import Ranked, Ranking, name_of, named_instead
+from .search import estimate_from_starts
 
 
 @dataclass(frozen=True)
@@ -98,3 +104,104 @@ def undo_addition(model: Model, added: Candidate, replaced: Replaced | None) -> 
         return whole.without_effect(name, at=at)
     # a body has one effect of a kind: the effect that returned took the place of the added one
     return whole
+
+
+def first_rise(rungs: Sequence[Rung]) -> int | None:
+    """Index of the first rung with a larger check error than the rung before it; None: none has."""
+    rises = (later.fit.check_error > rung.fit.check_error for rung, later in pairwise(rungs))
+    return next((i for i, rises_here in enumerate(rises, 1) if rises_here), None)
+
+
+def without_rise(rungs: Sequence[Rung]) -> tuple[Rung, ...]:
+    """The rungs before the first one with a larger check error than its predecessor."""
+    return tuple(rungs[: first_rise(rungs)])
+
+
+def estimate_without(model: Model, rung: Rung, prepared: Prepared) -> Fit | None:
+    """The fit of a model without a rung's effect; None: another effect needs this effect."""
+    try:
+        return estimate(rung.undo_addition(model), prepared)
+    except ModelError:
+        return None
+
+
+def order_by_falling_error(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, ...] | None:
+    """The rungs in an order in which the check error falls with each; None where there is none.
+
+    A rung with a larger error than its predecessor was masked by the rung after it: these two
+    change places.
+    """
+    order = tuple(rungs)
+    for _ in rungs:
+        rise = first_rise(order)
+        if rise is None:
+            return order
+        if rise + 1 == len(order):
+            return None
+        masked, masking = order[rise], order[rise + 1]
+        assert masked.added is not None and masking.added is not None
+        before = order[rise - 1].fit
+        alone = estimate_without(masking.fit.model, masked, prepared)
+        if alone is None:
+            return None
+        first = Rung(
+            masking.added,
+            alone,
+            ranking_alone(before, masking.added, alone, prepared, masking),
+            masking.alternatives,
+            replaced=masking.replaced,
+        )
+        second = Rung(
+            masked.added,
+            masking.fit,
+            ranking_alone(alone, masked.added, masking.fit, prepared, masked),
+            masked.alternatives,
+            replaced=masked.replaced,
+        )
+        order = (*order[:rise], first, second, *order[rise + 2 :])
+    return None
+
+
+def ranking_alone(
+    base: Fit,
+    candidate: Candidate,
+    fit: Fit,
+    prepared: Prepared,
+    rung: Rung | None = None,
+) -> Ranking:
+    """The ranking of one candidate that is already fitted, and of its look-alikes.
+
+    rung: that of the candidate before, with the effect that it replaced and its look-alikes
+    """
+    instead_of = None if rung is None else rung.instead_of
+    ranked = [make_ranked(base, candidate, fit, prepared=prepared, instead_of=instead_of)]
+    for other in () if rung is None else rung.alternatives:
+        try:
+            model = base.model.with_effect(other.effect, at=other.at)
+        except ModelError:  # it is there already, or needs an effect that comes later
+            continue
+        best = estimate_from_starts(model, prepared, base, worth=0.0)
+        ranked.append(make_ranked(base, other, best, prepared=prepared))
+    return Ranking(base, tuple(ranked))
+
+
+def reorder_and_refit(
+    rungs: Sequence[Rung], last: Fit, prepared: Prepared
+) -> tuple[Rung, ...] | None:
+    """The rungs in an order in which the check error falls, each fitted without later effects.
+
+    last: the fit with all effects, whose values are the starts of the other fits
+    returns: None where no order falls, or where an earlier effect needs a later one; the user's
+        model alone is returned unchanged
+    """
+    if len(rungs) == 1:
+        return tuple(rungs)
+    backwards = [replace(rungs[-1], fit=last)]
+    model = last.model
+    for later, rung in zip(rungs[:0:-1], rungs[-2:0:-1], strict=False):
+        try:
+            model = later.undo_addition(model)
+        except ModelError:
+            return None
+        backwards.append(replace(rung, fit=estimate(model, prepared)))
+    return order_by_falling_error((rungs[0], *reversed(backwards)), prepared)

@@ -17,13 +17,11 @@ from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import make_starts
 from .criteria import CRITERIA
-from .effort import EFFORTS, Effort
 from .fit import Fit, estimate, fit_of, fit_squares, free_parameters
 from .further_starts import starts_at_values_of_user, with_what_they_need, without_endless
 from .least_squares import sum_of_squares
-from .linear_start import linear_starts
-from .promise import Promises
-from .search_plan import PLAN
+from .linear_start import Promises, linear_starts
+from .search_plan import EFFORTS, PLAN, Effort
 from .solve import Solution, solve
 
 

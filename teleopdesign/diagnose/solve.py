@@ -14,10 +14,10 @@ from ..measurement.prepare import Prepared, Stretch
 from ..measurement.shared_links import best_links
 from ..model import Model
 from .bodies_apart import BodyByBody
-from .effort import Effort
 from .least_squares import gauss_newton_step, minimise, sum_of_squares
 from .record_shift import RecordShifts, record_shifts
 from .residual import residuals
+from .search_plan import Effort
 
 #: seconds over which residuals count as one observation in standard errors and tests
 BLOCK = 0.25

@@ -18,7 +18,7 @@ from functools import partial
 from ..base.errors import ModelError
 from ..effects import Effect
 from ..model import Model
-from .adequacy import is_adequate
+from .adequacy import explained_share, is_adequate
 from .candidates import Candidate, comes_too_early, make_starts
 from .criteria import CRITERIA
 from .decision import is_better, is_supported, objection
@@ -30,10 +30,8 @@ from .ladder_state import LadderSearch, LadderState
 from .outside_tone import best_tone
 from .rank import make_ranked
 from .ranking import Ranking
-from .rung import Rung
-from .rungs import estimate_without, order_by_falling_error, reorder_and_refit
+from .rung import Rung, estimate_without, order_by_falling_error, reorder_and_refit
 from .search import base_of, estimate_best_start
-from .verdict import explained_share
 
 
 def add_transmission(search: LadderSearch, state: LadderState) -> LadderState | None:

@@ -15,10 +15,10 @@ from ..base.units import unit_after_number, unit_of
 from ..check import CheckedRecording, RecordingCheck
 from ..diagnose.candidates import Candidate, bodies_with_measured_force, candidates
 from ..diagnose.criteria import CRITERIA
-from ..diagnose.effort import EFFORTS
 from ..diagnose.fit import Fit, estimate
 from ..diagnose.noise_floor import noise_floor
 from ..diagnose.repeats import Repeatability, repeatability
+from ..diagnose.search_plan import EFFORTS
 from ..effects import CONTACT_ROLES, SIGNALS, Effect
 from ..measurement.motion import RARE
 from ..measurement.prepare import Prepared

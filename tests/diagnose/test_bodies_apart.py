@@ -9,8 +9,8 @@ from cases import make_case, write_case
 from teleopdesign import Model, load_experiment
 from teleopdesign.diagnose import bodies_apart
 from teleopdesign.diagnose.bodies_apart import select_bodies, separate_bodies
-from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate, fit_squares
+from teleopdesign.diagnose.search_plan import EFFORTS
 from teleopdesign.measurement.prepare import prepare
 
 

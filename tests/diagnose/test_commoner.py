@@ -6,7 +6,7 @@ import pytest
 from diagnose.stub_models import Table, candidate
 
 from teleopdesign.diagnose import moves as module
-from teleopdesign.diagnose import rungs as rungs_module
+from teleopdesign.diagnose import rung as rungs_module
 from teleopdesign.diagnose.moves import swap
 from teleopdesign.diagnose.probability import list_rarer, shares
 from teleopdesign.diagnose.ranking import Ranking

@@ -11,13 +11,13 @@ from teleopdesign.diagnose.adequacy import (
     is_adequate,
     is_noise,
     limit_noise_floor,
+    verdict,
 )
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.decision import (
     is_better,
     refusal,
 )
-from teleopdesign.diagnose.verdict import verdict
 from teleopdesign.effects import EFFECTS
 
 

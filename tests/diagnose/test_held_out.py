@@ -6,8 +6,8 @@ from importlib import import_module
 import pytest
 
 from teleopdesign import Model
-from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.search_plan import EFFORTS
 from teleopdesign.diagnose.solve import solve
 from teleopdesign.measurement.prepare import prepare
 

@@ -7,7 +7,7 @@ import pytest
 from diagnose.stand_ins import SHAPE
 from diagnose.stub_models import Names, Table, candidate
 
-from teleopdesign.diagnose import rungs as rungs_module
+from teleopdesign.diagnose import rung as rungs_module
 from teleopdesign.diagnose.moves import add, add_two, remove
 from teleopdesign.diagnose.outside_tone import Tone
 from teleopdesign.diagnose.ranking import Ranking

@@ -9,7 +9,7 @@ import pytest
 from teleopdesign import Model, example, load_experiment
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.promise import Promises
+from teleopdesign.diagnose.linear_start import Promises
 from teleopdesign.diagnose.residual import relative_residuals
 from teleopdesign.measurement.prepare import prepare
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.diagnose.correlations import residual_correlations
+from teleopdesign.diagnose.covariance import residual_correlations
 from teleopdesign.measurement.prepare import prepare
 
 

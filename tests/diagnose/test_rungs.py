@@ -7,12 +7,8 @@ import numpy as np
 import pytest
 from diagnose.stub_models import Table
 
-from teleopdesign.diagnose import rungs as module
-from teleopdesign.diagnose.rungs import (
-    first_rise,
-    order_by_falling_error,
-    reorder_and_refit,
-)
+from teleopdesign.diagnose import rung as module
+from teleopdesign.diagnose.rung import first_rise, order_by_falling_error, reorder_and_refit
 
 NAMES = ("bias", "spring", "viscous", "cogging")
 

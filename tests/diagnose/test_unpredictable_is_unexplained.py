@@ -12,8 +12,7 @@ from teleopdesign.blocks import Value
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.decision import is_better, is_supported, refusal
-from teleopdesign.diagnose.error import force_error
-from teleopdesign.diagnose.error_at_command import refer_to_command
+from teleopdesign.diagnose.error import force_error, refer_to_command
 from teleopdesign.diagnose.evidence import gain_at_command
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.noise_floor import noise_floor

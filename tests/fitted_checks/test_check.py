@@ -13,8 +13,8 @@ from shared_data import shared_folder
 import teleopdesign as td
 from teleopdesign import Model, example, load_experiment
 from teleopdesign.cli import main
-from teleopdesign.diagnose.effort import EFFORTS
 from teleopdesign.diagnose.fit import estimate
+from teleopdesign.diagnose.search_plan import EFFORTS
 from teleopdesign.effects import catalogue
 from teleopdesign.fitted_checks import check_experiment
 from teleopdesign.fitted_checks.bandwidth import check_bandwidth

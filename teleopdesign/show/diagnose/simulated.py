@@ -9,7 +9,7 @@ import numpy as np
 from ...base.sentences import unit_at_axis
 from ...base.units import unit_of
 from ...diagnose.by_simulation import SimulationComparison
-from ...diagnose.correlations import ResidualCorrelations, residual_correlations
+from ...diagnose.covariance import ResidualCorrelations, residual_correlations
 from ..figures.style import AFTER, BEFORE, MEASURED, TWO_COLUMNS, house_style
 from ..registry import shows
 

@@ -12,7 +12,7 @@ from ...base.finding import Array, Graph, Series
 from ...base.units import unit_of
 from ...blocks import free_space
 from ...diagnose import Diagnosis, SimulationComparison
-from ...diagnose.recorded_impedance import energetic_speed, recorded_impedance
+from ...diagnose.comparison import energetic_speed, recorded_impedance
 from ...diagrams import haptic_interface
 from ...frequency import FrequencyResponse, bode
 from ..figures.graph import thin_series
