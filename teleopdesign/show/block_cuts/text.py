@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from ...base.sentences import with_standard_error
 from ...block_cuts.cuts import Cut
-from ...block_cuts.diagnosis import BlockDiagnosis, Key
+from ...block_cuts.cuts_ladder import Key
+from ...block_cuts.diagnosis import BlockDiagnosis
 from ...diagnose.criteria import CRITERIA
 from ..registry import shows
 
