@@ -71,7 +71,7 @@ def _parameters(diagnosis: BlockDiagnosis, key: Key) -> list[str]:
             for p, e in diagnosis.placed
             if p.key == key
         ]
-    return [f"{n} = {with_standard_error(v, e)} {u}".rstrip(" 1") for n, v, e, u in rows]
+    return [f"{n} = {with_standard_error(v, e)} {u}".removesuffix(" 1") for n, v, e, u in rows]
 
 
 def _verdict(diagnosis: BlockDiagnosis) -> str:
