@@ -17,6 +17,7 @@ from ..measurement.experiment import Experiment
 from ..model import Model
 from .climb import climb
 from .conclusion import conclude
+from .cores import one_thread_of_algebra
 from .diagnosis import Diagnosis
 from .fit import Fit
 from .held_against_others import hold_against_others
@@ -38,6 +39,7 @@ from .parts_result import diagnosis_of_parts
 from .search_plan import PLAN, SearchPlan
 
 
+@one_thread_of_algebra()
 def find_missing(
     experiment: Experiment,
     model: Model | None = None,
