@@ -53,7 +53,10 @@ def free_form(fit: Fit, floor: NoiseFloor, prepared: Prepared) -> FreeForm | Non
     """
     if prepared.is_linked:
         return None
-    fits = {c: _with_curve(fit, c, prepared) for c in _curves(fit.model, prepared)}
+    fits = {
+        c: estimate_from_starts(fit.model.with_effect(c.effect, at=c.at), prepared, fit)
+        for c in _curves(fit.model, prepared)
+    }
     better = {c: one for c, one in fits.items() if is_better(fit, one, floor)}
     if not better:
         return None
@@ -78,10 +81,3 @@ def _curves(model: Model, prepared: Prepared) -> list[Candidate]:
                 continue
             curves.append(Candidate(effect, place))
     return curves
-
-
-def _with_curve(fit: Fit, curve: Candidate, prepared: Prepared) -> Fit:
-    """The model with a curve, estimated anew."""
-    return estimate_from_starts(
-        fit.model.with_effect(curve.effect, at=curve.at), prepared, fit, worth=0.0
-    )
