@@ -18,6 +18,7 @@ from ..measurement.prepare import Prepared
 from ..model import Model
 from .adequacy import records_differ, verdict
 from .candidates import Candidate
+from .decision import select_other_helpers
 from .error import force_error, refer_to_command
 from .estimates import correct_fit
 from .fit import Fit, estimate
@@ -27,7 +28,6 @@ from .ladder_end import LadderEnd
 from .ladder_state import LadderSearch, LadderState
 from .learnable import error_near_reversals, learnable
 from .no_named_law import free_form
-from .order import select_other_helpers
 from .plausibility import implausible_effects
 from .probability import probable
 from .repeats import repeatability

@@ -23,14 +23,13 @@ from ..realise.friction_cells import FrictionCell
 from .adequacy import VerdictName, floors_left, is_adequate, verdict
 from .candidates import Candidate
 from .covariance import covariance_in_blocks
-from .fingerprint import Fingerprint
 from .learnable import Learnable, NearReversals
 from .model_data import model_of_body
 from .no_named_law import FreeForm
 from .noise_floor import NoiseFloor
 from .record_offsets import Offset
 from .record_shift import RecordShift
-from .recording import DiagnosedRecording
+from .recording import DiagnosedRecording, Fingerprint
 from .repeats import Repeatability
 from .statements import (
     ANEW,

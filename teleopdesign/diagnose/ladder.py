@@ -20,7 +20,6 @@ from .conclusion import conclude
 from .cores import one_thread_of_algebra
 from .diagnosis import Diagnosis
 from .fit import Fit
-from .held_against_others import hold_against_others
 from .ladder_end import LadderEnd
 from .ladder_state import LadderSearch, begin, restrict_candidates, search_for
 from .narrower_band import choose_band, narrower_to_search
@@ -28,6 +27,7 @@ from .other_motion import undetermined_coupling, with_other_motions
 from .part_search import (
     PartSearch,
     begin_part,
+    hold_against_others,
     others_of,
     with_clock_of_others,
     with_known,

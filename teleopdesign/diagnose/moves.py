@@ -14,18 +14,19 @@ from dataclasses import replace
 from .adequacy import explained_share, is_adequate
 from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA
-from .decision import is_better, is_supported
-from .evidence import check_squares, whole_score
-from .fit import Fit, fit_squares
-from .ladder_state import LadderSearch, LadderState
-from .order import (
+from .decision import (
     alternatives_of,
+    is_better,
+    is_supported,
     look_alikes_of,
     select_equals,
     select_other_helpers,
     select_simplest,
     simplicity,
 )
+from .evidence import check_squares, whole_score
+from .fit import Fit, fit_squares
+from .ladder_state import LadderSearch, LadderState
 from .plausibility import undetermined_of
 from .ranking import Ranked, Ranking
 from .rung import Rung, estimate_without, make_replaced, order_by_falling_error, reorder_and_refit

@@ -12,7 +12,8 @@ Readings are simulated: the smoothed motion is read by an encoder of the stated 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
 
@@ -21,6 +22,9 @@ import numpy as np
 from ..base.codec import At, Size
 from ..base.frozen import ByValue
 from ..check.sample_clock import jitter_of
+from ..measurement.channel import Channel
+from ..measurement.encoder import reading_noise, reading_step
+from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.friction_curve import noise_of_points
 from ..measurement.motion import Motion, motion_of
@@ -29,7 +33,6 @@ from ..model import Model
 from .criteria import CRITERIA
 from .error import error_of, refer_to_command
 from .residual import residuals
-from .sensors import is_noise_estimated, sensor_of
 
 #: records with drawn noise for each noise floor; it differs by a few percent from draw to draw
 DRAWS = 3
@@ -197,3 +200,54 @@ def _side(position: Array) -> float:
     """
     moved = np.flatnonzero(position != position[0])
     return 1.0 if len(moved) == 0 or position[moved[0]] > position[0] else -1.0
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """Errors of a sensor; step: between readings, 0 for none;  noise: rms (both SI)."""
+
+    step: float
+    noise: float
+
+    def read(self, signal: Array, generator: np.random.Generator) -> Array:
+        """The signal (n,) as this sensor reads it, with drawn noise and offset of its steps."""
+        read = signal + self.noise * generator.standard_normal(len(signal))
+        if self.step <= 0:
+            return read
+        return self.step * np.round(read / self.step + generator.uniform(-0.5, 0.5))
+
+
+def sensor_of(experiment: Experiment, name: str, readings: Array) -> Sensor:
+    """The sensor of a channel ("device.position"), as stated or as estimated.
+
+    Where no resolution of its body's position is stated, step and noise are estimated from these
+    readings (n,). So is the noise of a measured force, where none is stated.
+    """
+    channel = experiment.channels[name]
+    step, noise = channel.resolution or 0.0, channel.noise or 0.0
+    if experiment.channels[f"{channel.body}.position"].resolution is None:
+        noise = noise or reading_noise(readings)
+        # levels of a force may be commanded ones; those of a position are its encoder's
+        if channel.quantity == "position":
+            step = step or reading_step(readings)
+    elif is_noise_estimated(channel):
+        noise = math.sqrt(max(reading_noise(readings) ** 2 - step**2 / 12.0, 0.0))
+    return Sensor(step, noise)
+
+
+def is_noise_estimated(channel: Channel) -> bool:
+    """Whether a channel is a measured force without stated noise, which its readings then show.
+
+    A command has no noise, and the steps of an encoder are the only error of its readings.
+    """
+    force = channel.quantity == "interaction_force" or channel.measured
+    return force and channel.noise is None
+
+
+def sensors_of(experiment: Experiment) -> Mapping[str, Sensor]:
+    """Channel ("device.position") -> its sensor; unstated errors are those of the first record."""
+    return {
+        name: sensor_of(experiment, name, experiment.records[0].signals[name])
+        for name, channel in experiment.channels.items()
+        if channel.body is not None and channel.quantity != "velocity"
+    }

@@ -10,7 +10,6 @@ from ..model import Model
 from .adequacy import VerdictName
 from .answer import with_recording
 from .diagnosis import Diagnosis
-from .fingerprint import fingerprint_of
 from .ladder_end import LadderEnd
 from .learnable import Learnable
 from .link_knowledge import link_errors
@@ -18,7 +17,7 @@ from .noise_floor import NoiseFloor
 from .other_motion import with_other_motions
 from .parts import PreparedParts, mean_inertias, with_bodies_of
 from .parts_fit import PartsRung, error_over_joints, with_body_inertia
-from .recording import DiagnosedRecording
+from .recording import DiagnosedRecording, fingerprint_of
 from .result import diagnosis_of
 from .statements import EstimatedValue, JointErrors, LadderRow, finite
 

@@ -16,13 +16,12 @@ from ..model import Model
 from .candidates import Candidate, bodies_with_measured_force, candidates, make_starts
 from .cores import map_on_cores, one_thread_of_algebra
 from .criteria import CRITERIA
-from .decision import find_superfluous_effect, lowers_check_squares, refusal
+from .decision import find_superfluous_effect, lowers_check_squares, rank_key, refusal
 from .draws import search_among_draws
 from .evidence import check_score, check_squares, whole_score
 from .fit import Fit, estimate, fit_squares
 from .identifiability import OpenWidths, is_identifiable
 from .linear_start import Promises
-from .order import rank_key
 from .plausibility import implausible_effects
 from .ranking import Ranked, Ranking
 from .search import Base, base_of, estimate_from_starts, keep_absent

@@ -15,7 +15,6 @@ from .answer import with_recording
 from .candidates import Candidate, is_static, list_look_alikes
 from .diagnosis import Diagnosis
 from .evidence import whole_score
-from .fingerprint import fingerprint_of
 from .fit import Fit
 from .friction_cells import all_friction_cells
 from .ladder_end import LadderEnd
@@ -25,7 +24,7 @@ from .probability import CandidateEvidence, evidence_of
 from .ranking import Ranked
 from .record_offsets import offsets_of
 from .record_shift import shifts_of
-from .recording import DiagnosedRecording
+from .recording import DiagnosedRecording, fingerprint_of
 from .rung import Rung
 from .statements import (
     Alternative,

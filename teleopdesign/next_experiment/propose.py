@@ -16,7 +16,7 @@ from ..base.shown import Shown
 from ..base.units import si_factor
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.ladder import find_missing
-from ..diagnose.sensors import sensors_of
+from ..diagnose.noise_floor import sensors_of
 from ..measurement.experiment import Experiment
 from .family import PathPart, Setting, Show, family
 from .limits import Limits, course_of, shown_limits

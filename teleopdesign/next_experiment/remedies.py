@@ -15,7 +15,7 @@ from ..base.units import unit_of
 from ..blocks.body import INERTIA
 from ..diagnose.fit import fit_squares
 from ..diagnose.least_squares import solve_normal
-from ..diagnose.sensors import Sensor
+from ..diagnose.noise_floor import Sensor
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared
 from ..measurement.scales import scales

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blocks import Body
-from ..diagnose.sensors import Sensor
+from ..diagnose.noise_floor import Sensor
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion, motion_of

@@ -8,8 +8,8 @@ from diagnose.stand_ins import fit, floor
 
 from teleopdesign.base.errors import ModelError
 from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.decision import rank_key
 from teleopdesign.diagnose.ladder_state import LadderState
-from teleopdesign.diagnose.order import rank_key
 from teleopdesign.diagnose.outside_tone import Tone
 from teleopdesign.diagnose.ranking import Ranked, Ranking
 from teleopdesign.diagnose.rung import Rung

@@ -15,9 +15,9 @@ from teleopdesign.base.files import write_json
 from teleopdesign.blocks import CONTACT, Body
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import answer, load_answer, write_answer
-from teleopdesign.diagnose.fingerprint import digest
 from teleopdesign.diagnose.model_data import model_data, model_from
 from teleopdesign.diagnose.predictions import write_predictions
+from teleopdesign.diagnose.recording import digest
 from teleopdesign.effects import catalogue
 from teleopdesign.show.report import write_report
 

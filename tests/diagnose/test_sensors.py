@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from teleopdesign.diagnose.sensors import sensor_of
+from teleopdesign.diagnose.noise_floor import sensor_of
 from teleopdesign.measurement.channel import Channel
 
 TIME = np.arange(4000) * 1e-3
