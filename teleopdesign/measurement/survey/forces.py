@@ -22,9 +22,16 @@ from .content import (
 )
 from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si, state_scatter
-from .refusals import error_without_force, tells_forces
-from .relations import left_in_turn, possible_forces, relations_of
-from .roles import AS_LIKELY, LEAST_LEFT, as_likely, is_named_force, score_of
+from .refusals import error_without_force, error_without_position, tells_forces
+from .relations import causes_acceleration, left_in_turn, possible_forces, relations_of
+from .roles import (
+    AS_LIKELY,
+    LEAST_LEFT,
+    as_likely,
+    is_named_force,
+    is_nameless,
+    score_of,
+)
 from .words import says
 
 
@@ -132,6 +139,10 @@ def _find_driving_force(
         if not is_named_force(free[force]):
             if AS_LIKELY * (1.0 - share) > 1.0 or not tells_forces(survey):
                 raise error_without_force(survey, file, velocity, force)
+            place = survey.columns[survey.channels["position"]["column"]]
+            if choices.position is None and is_nameless(place):
+                if causes_acceleration(place.values, free[force].values, sample_time_of(survey)):
+                    raise error_without_position(survey, free, file, place.name, force)
         why = f"{force!r} is read as the actuator's force: the motion explains {share:.0%} of it"
     elif others := as_likely(scores, force):
         why = explain_ambiguity(force, others, "the actuator's force")

@@ -8,6 +8,7 @@ would look like physics that the model lacks.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
@@ -118,6 +119,29 @@ def left_in_turn(force: Array, position: Array, sample_time: float) -> tuple[flo
     share = beside**2 / whole
     is_place = share < LEAST_LEFT and not brakes.any()
     return min(share, 1.0), 1.0 if is_place else min(left / beside, 1.0) ** 2
+
+
+def causes_acceleration(place: Array, column: Array, sample_time: float) -> bool:
+    """Whether a column (n,) is the acceleration that another one causes as a force.
+
+        place = m column + c sgn(v) + b v + k,   v: the integral of the column
+
+    A torque and an acceleration imitate a position and its force: each is in proportion to the
+    other but for friction. The relation that leaves less holds, if its inertia is surely positive.
+    """
+    rows = np.arange(len(column))
+    speed = sample_time * np.cumsum(column - column.mean())
+    # the speed at the first row, and the offset of a sensor, are not known
+    speed -= np.polynomial.Polynomial.fit(rows, speed, 1)(rows)
+    stretch = stretch_of((place, column, np.sign(speed), speed), place, sample_time)
+    if stretch is None:
+        return False
+    (*_, one), (target, *caused) = stretch
+    fit = least_squares(np.stack([*caused, one]), target, sample_time)
+    if fit is None or not fit[0][0] > SURELY * fit[1][0]:
+        return False
+    by_motion = math.prod(left_in_turn(column, place, sample_time))
+    return bool(fit[2] ** 2 < np.var(target) * by_motion)
 
 
 def possible_forces(survey: Survey, *used: str | None) -> dict[str, SurveyedColumn]:
