@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,8 @@ OUT_OF_RANGE = 0.5
 USUAL = 0.99
 #: fewest samples of a stretch that show what is usual
 FEWEST = 16
+#: of standard deviation 1: scipy's normal law takes longer to import than a log to check
+NORMAL = NormalDist()
 #: rms of the two statistics for readings rounded to a step: sqrt(70)/6 and sqrt(5) times 0.29
 _ROUNDED_LONE, _ROUNDED_JUMP = 0.40, 0.65
 
@@ -146,11 +149,9 @@ def _match_events(
 
     left: shape of the event: distance in samples -> part of its size
     """
-    from scipy.special import ndtri
-
     reach, scale = max(left), _local_scale(off, floor)
     # the largest of so many normal values by chance, in standard deviations
-    largest = float(-ndtri(0.5 * BY_CHANCE / max(len(off), 1)))
+    largest = -NORMAL.inv_cdf(0.5 * BY_CHANCE / max(len(off), 1))
     at = np.flatnonzero(np.abs(off) > largest * scale)
     at = at[(at >= 2 * reach) & (at < len(off) - 2 * reach)]
     size = off[at]
@@ -170,16 +171,14 @@ def _local_scale(e: Array, floor: float) -> Array:
 
     floor: least value
     """
-    from scipy.ndimage import maximum_filter1d
-    from scipy.special import ndtri
-
     scale = np.full(len(e), max(floor, 1e-300))
     for size, part in ((256, 0.5), (1024, 0.99)):
         size = min(size, len(e))
         count = len(e) // size
         blocks = np.abs(e[: count * size]).reshape(count, size)
-        each = np.quantile(blocks, part, axis=1) / ndtri(0.5 + 0.5 * part)
-        each = maximum_filter1d(each, 3, mode="nearest")
+        each = np.quantile(blocks, part, axis=1) / NORMAL.inv_cdf(0.5 + 0.5 * part)
+        beside = np.pad(each, 1, mode="edge")
+        each = np.maximum(np.maximum(beside[:-2], beside[2:]), each)
         scale = np.maximum(scale, each[np.minimum(np.arange(len(e)) // size, count - 1)])
     return scale
 

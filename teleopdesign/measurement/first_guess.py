@@ -285,10 +285,13 @@ def least_squares(
             return None
     scale[scale == 0] = 1.0
     normal = columns / scale[:, None]
-    solution, *_ = np.linalg.lstsq(normal.T, target, rcond=1e-8)
-    left = float(np.mean((target - normal.T @ solution) ** 2))
+    # a few columns with many rows: the normal equations, once refined, take a third of the time
+    inverse = np.linalg.pinv(normal @ normal.T / len(target), rcond=1e-12, hermitian=True)
+    solution = inverse @ (normal @ target / len(target))
+    solution += inverse @ (normal @ (target - solution @ normal) / len(target))
+    left = float(np.mean((target - solution @ normal) ** 2))
     seconds = max(len(target) * sample_time, 1.0)
-    covariance = np.linalg.pinv(normal @ normal.T / len(target)) * left / seconds
+    covariance = inverse * left / seconds
     return solution / scale, np.sqrt(np.abs(np.diag(covariance))) / scale, left**0.5
 
 
