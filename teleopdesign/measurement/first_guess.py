@@ -110,7 +110,7 @@ def explain_forces(pairs: Sequence[tuple[Array, Array]], sample_time: float) -> 
     columns = np.concatenate([s[0] for s in stretches], axis=1)
     target, place = np.concatenate([s[1] for s in stretches], axis=1)
     fit = _fit_with_place(columns, place, target, sample_time)
-    if fit is None:
+    if fit is None or hardly_varies(target):
         return _NOTHING
     solution, errors, left = fit
     whole = float(np.mean((target - target.mean()) ** 2))

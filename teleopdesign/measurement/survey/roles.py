@@ -46,7 +46,8 @@ def score_of(role: str, column: SurveyedColumn, *, left: float = 1.0, **more: fl
     """
     evidence = _evidence_in(column) | {key.replace("_", " "): value for key, value in more.items()}
     logs = (odds * evidence[key] for key, odds in _odds()[role].items() if evidence.get(key))
-    return sum(logs) - math.log(min(max(left, LEAST_LEFT), 1.0))
+    # of a column that is logged twice, the first: not the one that rounding favours
+    return round(sum(logs) - math.log(min(max(left, LEAST_LEFT), 1.0)), 9)
 
 
 def _evidence_in(column: SurveyedColumn) -> dict[str, float]:
