@@ -15,15 +15,13 @@ from numpy.typing import NDArray
 
 from ..base.finding import Finding
 from ..measurement.filtering import Array
+from ..measurement.limits import HALF
 from ..measurement.repeated_rows import BY_CHANCE
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
 #: an outlier explains its neighbours if their remaining deviation is within EXPLAINED local
 #: standard deviations (five errors of this deviation), or within RELATIVE of the outlier
 EXPLAINED, RELATIVE = 3.0, 0.2
-#: a command may have any value, so a sample is an outlier if it leaves the range of all others by
-#: more than this part of the range
-OUT_OF_RANGE = 0.5
 #: part of the second differences of a position up to which they are usual
 USUAL = 0.99
 #: fewest samples of a stretch that show what is usual
@@ -52,9 +50,9 @@ def check_outliers(signal: Signal) -> Iterator[Finding]:
     for first, x in signal.stretches:
         at, size = lone_samples(x, signal.rounded_to)
         is_outlier = x[at] != x[at - 1]
-        if signal.quantity == "actuator_force":
+        if signal.quantity == "actuator_force":  # a command may have any value within its range
             rest = np.delete(x, at)
-            margin = OUT_OF_RANGE * float(np.ptp(rest))
+            margin = HALF * float(np.ptp(rest))
             is_outlier &= (x[at] > rest.max() + margin) | (x[at] < rest.min() - margin)
         rows.append(at[is_outlier] + first)
         sizes.append(size[is_outlier])

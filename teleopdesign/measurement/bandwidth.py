@@ -10,13 +10,11 @@ from numpy.typing import NDArray
 from .encoder import reading_step
 from .experiment import Experiment
 from .filtering import Array
+from .limits import HALF
 from .motion import motions
 from .record import Record
 from .repeated_rows import SENSED, SLOWER
 
-#: a bandwidth hides the motion if the share of rows in motion, over the share at a bandwidth two
-#: octaves lower, is below this: then most rows that could be tested are lost
-LEAST_SHARE = 0.5
 #: Hz: no lower bandwidth is chosen or proposed
 LOWEST = 1.0
 #: highest bandwidth at which a motion is compared, as a part of the sample rate
@@ -92,7 +90,7 @@ def hides_motion(experiment: Experiment, body: str, bandwidth: float) -> bool:
     if lower < LOWEST:
         return False
     could = share_in_motion(experiment, body, lower)
-    return share_in_motion(experiment, body, bandwidth) < LEAST_SHARE * could
+    return share_in_motion(experiment, body, bandwidth) < HALF * could
 
 
 def motion_beyond(experiment: Experiment, chosen: float) -> float | None:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from .encoder import SURELY
 from .filtering import spectrum
+from .limits import HALF, SMALL
 from .record import Record
 
 Array = NDArray[np.float64]
@@ -36,15 +37,11 @@ _ONE_WAY = 0.05
 #: model of a real machine. Lower: a motor that spins up under one torque passes for one that tells
 #: its inertia; higher: said of true small forces beside gravity
 VARIES = 0.01
-#: part of the motion that each direction must have where both are said to look alike
-_BOTH_WAYS = 0.1
 #: part of what one motion leaves of a force, below which another one, such as its size or the same
 #: with another sign, surely explains more: 0.5 to 0.8 for sizes of simulated forces, 0.5 for the
 #: supply current of a servo; 0.99 of a constant force with noise. Sizes of dry friction alone are
 #: constant in motion, and reach 0.9
 SURELY_LESS = 0.8
-#: a force that depends on position counts only if it leaves less than this part of the squares
-MOSTLY = 0.5
 
 
 @dataclass(frozen=True)
@@ -179,7 +176,7 @@ def rows_each_way(direction: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_
 
     direction: low-passed, so that it rings about zero where a body is at rest before it moves
     """
-    return direction > 0.5, direction < -0.5
+    return direction > HALF, direction < -HALF
 
 
 def _may_be_spring(columns: Array, place: Array, force: Array, sample_time: float) -> bool:
@@ -201,7 +198,7 @@ def is_size(force: Array, position: Array, sample_time: float) -> bool:
     motion, (target, place) = stretch
     place = (place - place.mean()) / max(float(np.ptp(place)), np.finfo(float).tiny)
     each = [float(np.mean(way)) for way in rows_each_way(motion[1])]
-    if min(each) < _BOTH_WAYS * sum(each):
+    if min(each) < SMALL * sum(each):
         return False
     left = []
     for columns in (motion, np.abs(motion)):
@@ -270,7 +267,7 @@ def _fit_with_place(
     """`least_squares`, with a force proportional to position if this removes most of the rest."""
     fit = least_squares(columns, target, sample_time)
     held = least_squares(np.vstack([columns, place]), target, sample_time)
-    if fit is None or held is None or not held[2] ** 2 < MOSTLY * fit[2] ** 2:
+    if fit is None or held is None or not held[2] ** 2 < HALF * fit[2] ** 2:
         return fit
     return held
 

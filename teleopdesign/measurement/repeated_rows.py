@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from .channel import Channel
 from .encoder import CHANGES, STEPS, reading_step
+from .limits import HALF
 from .row_places import Array
 from .tables import LogColumns
 
@@ -149,7 +150,7 @@ def repeats(x: Array, step: float) -> NDArray[np.intp]:
     usual = (x[high] - x[low]) / (high - low)
     way, size = np.sign(usual), np.abs(usual)
     into, out = way * change[first - 1], way * change[past]
-    is_held = (size >= STEPS * step) & (np.minimum(into, out) >= 0.5 * size)
+    is_held = (size >= STEPS * step) & (np.minimum(into, out) >= HALF * size)
     pairs = zip(first[is_held].tolist(), past[is_held].tolist(), strict=True)
     rows = [np.arange(a, b) + 1 for a, b in pairs]
     return np.concatenate(rows) if rows else np.zeros(0, dtype=np.intp)
@@ -175,7 +176,7 @@ def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int
         ends = b == len(change)
         leaps = not ends and abs(change[b]) > LEAP * max(usual, step)
         # a stuck reading jumps once; a body that rested at a reversal continues with similar steps
-        leaps = leaps and (b + 1 >= len(change) or abs(change[b + 1]) < 0.5 * abs(change[b]))
+        leaps = leaps and (b + 1 >= len(change) or abs(change[b + 1]) < HALF * abs(change[b]))
         if quantity == "position":
             slowing = abs(change[a - 1] - change[a - 3]) / 2
             dead = abs(change[a - 1]) > max(STEPS * step, LEAP * slowing)

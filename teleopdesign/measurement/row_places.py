@@ -8,6 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from .limits import HALF
+
 Array = NDArray[np.float64]
 RowNumbers = NDArray[np.intp]
 #: part of a sample time by which steps of an even clock differ, and by which stamps may lie off
@@ -82,7 +84,7 @@ def usual_step(pieces: Sequence[Array]) -> float:
     """Step between neighbouring rows, s: the mean of the steps near the median."""
     steps = np.concatenate([np.diff(piece) for piece in pieces])
     usual = float(np.median(steps))
-    near = steps[np.abs(steps - usual) < 0.5 * usual]
+    near = steps[np.abs(steps - usual) < HALF * usual]
     return float(near.mean()) if len(near) else usual
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..base.units import si_factor
 from .encoder import SURELY
+from .limits import HALF
 from .reading import ReadingStep
 from .record_clock import EVEN, SHORTEST, RecordClock
 from .row_places import Array, are_set_back
@@ -189,7 +190,7 @@ def read_at_stamps(
     off = float(f"{100 * clock.jitter / h:.2g}")
     text = f"stamps {off:g} % of a row off an even clock"
     share = f"{slope:.2f} +- {error:.1g} of what they say"
-    stamped, effect = slope > 0.5 and math.isfinite(error), "none"
+    stamped, effect = slope > HALF and math.isfinite(error), "none"
     if stamped:
         rule = f"the position was read at its stamps ({share}): {rule}"
         effect = effect_of_even_stamps(clock, positions)

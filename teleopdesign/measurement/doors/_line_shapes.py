@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 
 from ...base.errors import ExperimentError, quote
+from ..limits import HALF, SEVERAL
 from ..record_clock import FEWEST
 from ._cell_shapes import LineShape, units_behind_numbers, vectors_in_cells
 from ._cells import is_empty, is_number, seconds_of
@@ -20,8 +21,6 @@ from ._header import bare_unit, is_unit_cell
 
 #: part of the lines that have a shape: the first ones after a start may be messages
 MOST_OF_THEM = 0.8
-#: part of the lines that are frames of a bus; others are comments and events
-MANY_OF_THEM = 0.5
 #: readings of a switch in a trace
 SWITCH = {"TRUE": "1", "FALSE": "0"}
 #: name of the column of a monitor's stamps. No word of time, so that a time of the microcontroller
@@ -64,7 +63,7 @@ def frames_of_a_bus(lines: Sequence[str], file: str) -> LineShape | None:
     can0  181   [8]  37 12 A0 FE FF FF 2C 00
     """
     filled = [line[:200] for line in lines if line.strip()]
-    if _share(filled, _FRAME.search) < MANY_OF_THEM:
+    if _share(filled, _FRAME.search) < HALF:
         return None
     raise ExperimentError(
         f"{file}: found frames of a CAN bus, expected signals: decode them into a table with "
@@ -122,7 +121,7 @@ def names_and_values(lines: Sequence[str], file: str) -> LineShape | None:
     """Names and values in each line, as a microcontroller prints it: "t=0.001 pos=0.28 cmd=-1"."""
     filled = [line for line in lines if line.strip()]
     rows = [row for line in filled if (row := pairs_of(line))]
-    if len(rows) < 3 or len(rows) < MOST_OF_THEM * len(filled):
+    if len(rows) < SEVERAL or len(rows) < MOST_OF_THEM * len(filled):
         return None
     # names from the second line: the first line of a dump may be incomplete
     names = [name for name, _, _ in rows[1]]
@@ -245,4 +244,4 @@ def _share(lines: Sequence[str], has_shape: Callable[[str], object]) -> float:
     """Part of the lines with a text that have a shape; 0 for less than three."""
     filled = [line for line in lines if line.strip()]
     count = sum(bool(has_shape(line)) for line in filled)
-    return count / len(filled) if count >= 3 else 0.0
+    return count / len(filled) if count >= SEVERAL else 0.0
