@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..base.finding import Finding
 from ..measurement.filtering import Array
 from ..measurement.limits import HALF
+from ..measurement.prepare import FEWEST
 from ..measurement.repeated_rows import BY_CHANCE
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
@@ -24,8 +25,6 @@ from ._recording import CheckedRecording, RecordingCheck, Signal
 EXPLAINED, RELATIVE = 3.0, 0.2
 #: part of the second differences of a position up to which they are usual
 USUAL = 0.99
-#: fewest samples of a stretch that show what is usual
-FEWEST = 16
 #: of standard deviation 1: scipy's normal law takes longer to import than a log to check
 NORMAL = NormalDist()
 #: rms of the two statistics for readings rounded to a step: sqrt(70)/6 and sqrt(5) times 0.29
@@ -95,7 +94,7 @@ def check_jumps(signal: Signal) -> Iterator[Finding]:
     wraps = signal.unit == "rad" and abs(abs(leap) / (2 * np.pi) - 1.0) < 0.05
     if wraps:
         why = "a whole turn: the angle wraps, `unwrap = true` in its channel mends that"
-    elif 0.5 < lost < 1000:
+    elif HALF < lost < 1000:
         why = f"as far as it moves in {lost:.0f} samples: if samples are missing, give a `segment` "
         why += "column that changes there"
     time = signal.time(row)

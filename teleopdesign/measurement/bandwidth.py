@@ -188,5 +188,5 @@ def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Arr
     density: Array = np.mean(np.abs(spectra) ** 2, 0).astype(np.float64)
     frequency: Array = np.fft.rfftfreq(n, record.sample_time).astype(np.float64)
     rate = record.rate_of(name)
-    noise = density[(frequency > PROPOSED * rate) & (frequency <= 0.5 * rate)]
+    noise = density[(frequency > PROPOSED * rate) & (2 * frequency <= rate)]
     return frequency, density, float(np.median(noise))

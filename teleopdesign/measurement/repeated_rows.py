@@ -25,7 +25,8 @@ from .tables import LogColumns
 BY_CHANCE = 1e-3
 #: rows to either side that show how often each channel repeats alone
 BESIDE = 25
-#: if more than this share of the rows repeat, the log has a slower source, which is another case
+#: part of the rows that a log may lose. Where more of them repeat, or lack a number in some cell,
+#: the log or a column has a slower source
 MOST = 0.2
 #: part of the changes that must be in step with the slower source, and their largest distance from
 #: the step, in its periods: of rows that repeat at random, 0.6 lie as near

@@ -24,8 +24,6 @@ from .tables import LogColumns
 
 Array = NDArray[np.float64]
 
-#: a channel of whole numbers with at most so many different values is a state, and no measurement
-STATES = 16
 #: part of the steps between stamps that are usual, and times the longest of these that a pause
 #: lasts: stamps of a bus come in bursts, and some are lost
 USUAL, PAUSE = 0.9, 10.0
@@ -48,7 +46,7 @@ def signals_of_log(
             steps += more
             continue
         values = readings[key]
-        rule, step = rule_of(channel, values), encoder_step(channel, values)
+        rule, step = rule_of(channel), encoder_step(channel, values)
         out = resample_on_grid(values, clock, rule, step=step, delay=conversion.delay)
         signals[key] = _restore_steps(out, values, channel, step)
     if clock.lost:
@@ -130,17 +128,10 @@ def _fill_spikes(
     return filled, [done]
 
 
-def rule_of(channel: Channel, values: Array) -> Rule:
+def rule_of(channel: Channel) -> Rule:
     """The rule for the values of a channel between two rows."""
-    if channel.quantity == "actuator_force":
-        return "held"
-    if channel.quantity == "position":
-        return "position"
-    few = np.unique(values[:: max(1, len(values) // 5000)])
-    states = len(few) <= STATES and bool(np.all(few == np.round(few)))
-    return (
-        "held" if states and channel.quantity not in ("velocity", "interaction_force") else "line"
-    )
+    rules: dict[str, Rule] = {"actuator_force": "held", "position": "position"}
+    return rules.get(channel.quantity, "line")
 
 
 def encoder_step(channel: Channel, values: Array) -> float:
@@ -181,7 +172,7 @@ def _resample_by_stamps(
     at, values = at[once], values[once]
     values, spikes = _fill_spikes(values, key, channel, [slice(None)], None, file)
     h = clock.sample_time
-    rule, step = rule_of(channel, values), encoder_step(channel, values)
+    rule, step = rule_of(channel), encoder_step(channel, values)
     rate = _rate_without_pauses(at)
     if channel.quantity == "interaction_force" and rate * h < SLOWER:
         rule = "position"  # a line between slow readings would weaken what changes fast
@@ -240,7 +231,7 @@ def _describe_lost_rows(
         if channel.quantity == "velocity":
             continue
         step = encoder_step(channel, values)
-        wrong = filling_error(values, clock, rule_of(channel, values), step=step)
+        wrong = filling_error(values, clock, rule_of(channel), step=step)
         if channel.quantity == "position":
             unit = f"{float(f'{wrong / step:.2g}'):g} steps" if step > 0 else f"{wrong:.2g}"
             positions.append(unit)

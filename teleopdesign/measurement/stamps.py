@@ -41,8 +41,6 @@ TURN = 0.25
 _SECONDS = (1.0, 1e3, 1e6, 1e9)
 #: longest step over a wrap, in usual steps: a few rows may be lost there
 LONGEST_STEP = 20.0
-#: fewest usual steps in the period of a wrap: with fewer, the column counts the rows of blocks
-FEWEST_STEPS = 500.0
 #: days between two rows: 0.2 s, as in seconds
 LONGEST_DAYS = 0.2 / DAY
 #: rows a second that no log of a machine has; a scope may have 1 MHz
@@ -71,7 +69,7 @@ def unwrap_stamps(stamps: Array) -> tuple[Array, tuple[str, ...]]:
     for row in np.flatnonzero(steps < 0).tolist():
         for period, why in periods.items():
             step = float(steps[row]) + period
-            if 0 < step <= LONGEST_STEP * usual and period > FEWEST_STEPS * usual:
+            if 0 < step <= LONGEST_STEP * usual:
                 moved[row + 1 :] += period
                 count[why] = count.get(why, 0) + 1
                 break
@@ -146,8 +144,8 @@ def unit_of_steps(stamps: Array) -> tuple[str, str]:
     if step < LONGEST_DAYS and SHORTEST / DAY < float(np.ptp(finite)) < SHORTEST:
         return "day", f"day: only in days are steps of {step:.4g} usual for a log"
     scales = ((0.2, "s"), (200.0, "ms"), (2e5, "us"), (math.inf, "ns"))
-    unit = next(name for largest, name in scales if step < largest or largest == math.inf)
-    if unit == "s" and step > 1e-5:
+    unit = next(name for largest, name in scales if step < largest)
+    if unit == "s":
         return "s", ""
     return unit, f"{unit}: only in {unit} are steps of {step:.4g} usual for a log"
 

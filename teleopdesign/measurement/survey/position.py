@@ -234,8 +234,7 @@ def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) ->
 def _step_of_readings(values: Array) -> float:
     """Step of the encoder, estimated from the readings; 0 if they show none."""
     raw = values[:ENOUGH]
-    changes = int(np.count_nonzero(np.diff(raw)))
-    return grid_of(raw, reading_step(raw)) if changes >= 9 else 0.0
+    return grid_of(raw, reading_step(raw))
 
 
 def _with_few_digits(step: float, reach: float) -> float:

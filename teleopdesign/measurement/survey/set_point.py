@@ -21,10 +21,6 @@ Indices = NDArray[np.intp]
 #: part of the squares of a column by which its position may differ: two columns that agree as a
 #: velocity and the derivative of its position must
 APART = 1.0 - DERIVATIVE**2
-#: least size of a set point over its largest one, from which it is surely no force: a hobby servo
-#: takes pulses of 500 to 2500 us (0.2), and counts of a converter begin above zero. A force so far
-#: from zero at all times leaves no free body at rest. A higher limit reads such pulses as a force
-NEVER_ZERO = 0.15
 #: likeness of a name to that of a force, from which it is no set point whatever the numbers are:
 #: "torque", "current", "effort". "pwm", "u" and "cmd" name pulses of a set point as well
 FORCE_NAME = 0.85
@@ -60,7 +56,8 @@ def is_sent_to_places(position: Array, column: SurveyedColumn) -> bool:
         return False
     if values.min() * values.max() <= 0.0:
         return False
-    if np.abs(values).min() < NEVER_ZERO * np.abs(values).max():
+    # pulses of a hobby servo have 500 to 2500 us; no force keeps so far from zero beside a rest
+    if np.abs(values).min() < SMALL * np.abs(values).max():
         return False
     ends = np.flatnonzero(np.diff(values))  # the last row of each hold
     ends = ends[ends > 0]

@@ -27,10 +27,6 @@ NUMBERS_MACHINES = frozenset(
     "id ids no nr num number name motor joint servo axis actuator node device drive can leg".split()
 )
 
-#: part of the rows that belong to another machine than the row before: the direction of one machine
-#: lasts for rows
-EACH_ROW = 0.7
-
 
 def machines_in_turn(table: CellTable) -> LongTable | None:
     """Rows of several machines in turn, named in a column: "hip, 0.0, 0.1", "knee, 0.0, 2.3".
@@ -91,7 +87,7 @@ def _run_together(labels: NDArray[np.intp], stamps: Array, signals: Sequence[NDA
         return False
     if int(np.sum(np.diff(stamps)[changes] < 0)) >= len(rows):
         return True
-    in_turn = float(changes.mean()) >= EACH_ROW
+    in_turn = float(changes.mean()) >= HALF
     return in_turn and any(_leaps_between(signal, rows) for signal in signals)
 
 
