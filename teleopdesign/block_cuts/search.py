@@ -10,6 +10,7 @@ from ..base.arguments import check_types
 from ..base.errors import ExperimentError, ModelError, unknown
 from ..diagnose import Diagnosis
 from ..diagnose import find_missing as find_missing_in_bodies
+from ..diagnose.cores import one_thread_of_algebra
 from ..diagnose.search_plan import PLAN, SearchPlan
 from ..effects import EFFECTS, Effect
 from ..measurement.experiment import Experiment
@@ -29,6 +30,7 @@ _BAND = 0.1
 
 
 @check_types
+@one_thread_of_algebra()
 def find_missing(
     experiment: Experiment | DiagramExperiment,
     model: Model | None = None,
@@ -80,8 +82,7 @@ def find_missing(
             for cut in computed:
                 cuts = _without_cut(cuts, cut.name, str(error))
     if not (bodies or ladder):
-        why = "; ".join(f"{block}: {text}" for block, text in cuts.untested.items())
-        raise ExperimentError(f"{experiment.title}: no block can be tested: {why}")
+        raise ExperimentError(f"{experiment.title}: no block can be tested: {_reasons(cuts)}")
     bodies = {c.name: bodies[c.name] for c in cuts.of("body")}
     return BlockDiagnosis(experiment, cuts, bodies, ladder, data, joined)
 
@@ -115,6 +116,13 @@ def data_of_computer(
         [d.bandwidth for d in bodies.values()] or [_BAND / rows[0].period]
     )
     return ControlData(part, rows, bandwidth)
+
+
+def _reasons(cuts: Cuts) -> str:
+    """Why blocks are untested, each reason once."""
+    texts = dict.fromkeys(cuts.untested.values())
+    blocks = {why: [b for b, text in cuts.untested.items() if text == why] for why in texts}
+    return "; ".join(f"{', '.join(names)}: {why}" for why, names in blocks.items())
 
 
 def _without_cut(cuts: Cuts, name: str, why: str) -> Cuts:
