@@ -55,15 +55,16 @@ def choices_of_the_corpus(keys: Mapping[str, Sequence[str]]) -> dict[str, list[C
     """
     out: dict[str, list[Choice]] = {role: [] for role in keys}
     for name, entry in entries().items():
-        with tempfile.TemporaryDirectory() as scratch, _kept_scores() as scored:
+        with tempfile.TemporaryDirectory() as scratch, _kept_scores() as scores_in_turn:
             folder = Path(scratch)
             reading = read(unpacked(entry, folder), entry.get("options", []), folder / "made")
         for role, kept in out.items():
             truth = reading.channels.get(role, {}).get("column")
-            for columns in _groups(scored, role):
+            for columns in _groups(scores_in_turn, role):
                 if truth in columns and len(columns) > 1:
                     of_each = [
-                        [said.get(key, 0.0) for key in keys[role]] for said, _ in columns.values()
+                        [evidences.get(key, 0.0) for key in keys[role]]
+                        for evidences, _ in columns.values()
                     ]
                     left = -np.log([part for _, part in columns.values()])
                     kind, right = name.partition("/")[0], [*columns].index(truth)
@@ -96,10 +97,10 @@ def _kept_scores() -> Iterator[list[tuple[str, str, dict[str, float], float]]]:
         yield kept
 
 
-def _groups(scored: Sequence[Any], role: str) -> Iterator[dict[str, Any]]:
+def _groups(scores_in_turn: Sequence[Any], role: str) -> Iterator[dict[str, Any]]:
     """The scores of one choice after the other: a column that comes again begins the next one."""
     columns: dict[str, Any] = {}
-    for its_role, column, evidence, left in scored:
+    for its_role, column, evidence, left in scores_in_turn:
         if its_role == role:
             if column in columns:
                 yield columns
@@ -109,7 +110,7 @@ def _groups(scored: Sequence[Any], role: str) -> Iterator[dict[str, Any]]:
         yield columns
 
 
-def estimated(choices: Sequence[Choice], stated: np.ndarray, free: np.ndarray) -> np.ndarray:
+def fit_odds(choices: Sequence[Choice], stated: np.ndarray, free: np.ndarray) -> np.ndarray:
     """ln odds of the keys (k,) of the largest likelihood;  stated: those that are not free."""
 
     def loss(some: np.ndarray) -> tuple[float, np.ndarray]:
@@ -134,7 +135,7 @@ def right_ones(choices: Sequence[Choice], odds: np.ndarray) -> int:
     return sum(bool(s[right] >= s.max() - TIE) for s, right in scores)
 
 
-def estimates() -> dict[str, tuple[dict[str, float], int, int]]:
+def odds_of_the_corpus() -> dict[str, tuple[dict[str, float], int, int]]:
     """Role -> odds by key, right choices of kinds of logs that were left out, all choices."""
     written = tomllib.loads(ODDS.read_text(encoding="utf-8"))
     keys = {role: [key for key, odds in written[role].items() if odds > 0] for role in ROLES}
@@ -144,15 +145,15 @@ def estimates() -> dict[str, tuple[dict[str, float], int, int]]:
         free = np.array([key not in STATED for key in keys[role]])
         right = 0
         for kind in {c.kind for c in choices}:
-            odds = estimated([c for c in choices if c.kind != kind], stated, free)
+            odds = fit_odds([c for c in choices if c.kind != kind], stated, free)
             right += right_ones([c for c in choices if c.kind == kind], odds)
-        best = np.exp(estimated(choices, stated, free))
+        best = np.exp(fit_odds(choices, stated, free))
         out[role] = dict(zip(keys[role], best.tolist(), strict=True)), right, len(choices)
     return out
 
 
 if __name__ == "__main__":
-    for role, (odds, right, count) in estimates().items():
+    for role, (odds, right, count) in odds_of_the_corpus().items():
         print(f"[{role}]  # right in {right} of {count} choices of kinds that were left out")
         for key, value in odds.items():
             print(f'"{key}" = {value:.2g}')
