@@ -252,8 +252,6 @@ def _unexplained_share(wanted: Array, measured: Array) -> float:
     the steps of a converter average out.
     """
     rows = len(measured) - LATE
-    if rows <= LATE:
-        return 0.0
     late = [wanted[LATE - k : LATE - k + rows] for k in range(LATE + 1)]
     columns = np.column_stack([*late, np.ones(rows)])
     target = measured[LATE:]

@@ -112,7 +112,7 @@ def left_in_turn(force: Array, position: Array, sample_time: float) -> tuple[flo
     of_place = least_squares(powers, target, sample_time)
     of_all = least_squares(np.vstack([columns[:3], powers]), target, sample_time)
     whole = float(np.var(target))
-    if of_place is None or of_all is None or not of_place[2] * whole > 0.0:
+    if not of_place[2] * whole > 0.0:
         return 1.0, 1.0
     (factors, errors, left), beside = of_all, of_place[2]
     brakes = factors[1:3] * np.sign(target @ place) > SURELY * errors[1:3]
@@ -137,11 +137,9 @@ def causes_acceleration(place: Array, column: Array, sample_time: float) -> bool
     if stretch is None:
         return False
     (*_, one), (target, *caused) = stretch
-    fit = least_squares(np.stack([*caused, one]), target, sample_time)
-    if fit is None or not fit[0][0] > SURELY * fit[1][0]:
-        return False
+    factors, errors, left = least_squares(np.stack([*caused, one]), target, sample_time)
     by_motion = math.prod(left_in_turn(column, place, sample_time))
-    return bool(fit[2] ** 2 < np.var(target) * by_motion)
+    return bool(factors[0] > SURELY * errors[0] and left**2 < np.var(target) * by_motion)
 
 
 def possible_forces(survey: Survey, *used: str | None) -> dict[str, SurveyedColumn]:
