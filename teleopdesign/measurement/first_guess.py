@@ -15,12 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .encoder import SURELY
+from .encoder import SURELY, Array
 from .filtering import spectrum
 from .limits import HALF, SMALL
 from .record import Record
-
-Array = NDArray[np.float64]
 
 #: Hz, part of the sample rate and bounds of the low-pass before the fit
 _BAND = (0.02, 2.0, 40.0)

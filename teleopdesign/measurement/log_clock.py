@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError, quote
 from .channel import Channel, LogLayout
+from .encoder import Array
 from .reading import ReadingStep, count_of
 from .record_clock import DATE, RecordClock, clock_of, counted_clock, segments_of
 from .repeated_rows import MOST, repeated_rows, rows_between_readings, with_slower_signals
-from .row_places import Array
 from .stamps import read_at_stamps
 from .tables import LogColumns
 

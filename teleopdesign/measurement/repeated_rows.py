@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .channel import Channel
-from .encoder import CHANGES, STEPS, reading_step
+from .encoder import CHANGES, STEPS, Array, reading_step
 from .limits import HALF
-from .row_places import Array
 from .tables import LogColumns
 
 #: probability by chance up to which all readings of a row repeat because it is lost, a channel is

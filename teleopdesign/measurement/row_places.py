@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from .encoder import Array
 from .limits import HALF
 
-Array = NDArray[np.float64]
 RowNumbers = NDArray[np.intp]
 #: part of a sample time by which steps of an even clock differ, and by which stamps may lie off
 #: their places (rms): random stamps have 0.29

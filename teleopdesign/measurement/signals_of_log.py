@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .channel import Channel
 from .conversion import Conversion
-from .encoder import is_on_grid, reading_step
+from .encoder import Array, is_on_grid, reading_step
 from .reading import ReadingStep, count_of
 from .record_clock import RecordClock
 from .repeated_rows import SLOWER
@@ -21,8 +20,6 @@ from .resample import (
 )
 from .spikes import filled_spikes
 from .tables import LogColumns
-
-Array = NDArray[np.float64]
 
 #: part of the steps between stamps that are usual, and times the longest of these that a pause
 #: lasts: stamps of a bus come in bursts, and some are lost

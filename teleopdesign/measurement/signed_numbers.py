@@ -9,13 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
 from ..base.toml import Table
+from .encoder import Array
 from .limits import HALF, SEVERAL, SMALL
-
-Array = NDArray[np.float64]
 
 #: keys of a channel, one for each code
 TWOS_COMPLEMENT, SIGN_BIT = "twos_complement", "sign_bit"

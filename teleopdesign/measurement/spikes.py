@@ -12,12 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from .encoder import Array
 from .limits import HALF, SMALL
 from .record_clock import FEWEST
 from .repeated_rows import runs_of
 from .resample import cubic_through_four
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 #: rows whose median is the course of a reading: of seven, three may be spikes

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.units import si_factor
-from .encoder import SURELY
+from .encoder import SURELY, Array
 from .limits import HALF
 from .reading import ReadingStep
 from .record_clock import EVEN, SHORTEST, RecordClock
-from .row_places import Array, are_set_back
+from .row_places import are_set_back
 
 #: s in a day
 DAY = 86_400.0

@@ -17,10 +17,11 @@ import numpy as np
 from ...base.errors import ExperimentError
 from ...base.units import measures, si_factor
 from ..column_names import likeness, unit_in_name
+from ..encoder import Array
 from ..limits import HALF
 from ..numbers_in_cells import numbers_of
 from ..stamps import unit_of_steps, unwrap_stamps
-from ._log import Array, Log, join_names
+from ._log import Log, join_names
 
 
 def open_folder(

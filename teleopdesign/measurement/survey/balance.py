@@ -17,9 +17,10 @@ import numpy as np
 from ...base.sentences import with_standard_error
 from ...base.units import measures, si_factor
 from ..column_names import is_wanted, likeness
+from ..encoder import Array
 from ..first_guess import balance_factor, explain_force
 from ..limits import SMALL
-from .content import NONE, SURE_NAME, Array, Choices, Survey, SurveyedColumn
+from .content import NONE, SURE_NAME, Choices, Survey, SurveyedColumn
 from .force_entry import PLACEHOLDER, force_to_si
 from .remarks import gear_ratio_in
 from .roles import LEAST_LEFT, score_of

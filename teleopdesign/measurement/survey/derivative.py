@@ -8,11 +8,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..column_names import is_another_quantity, likeness
-from ..encoder import SURELY
+from ..encoder import SURELY, Array
 from ..filtering import spectrum
 from ..first_guess import motion_columns, rows_each_way
 from ..limits import NEARLY_ALL, SMALL
-from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of, rises
+from .content import SURE_NAME, SurveyedColumn, is_unit_of, rises
 from .words import says
 
 #: correlation from which one column is the derivative of another

@@ -8,18 +8,11 @@ from dataclasses import replace
 
 from ...base.units import si_factor
 from ..column_names import likeness
+from ..encoder import Array
 from ..first_guess import SURELY_LESS, explain_force, is_turned
 from .axes import of_another_axis, stand_together
 from .balance import current_that_acted, find_hand, scale_by_balance
-from .content import (
-    SURE_NAME,
-    Array,
-    Choices,
-    Survey,
-    SurveyedColumn,
-    explain_ambiguity,
-    sample_time_of,
-)
+from .content import SURE_NAME, Choices, Survey, SurveyedColumn, explain_ambiguity, sample_time_of
 from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si, state_scatter
 from .refusals import error_without_force, error_without_position, tells_forces

@@ -15,7 +15,7 @@ from ..column_names import (
     likeness,
     why_no_unit,
 )
-from ..encoder import ENOUGH, grid_of, reading_step
+from ..encoder import ENOUGH, Array, grid_of, reading_step
 from ..limits import SMALL
 from .axes import of_another_axis
 from .axis_kind import (
@@ -29,7 +29,6 @@ from .axis_kind import (
 from .content import (
     OF_SENSORS,
     SURE_NAME,
-    Array,
     Choices,
     Survey,
     SurveyedColumn,

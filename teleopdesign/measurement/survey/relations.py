@@ -16,13 +16,12 @@ import numpy as np
 from ...base.units import is_unit
 from ..column_names import is_another_quantity, is_wanted, likeness, words_of
 from ..doors._log import Log
-from ..encoder import SURELY
+from ..encoder import SURELY, Array
 from ..first_guess import least_squares, stretch_of
 from ..law_of_readings import is_copy
 from .axes import of_another_axis, same_but_axis
 from .content import (
     SURE_NAME,
-    Array,
     Survey,
     SurveyedColumn,
     columns_in_use,

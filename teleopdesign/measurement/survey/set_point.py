@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..column_names import WANTED, likeness, words_of
+from ..encoder import Array
 from ..limits import HALF, SEVERAL, SMALL
-from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of
+from .content import SURE_NAME, SurveyedColumn, is_unit_of
 from .derivative import DERIVATIVE
 
 Indices = NDArray[np.intp]

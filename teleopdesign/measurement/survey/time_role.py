@@ -11,20 +11,12 @@ import numpy as np
 from ...base.units import measures, si_factor
 from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text, words_of
 from ..doors._log import Log
+from ..encoder import Array
 from ..limits import HALF, SEVERAL, SMALL
 from ..record_clock import FEWEST
 from ..row_places import are_out_of_order
 from ..stamps import unit_of_steps, unwrap_stamps
-from .content import (
-    ASSUMED,
-    SURE_NAME,
-    Array,
-    Choices,
-    SurveyedColumn,
-    is_unit_of,
-    rises,
-    unit_in_log,
-)
+from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, is_unit_of, rises, unit_in_log
 from .derivative import DERIVATIVE, derivative_factor, has_both_signs, unwrap_column, wrap_of
 from .remarks import sample_rate_in
 from .roles import score_of

@@ -17,12 +17,13 @@ from numpy.typing import NDArray
 
 from ....base.errors import ExperimentError
 from ....base.units import si_factor
+from ...encoder import Array
 from ...limits import HALF
 from ...numbers_in_cells import holds_dates, numbers_of
 from ...record_clock import DATE, FEWEST
 from ...stamps import unit_of_steps, unwrap_stamps
 from .._cells import is_column_of_texts
-from .._log import Array, Log, join_names
+from .._log import Log, join_names
 from ._table import CellTable, LongSignal, LongTable, as_text, rises, time_of
 from .clock_before_signals import clock_before_signals
 from .machines import machines_by_time, machines_in_turn

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ....base.units import measures
 from ...column_names import likeness, unit_in_name
-from .._log import Array
+from ...encoder import Array
 
 #: rows of a table by which its shape is judged: batches of up to 200 rows of two machines come back
 MOST_ROWS = 1000

@@ -17,9 +17,9 @@ import numpy as np
 
 from ....base.units import si_factor
 from ...column_names import likeness
+from ...encoder import Array
 from ...limits import HALF
 from ...stamps import unwrap_stamps
-from .._log import Array
 from ._table import CellTable, LongSignal, LongTable
 
 #: last words of the names of whole seconds, and of their part with its unit
