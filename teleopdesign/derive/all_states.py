@@ -30,7 +30,7 @@ from ..diagrams import (
     position_symbol,
     with_shared_states,
 )
-from ..diagrams.second_input import acts_along_another
+from ..diagrams.wiring import acts_along_another
 from ..effects import Effect, sort_by_action
 from ..realise.lti import S
 from ..realise.tips import with_tips

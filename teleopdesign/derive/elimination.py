@@ -17,7 +17,7 @@ import sympy as sp
 from ..base.errors import ModelError
 from ..controllers import exact_decimal
 from ..diagrams import Attached, Control, Diagram, Kinematics, Linked, Moving, Part, position_symbol
-from ..diagrams.second_input import acts_along_another
+from ..diagrams.wiring import acts_along_another
 from .noncommutative import counterexample
 from .printing import block_symbol, delay_symbol, motion_controller_symbol
 

@@ -17,8 +17,8 @@ from ..base.errors import ModelError
 from ..controllers import SIGNALS, ControlLaw, Controller, Stage, parameter_symbol
 from ..measurement.filtering import Array
 from .compiled import PHI, compile_source, head
-from .delays import LateSignals, delay_in_samples, without_delays
 from .laws import assignments, indent
+from .signal_symbols import LateSignals, delay_in_samples, without_delays
 from .simulated import without_no_delay
 
 _PERIOD = SIGNALS["period"]
