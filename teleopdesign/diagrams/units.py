@@ -6,11 +6,13 @@ What shares one motion is on one axis: a radian is no metre.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 from typing import TYPE_CHECKING
 
 from ..base.errors import ModelError
 from ..base.units import unit_of
 from ..blocks import Body
+from ..effects import Parameter
 from .junctions import Junction, Kinematics
 from .parts import AnyBlock, Attached, Block, Control, Moving
 
@@ -24,18 +26,31 @@ def first_axis(diagram: Diagram) -> str:
     return next((b.axis for b in bodies), "prismatic")
 
 
-def unit_of_value(diagram: Diagram, name: str) -> str:
-    """SI unit of a value of `diagram.values`; "1" if it has none."""
+def declaration_of(diagram: Diagram, name: str) -> Parameter | None:
+    """How the block of a value of `diagram.values` declares it; None: no body's, no law's."""
     block_name, _, rest = name.partition(".")
     block = diagram.block(block_name)
     if not isinstance(block, Control):
-        body = block.body
-        return body.unit(rest) if isinstance(body, Body) else "1"
+        return block.body.parameter(rest) if isinstance(block.body, Body) else None
     if isinstance(block.controller, AnyBlock):
-        return "1"
+        return None
     stage_name, _, parameter = rest.rpartition(".")
-    stage = next(s for s in block.controller.stages if s.name == stage_name)
-    return unit_of(stage.law.parameters[parameter].quantity, first_axis(diagram))
+    stages = (s for s in block.controller.stages if s.name == stage_name)
+    return next((s.law.parameters.get(parameter) for s in stages), None)
+
+
+def unit_of_value(diagram: Diagram, name: str) -> str:
+    """SI unit of a value of `diagram.values`; "1" if it has none."""
+    declared, block = declaration_of(diagram, name), diagram.block(name.partition(".")[0])
+    body = None if isinstance(block, Control) else block.body
+    axis = body.axis if isinstance(body, Body) else first_axis(diagram)
+    return "1" if declared is None else unit_of(declared.quantity, axis)
+
+
+def bounds_of_value(diagram: Diagram, name: str) -> tuple[float, float]:
+    """Least and largest value of a parameter; infinite where its block states none."""
+    declared = declaration_of(diagram, name)
+    return (-inf, inf) if declared is None else (declared.lower, declared.upper)
 
 
 def require_one_axis(
