@@ -61,7 +61,7 @@ def write_tangent(
 
 
 @dataclass(frozen=True)
-class Loop:
+class SampleLoop:
     """A loop over n samples, with p columns of tangents: how it reads signals, what it writes.
 
     arguments: arrays besides parameters and signals that are read as they are
@@ -117,7 +117,7 @@ class Scan:
         """Lines that read the signals in sample k."""
         return [f"u_{n} = {n}_[{k}]" for n in self.signals]
 
-    def source(self, loop: Loop) -> str:
+    def source(self, loop: SampleLoop) -> str:
         """The module whose function `scan` runs the loop.
 
         The states start at `part` of where they stay: at their stops, or where their rates are zero
@@ -242,7 +242,7 @@ def _source_of_stage(effect: Effect) -> str:
     """Source of a loop whose state begins steady: at the rows, and averaged over each sample."""
     scan = Scan(effect, "command", tuple(signals_in(effect)))
     return scan.source(
-        Loop(
+        SampleLoop(
             arguments=("dcommand_", "end", "dend", "mean", "dmean"),
             start=scan.read("0"),
             row=scan.read("k"),

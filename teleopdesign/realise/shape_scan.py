@@ -18,7 +18,7 @@ import sympy as sp
 from ..effects import SIGNALS, Effect
 from ..measurement.motion import Motion
 from .compiled import compile_source
-from .scan import Loop, Scan, columns_of, contiguous, signals_in, write_tangent
+from .scan import SampleLoop, Scan, columns_of, contiguous, signals_in, write_tangent
 from .traced import Along, Traced, in_rows, joined_rows
 
 #: periods of the bandwidth whose mean tells the force at the start: half a period is the shortest
@@ -47,7 +47,7 @@ def _source_of_shape(effect: Effect) -> tuple[str, tuple[str, ...]]:
     )
     # states follow the travel of readings, the force the smoothed velocity, so that no travel of
     # a bristle is lost. 1e-12: a rate may divide by the level, which is far larger or zero
-    loop = Loop(
+    loop = SampleLoop(
         arguments=(
             *("half_step", "position", "velocity", "direction"),
             *("forward", "dforward", "backward", "dbackward", "low", "dlow", "high", "dhigh"),
