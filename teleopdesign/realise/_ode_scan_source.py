@@ -159,28 +159,22 @@ def write_scan(effect: Effect) -> str:
     """Source of the scan: states `out` (s, n) and tangents `dout` (s, q, n) at the rows.
 
     drive: signals (m, n), those of corrections last;  bends: their deviations from chords (2, m, n)
+    unit: tangents (p, q + 1) of the parameters; (p, 0) without tangents. The last column is a
+        difference without input, whose growth is measured
     ddrive: tangents of the signals of corrections
     size, growth: size of a difference of states, and the growth at which tangents restart
     """
     parameters = [f"p_{i} = p[{i}]" for i in range(len(list_parameters(effect)))]
-    stage = [
-        *_write_stage_signals(effect),
-        *_write_rates(effect),
-        *_write_friction_of_stage(effect),
-    ]
+    signals, friction = _write_stage_signals(effect), _write_friction_of_stage(effect)
+    stage = [*signals, *_write_rates(effect), *friction]
     return f"""{head("Generated from an effect's rates; do not edit.")}
 
 @jitted
-def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout):
+def scan(h, steps, p, unit, drive, bends, ddrive, size, growth, z, out, dout):
     n = drive.shape[1]
     s, q = {len(effect.states)}, dout.shape[1]
 {indent(parameters, 4)}
-    # the last column is a difference without input, whose growth is measured for the tangents
-    m = q + 1 if q else 0
-    unit = np.zeros((len(p), m))
-    for i in range(len(p)):
-        if columns[i] >= 0:
-            unit[i, columns[i]] = 1.0
+    m = unit.shape[1]
     d = np.zeros((s, m))
     f = np.zeros((4, s))
     g = np.zeros((4, s, m))
