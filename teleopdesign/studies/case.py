@@ -30,6 +30,8 @@ from ..simulate.units import signal_units
 _COMPUTER = {"period": "s", "delay": "s", "encoder_step": "", "velocity_bandwidth": "Hz"}
 _SINE = {"amplitude": "", "frequency": "Hz", "phase": "rad"}
 _OF_SIMULATION = {"duration": "s", "step": "s", "give": ""}
+#: most parameters that a message lists
+_MOST_NAMED = 12
 
 
 @check_types
@@ -172,6 +174,6 @@ def _sine_with(motion: Trajectory, part: str, value: float) -> Trajectory:
     return sine(**{**_sine_parts(motion), part: value})
 
 
-def _join_names(known: tuple[str, ...], most: int = 12) -> str:
-    more = f", ... ({len(known)} in all)" if len(known) > most else ""
-    return ", ".join(known[:most]) + more
+def _join_names(known: tuple[str, ...]) -> str:
+    more = f", ... ({len(known)} in all)" if len(known) > _MOST_NAMED else ""
+    return ", ".join(known[:_MOST_NAMED]) + more
