@@ -1,8 +1,4 @@
-"""The result: every block against the measurement, as one ladder over all cuts.
-
-The cuts share no unknown: all that stands between two of them was recorded. So the ladder of the
-whole joins their ladders, the largest fall of the error first.
-"""
+"""The result: every block against the measurement, as one ladder over all cuts."""
 
 from __future__ import annotations
 
@@ -24,36 +20,12 @@ from .computer import Placed
 from .computer_fit import ControlData
 from .computer_search import Attempt, ComputerLadder, ComputerStep
 from .cuts import Cuts
+from .cuts_ladder import CutsRow, Key, join_ladders
 from .diagram_experiment import DiagramExperiment
 from .look_alikes import same_effects
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-#: an effect and the place where it acts
-Key = tuple[str, str]
-
-
-@dataclass(frozen=True)
-class CutsRow:
-    """One row of the ladder.
-
-    added: effect and place; None: the diagram as stated, bodies re-estimated
-    fit, check: cut -> error
-    """
-
-    added: Key | None
-    fit: Mapping[str, float]
-    check: Mapping[str, float]
-
-    @property
-    def fit_error(self) -> float:
-        """Root mean square over the cuts."""
-        return float(np.sqrt(np.mean(np.square(list(self.fit.values())))))
-
-    @property
-    def check_error(self) -> float:
-        return float(np.sqrt(np.mean(np.square(list(self.check.values())))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,42 +72,7 @@ class BlockDiagnosis(Shown, ByValue):
     @cached_property
     def rows(self) -> tuple[CutsRow, ...]:
         """The ladder of all cuts together; no row raises its error."""
-        fit = {name: d.before.fit_error for name, d in self.bodies.items()}
-        check = {name: d.before.check_error for name, d in self.bodies.items()}
-        waiting: list[list[tuple[Key, dict[str, float], dict[str, float]]]] = []
-        for ladder in self.ladders:
-            fit |= ladder.base.errors["fit"]
-            check |= ladder.base.errors["check"]
-        for name, d in self.bodies.items():
-            accepted = self.joined[name].accepted if name in self.joined else ()
-            steps = [(a.added.key, a.fit.errors["fit"], a.fit.errors["check"]) for a in accepted]
-            if steps:  # the body was estimated anew beside all of them
-                before = {name: d.before.fit_error}, {name: d.before.check_error}
-                steps[-1] = (steps[-1][0], *before)
-            steps += [
-                (r.added.key, {name: r.fit_error}, {name: r.check_error})
-                for r in d.rungs[1:]
-                if r.added is not None
-            ]
-            waiting.append(steps)
-        if self.computer is not None:
-            accepted = self.computer.accepted
-            waiting.append(
-                [(a.added.key, a.fit.errors["fit"], a.fit.errors["check"]) for a in accepted]
-            )
-        rows = [CutsRow(None, self._in_order(fit), self._in_order(check))]
-        while any(waiting):
-            falls = [
-                sum(check[n] ** 2 - e**2 for n, e in steps[0][2].items()) if steps else -np.inf
-                for steps in waiting
-            ]
-            added, new_fit, new_check = waiting[int(np.argmax(falls))].pop(0)
-            fit, check = fit | new_fit, check | new_check
-            rows.append(CutsRow(added, self._in_order(fit), self._in_order(check)))
-        return tuple(rows)
-
-    def _in_order(self, errors: Mapping[str, float]) -> dict[str, float]:
-        return {c.name: errors[c.name] for c in self.cuts.tested if c.name in errors}
+        return join_ladders(self.cuts, self.bodies, self.joined, self.computer)
 
     @property
     def check(self) -> str:

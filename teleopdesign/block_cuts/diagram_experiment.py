@@ -23,6 +23,8 @@ from .cuts import Cuts, cuts_of
 
 #: decimals of a column; with more the rounding is none that counts
 _MOST_DIGITS = 13
+#: significant digits that a program writes at least ("%g" has 6): fewer are a signal of few values
+_LEAST_SIGNIFICANT = 4
 
 
 @dataclass(frozen=True)
@@ -112,16 +114,13 @@ class DiagramExperiment(ByValue):
         return conversion_to_si(channel, bodies, f"channels.{name}").signal(log.columns.values)
 
     def digit(self, name: str, log: RecordedLog) -> float:
-        """The last digit of a signal's column, SI; 0: as many digits as a number has."""
+        """Step of the last digit of a signal's column, SI, rms over its rows; 0: not rounded."""
         values = np.concatenate([log.columns.values[c] for c in self.channel[name].columns])
         values = values[np.isfinite(values)]
         scale = np.ptp(values) if len(values) else 0.0
         signal = self.signal(name, log)
         factor = (np.nanmax(signal) - np.nanmin(signal)) / scale if scale else 0.0
-        for digits in range(_MOST_DIGITS):
-            if np.abs(np.round(values, digits) - values).max(initial=0.0) < 1e-3 * 10.0**-digits:
-                return float(10.0**-digits * abs(factor))
-        return 0.0
+        return last_digit(values) * abs(float(factor))
 
     def seconds(self, log: RecordedLog) -> Array:
         """Time of the rows, s, (n,)."""
@@ -134,6 +133,26 @@ class DiagramExperiment(ByValue):
         lines += [f"  {name}: {self.diagram.texts.get(name, name)}" for name in self.recorded]
         lines += [f"  {log.file} ({log.use}): {log.count} rows" for log in self.logs]
         return "\n".join([*lines, *(f"  {line}" for line in repr(self.cuts).splitlines())])
+
+
+def last_digit(values: Array) -> float:
+    """Step of the last digit of written numbers, rms over them; 0: as many as a number has.
+
+    Numbers have fixed decimals ("%.4f"), fixed significant digits ("%.6g") or single precision: of
+    these the coarsest that all numbers fit.
+    """
+    size = np.abs(values[values != 0.0])
+    if not len(size):
+        return 0.0
+    decade = np.floor(np.log10(size))
+    decimals = (np.full(len(size), 10.0**-digits) for digits in range(_MOST_DIGITS))
+    significant = (10.0 ** (decade + 1 - n) for n in range(_LEAST_SIGNIFICANT, _MOST_DIGITS))
+    single = [np.spacing(size.astype(np.float32)).astype(float)]
+    steps = [0.0]
+    for kind in (decimals, significant, single):
+        fitting = (s for s in kind if np.abs(np.round(size / s) - size / s).max() < 1e-3)
+        steps += [float(np.sqrt(np.mean(s**2))) for s in fitting][:1]
+    return max(steps)
 
 
 def axis_of(diagram: Diagram, signal: str) -> str:

@@ -17,8 +17,9 @@ from .body import body_experiment, model_of_body
 from .computer_fit import floors
 from .computer_search import ComputerStep, step_of
 from .control_rows import ControlFit
-from .cuts import Cut
+from .cuts import COMPUTER, Cut
 from .diagram_experiment import DiagramExperiment
+from .joined_cut import rank_laws
 from .search import data_of_computer
 
 
@@ -69,13 +70,16 @@ def rank(
     """Effects that a model may lack, each added alone and fitted, best first.
 
     model: of bodies, or an experiment of a whole diagram, which has its own
-    returns: of a diagram: cut -> ranking of its body, or of the effects of controllers
+    returns: of a diagram: cut -> ranking of its body, or of the effects of controllers; "Z_M, laws"
+        -> ranking of the laws that give the command in the cut of a body
     """
     if isinstance(model, Model):
         return rank_bodies(model, _of_bodies(experiment))
-    made: dict[str, Ranking | ComputerStep] = {
-        cut.name: rank_bodies(known, body) for cut, body, known in _bodies(model)
-    }
+    made: dict[str, Ranking | ComputerStep] = {}
+    for cut, body, known in _bodies(model):
+        made[cut.name] = rank_bodies(known, body)
+        if COMPUTER in cut.blocks:
+            made[f"{cut.name}, laws"] = rank_laws(model, cut, known)
     if computed := _names_of_computer(model):
         data = data_of_computer(model, model.cuts, {})
         made |= dict.fromkeys(computed, step_of(data, data.base(), floors(data, model)))

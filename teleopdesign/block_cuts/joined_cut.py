@@ -33,7 +33,7 @@ from ..measurement.prepare import Prepared, Stretch, prepare
 from ..model import Model
 from .body import body_experiment
 from .computer import Placed, UnevenRows, free_parameters, passes_of
-from .computer_search import ComputerLadder, ComputerStep, are_alike, climb
+from .computer_search import ComputerLadder, ComputerStep, are_alike, climb, step_of
 from .control_rows import ControlFit, ControlRows
 from .cuts import Cut
 from .diagram_experiment import DiagramExperiment
@@ -99,6 +99,11 @@ class JoinedData(ControlRows):
         here = body_experiment(self.experiment, self.cut, placed)
         prepared = prepare(here, bandwidth=self._bandwidth)
         return _Body(tuple(placed), prepared, estimate(start, prepared, effort=EFFORTS.near))
+
+    def floors(self, seed: int = 0) -> dict[str, float]:
+        """The cut -> error that its sensors alone leave beside the body and the stated laws."""
+        model, random = self._stated.fit.model, np.random.default_rng(seed)
+        return {self.cut.name: noise_floor(model, self._stated.prepared, random).value}
 
     def base(self) -> ControlFit:
         """The laws as stated, their free parameters estimated."""
@@ -200,11 +205,15 @@ def climb_joined(
     raises ModelError: the rows are no passes of the computer, or a law cannot be predicted
     """
     data = JoinedData(experiment, cut, model)
-    stated = data.body(())
-    floor = noise_floor(stated.fit.model, stated.prepared, np.random.default_rng(seed))
-    return climb(
-        data, {cut.name: floor.value}, report, beside=lambda step: _compare_with_body(data, step)
-    )
+    floors = data.floors(seed)
+    return climb(data, floors, report, beside=lambda step: _compare_with_body(data, step))
+
+
+def rank_laws(experiment: DiagramExperiment, cut: Cut, model: Model) -> ComputerStep:
+    """The effects of the laws in a body's cut, each added alone;  model: of the body."""
+    data = JoinedData(experiment, cut, model)
+    step = step_of(data, data.base(), data.floors())
+    return step if step.accepted is None else _compare_with_body(data, step)
 
 
 def _compare_with_body(data: JoinedData, step: ComputerStep) -> ComputerStep:

@@ -29,7 +29,8 @@ from .computer_fit import ControlData
 from .computer_search import Attempt, ComputerLadder, ComputerStep
 from .control_rows import ControlFit
 from .cuts import Cuts
-from .diagnosis import BlockDiagnosis, Key
+from .cuts_ladder import Key
+from .diagnosis import BlockDiagnosis
 from .diagram_experiment import DiagramExperiment
 from .joined_cut import placed_for
 from .reading import load_experiment

@@ -10,6 +10,7 @@ from ..base.arguments import check_types
 from ..base.errors import ExperimentError, ModelError, unknown
 from ..diagnose import Diagnosis
 from ..diagnose import find_missing as find_missing_in_bodies
+from ..diagnose.cores import one_thread_of_algebra
 from ..diagnose.search_plan import PLAN, SearchPlan
 from ..effects import EFFECTS, Effect
 from ..measurement.experiment import Experiment
@@ -29,6 +30,7 @@ _BAND = 0.1
 
 
 @check_types
+@one_thread_of_algebra()
 def find_missing(
     experiment: Experiment | DiagramExperiment,
     model: Model | None = None,

@@ -13,7 +13,12 @@ import numpy as np
 
 from ..base.errors import ModelError
 from ..diagrams import Diagram, four_cases
-from ..frequency import ImpedanceMap, measured_impedance, quasi_linear_impedance
+from ..frequency import (
+    ImpedanceMap,
+    ParameterCovariance,
+    measured_impedance,
+    quasi_linear_impedance,
+)
 from ..realise.tips import led_motion
 from ..simulate import Sampling
 from .stated_motion import StatedMotion
@@ -28,7 +33,7 @@ class FeltImpedance:
     """Zhat_M of the four cases; None where it could not be computed.
 
     simulated: measured in simulation
-    predicted: by describing functions, with continuous controllers
+    predicted: by describing functions, with continuous controllers, and the band of the estimates
     missing: the reason for each None
     """
 
@@ -37,10 +42,13 @@ class FeltImpedance:
     missing: tuple[str, ...]
 
 
-def felt_impedance(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) -> FeltImpedance:
+def felt_impedance(
+    hybrid: Diagram, motion: StatedMotion, sampling: Sampling, covariance: ParameterCovariance
+) -> FeltImpedance:
     """Zhat_M of the device without and with compensation at the stated peak speed.
 
     hybrid: a device with C and H (either may be absent), without a hand
+    covariance: of the device's estimates; without names no band is known
     """
     cases = four_cases(hybrid, every=True)
     wanted = motion.frequency * np.array(MULTIPLES)
@@ -64,7 +72,12 @@ def felt_impedance(hybrid: Diagram, motion: StatedMotion, sampling: Sampling) ->
     except ModelError as error:
         missing.append(f"simulation: {error}")
     try:
-        predicted = quasi_linear_impedance(cases, amplitude=amplitude, frequency=frequency)
+        predicted = quasi_linear_impedance(
+            cases,
+            amplitude=amplitude,
+            frequency=frequency,
+            covariance=covariance if covariance.names else None,
+        )
     except ModelError as error:
         missing.append(f"describing functions: {error}")
     return FeltImpedance(simulated, predicted, tuple(missing))

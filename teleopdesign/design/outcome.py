@@ -187,7 +187,10 @@ def _friction(design: Design) -> dict[str, Any] | None:
 
 
 def _impedance(felt: FeltImpedance) -> dict[str, Any]:
-    """Magnitude (dB) and phase (deg) of each case over frequency (Hz), simulated and predicted."""
+    """Magnitude (dB) and phase (deg) of each case over frequency (Hz), simulated and predicted.
+
+    95 %: half widths of the band that the estimates of the device leave to the prediction
+    """
     data: dict[str, Any] = {"missing": list(felt.missing)}
     for how, one in (("simulated", felt.simulated), ("predicted", felt.predicted)):
         if one is None:
@@ -201,6 +204,12 @@ def _impedance(felt: FeltImpedance) -> dict[str, Any]:
             }
             for case in one.data["case"].values
         }
+        if one.band is not None:
+            for row, case in enumerate(one.data["case"].values):
+                data[how][str(case)]["95 %"] = {
+                    "decibel": one.band.decibel[row].tolist(),
+                    "phase": one.band.degrees[row].tolist(),
+                }
     return data
 
 

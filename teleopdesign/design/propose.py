@@ -102,6 +102,7 @@ def design(
     options: list[ProposedController | None] = [*cancellations(body, friction, reach, settings)]
     trials = [_trial(body, one, motion, reach, settings) for one in options or [None]]
     best = min(trials, key=lambda t: t.left)
+    covariance, sampling = diagnosis.covariance({"Z_M": at}), sampling_of(settings, reach)
     others = [t for t in trials if t is not best]
     return Design(
         experiment=diagnosis.experiment.title or diagnosis.experiment.folder.name,
@@ -118,7 +119,7 @@ def design(
         prediction=best.prediction,
         expected=_error_to_expect(best, diagnosis, at, settings, reach),
         not_cancelled=not_cancelled(body, best.cancellation),
-        impedance=felt_impedance(best.prediction.hybrid, motion, sampling_of(settings, reach)),
+        impedance=felt_impedance(best.prediction.hybrid, motion, sampling, covariance),
         residual=residual_friction(
             body,
             cancellation=best.friction.controller if best.friction else None,
@@ -126,9 +127,7 @@ def design(
             speeds=reach.peak_speed * SHARES,
             position=motion.centre,
         ),
-        transparency=transparency(
-            _with_load(best, body, settings), motion, diagnosis.covariance({"Z_M": at})
-        ),
+        transparency=transparency(_with_load(best, body, settings), motion, covariance),
         claims=_claims(best, body, friction, reach, settings),
         verdict=diagnosis.verdict,
         left=diagnosis.left,

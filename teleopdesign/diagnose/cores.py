@@ -146,6 +146,8 @@ def one_thread_of_algebra() -> Iterator[None]:
 @lru_cache(maxsize=1)
 def _find_libraries() -> ThreadpoolController:
     """The loaded libraries of linear algebra; the search takes 6 ms, so it is made once."""
+    import scipy.linalg  # noqa: F401  it has a library of its own, which must be loaded by now
+
     return ThreadpoolController()
 
 

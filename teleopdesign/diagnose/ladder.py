@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from ..measurement.experiment import Experiment
 from ..model import Model
+from .cores import one_thread_of_algebra
 from .diagnosis import Diagnosis
 from .ladder_state import restrict_candidates
 from .narrower_band import choose_band, narrower_to_search
@@ -19,6 +20,7 @@ from .parts_result import diagnosis_of_parts
 from .search_plan import PLAN, SearchPlan
 
 
+@one_thread_of_algebra()
 def find_missing(
     experiment: Experiment,
     model: Model | None = None,

@@ -17,6 +17,7 @@ from scipy.linalg.lapack import dgeqrf
 from scipy.optimize import lsq_linear
 
 from ..measurement.filtering import Array
+from .cores import one_thread_of_algebra
 
 #: smallest damping of a step, of the size of the columns: proportional columns share their step
 LEAST_DAMPING = 1e-12
@@ -33,6 +34,7 @@ class Minimum:
     jacobian: Array
 
 
+@one_thread_of_algebra()
 def minimise(
     function: Callable[[Array], tuple[Array, Array]],
     start: Array,

@@ -33,6 +33,7 @@ FIELDS = (
     "missing",
     "groups",
     "probabilities",
+    "error",
 )
 HIDDEN = [
     ("gain", "H", 1.06), ("delay", "H", 0.004), ("lag", "H", 0.004),
@@ -80,6 +81,33 @@ def judge(diagnosis, hidden):
     return diagnosis.missing == (true,) or (not diagnosis.missing and listed)
 
 
+def error_of_cut(diagnosis, hidden):
+    """Last error of the cut of the planted effect, over that of the true structure or the floor.
+
+    The true structure is the diagram with the planted effect alone, estimated again: a candidate.
+    """
+    ratios = []
+    for effect, at in hidden:
+        for name, body in diagnosis.bodies.items():
+            if name == at:
+                ratios += _ratio_of_body(body, effect, diagnosis.rows[-1].check[name])
+        for ladder in diagnosis.ladders:
+            for one in ladder.steps[0].attempts:
+                if one.added.key == (effect, at):
+                    errors = one.fit.errors["check"]
+                    ratios += [
+                        diagnosis.rows[-1].check[n] / max(e, diagnosis.floors[n])
+                        for n, e in errors.items()
+                    ]
+    return max(ratios, default=None)
+
+
+def _ratio_of_body(body, effect, last):
+    """The same of a body's cut; the true structure is a candidate of the stated model."""
+    true = [r for r in body.candidates if r.candidate.effect.name == effect]
+    return [last / max(r.check_error, body.floor.value) for r in true]
+
+
 def diagnose(level, number, hidden, of_two, place, without=None):
     """Write the case, and diagnose it;  without: a signal that is not recorded."""
     random = np.random.default_rng([("clear", "weak", "adequate").index(level), number])
@@ -119,6 +147,7 @@ def run(folder, level, first, last, without=None):
             "false": [key for key in diagnosis.missing if key not in hidden],
             "verdict": diagnosis.verdict, "missing": diagnosis.missing,
             "groups": diagnosis.groups, "probabilities": probabilities,
+            "error": error_of_cut(diagnosis, hidden),
         }  # fmt: skip
         with TABLE.open("a", newline="") as file:
             csv.DictWriter(file, FIELDS, lineterminator="\n").writerow(
@@ -135,6 +164,8 @@ def table():
         here = [r for r in rows if r["level"] == level]
         right, false = sum(r["right"] for r in here), sum(bool(r["false"]) for r in here)
         print(f"{level}: {right} of {len(here)} right, {false} with a false name")
+        if errors := [r["error"] for r in here if r["error"] is not None]:
+            print(f"  error over that of the true structure: at most {max(errors):.3f}")
     probabilities = np.array(
         [
             (p, (effect, at) in [tuple(key) for key, _ in r["planted"]])

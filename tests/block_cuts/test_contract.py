@@ -5,6 +5,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.block_cuts.body import body_experiment
+from teleopdesign.block_cuts.diagram_experiment import last_digit
 from teleopdesign.diagnose.record_shift import record_shifts
 from teleopdesign.measurement.prepare import prepare
 
@@ -102,3 +103,19 @@ def test_a_floor_is_never_below_the_last_digit_of_its_column(diagram, log):
     (cut,) = [c for c in made.cuts.tested if c.name == "Z_H"]
     force = body_experiment(made, cut).channels["Z_H.actuator_force"]
     assert force.resolution == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize("written", ["%.2f", "%.4f", "%.6g", "%.9g", "%.6e", "single precision"])
+def test_the_last_digit_of_a_column_is_that_of_its_rounding(written):
+    exact = 3.0 * np.random.default_rng(0).normal(size=5000)
+    if written == "single precision":
+        column = exact.astype(np.float32).astype(float)
+    else:
+        column = np.array([float(written % x) for x in exact])
+    # a step leaves its twelfth part, squared
+    assert last_digit(column) == pytest.approx(np.std(column - exact) * np.sqrt(12), rel=0.1)
+    assert last_digit(exact) == 0.0
+
+
+def test_a_signal_of_few_values_is_not_taken_for_rounded():
+    assert last_digit(np.array([0.5, 10.0] * 50)) == pytest.approx(0.1)

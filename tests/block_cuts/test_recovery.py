@@ -8,6 +8,7 @@ import pytest
 from block_cuts.interface_simulator import draw_interface, leave_out, write_case
 
 import teleopdesign as td
+from teleopdesign.base.sentences import with_standard_error
 from teleopdesign.block_cuts import write_answer
 from teleopdesign.unexplained import describe_residual
 
@@ -39,6 +40,8 @@ def test_an_effect_of_the_computer_is_named_at_its_block_with_its_value(
     (parameter,) = candidate["parameters"].values()
     assert parameter["value"] == pytest.approx(value, rel=0.02)
     assert candidate["probability"] > 0.9
+    ((_, error),) = diagnosis.placed
+    assert f" = {with_standard_error(parameter['value'], error)}" in str(diagnosis)
 
 
 @pytest.mark.slow

@@ -273,3 +273,15 @@ def test_the_impedance_that_a_hand_feels_is_predicted_and_lowered(designed):
     slowest = simulated.isel(frequency=0)
     assert float(slowest.sel(case="hybrid")) < float(slowest.sel(case="FF")) - 3
     assert float(slowest.sel(case="FF")) < float(slowest.sel(case="none")) - 3
+
+
+def test_an_uncertain_level_widens_the_band_of_the_felt_impedance(designed, unsure):
+    sure, wide = (one.impedance.predicted.band for one in (designed, unsure))
+    # friction is most of the force of slow motion: the band there is that of the level
+    level = unsure.body.parameters["coulomb.level"]
+    least = 20 * np.log10(1 + 0.5 * 1.96 * level.stderr / level.value)
+    assert least < wide.decibel[0, 0] < 3 * least
+    assert sure.decibel[0, 0] < 0.1 * wide.decibel[0, 0]
+    cell = unsure.as_dict()["felt_impedance"]["predicted"]["none"]["95 %"]
+    assert cell["decibel"] == pytest.approx(wide.decibel[0].tolist())
+    assert "95 % of the estimates" in str(unsure)

@@ -6,10 +6,13 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
+from threadpoolctl import threadpool_info
 
 from teleopdesign.diagnose import cores
 from teleopdesign.diagnose.cores import map_in_threads, map_on_cores
+from teleopdesign.diagnose.least_squares import minimise
 
 copied = pytest.mark.skipif(sys.platform != "linux", reason="processes are copied on Linux only")
 
@@ -96,3 +99,19 @@ def test_a_part_makes_no_copies_itself(work):
     for x, (pairs, outer) in enumerate(map_on_cores(inner, range(4))):
         assert work == "alone" or {pid for pid, _ in pairs} == {outer}
         assert [value for _, value in pairs] == [x, x + 1, x + 2]
+
+
+def test_no_thread_of_linear_algebra_waits_for_another_one_while_a_fit_runs():
+    def threads():
+        return [one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"]
+
+    def line(x):
+        meanwhile.extend(threads())
+        return 2.0 * x - np.ones(3), 2.0 * np.ones((3, 1))
+
+    before, meanwhile = threads(), []
+    ends = np.array([-9.0]), np.array([9.0])
+    minimum = minimise(line, np.zeros(1), *ends, tolerance=1e-9, evaluations=20)
+    assert minimum.values == pytest.approx([0.5])
+    assert before and set(meanwhile) == {1}
+    assert threads() == before

@@ -6,7 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from ...block_cuts.diagnosis import BlockDiagnosis, Key
+from ...block_cuts.cuts_ladder import Key
+from ...block_cuts.diagnosis import BlockDiagnosis
 from ..figures.block_diagram import draw_diagram
 from ..figures.block_diagram.drawing import figure
 from ..figures.block_diagram.shapes import Box, Wire, shaft

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from ...base.sentences import with_standard_error
 from ...block_cuts.cuts import Cut
-from ...block_cuts.diagnosis import BlockDiagnosis, Key
+from ...block_cuts.cuts_ladder import Key
+from ...block_cuts.diagnosis import BlockDiagnosis
 from ...diagnose.criteria import CRITERIA
 from ..registry import shows
 
@@ -70,7 +71,7 @@ def _parameters(diagnosis: BlockDiagnosis, key: Key) -> list[str]:
             for p, e in diagnosis.placed
             if p.key == key
         ]
-    return [f"{n} = {with_standard_error(v, e)} {u}".rstrip(" 1") for n, v, e, u in rows]
+    return [f"{n} = {with_standard_error(v, e)} {u}".removesuffix(" 1") for n, v, e, u in rows]
 
 
 def _verdict(diagnosis: BlockDiagnosis) -> str:

@@ -160,6 +160,11 @@ def _list_felt(felt: FeltImpedance) -> list[str]:
     for case in map(str, impedance.data["case"].values):
         cells = (_felt_cell(felt, case, i) for i in range(len(frequency)))
         rows.append(f"  {case:<8}" + "".join(f"{cell:>22}" for cell in cells))
+    if felt.predicted is not None and (band := felt.predicted.band) is not None:
+        rows.append(
+            f"  describing functions within {band.decibel.max():.2g} dB and "
+            f"{band.degrees.max():.2g} deg: 95 % of the estimates"
+        )
     return rows + [f"  without {why}" for why in felt.missing]
 
 
