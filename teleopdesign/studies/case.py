@@ -60,9 +60,7 @@ class SimulatedCase(ByValue):
 
     def setup(self) -> Setup:
         """The simulation, ready to run; raises ModelError as `simulate` does."""
-        settings = self.settings()
-        del settings["every_step"]  # which rows are kept is no matter of the setup
-        return prepare(self.diagram, **settings)
+        return prepare(self.diagram, **self.settings_of_steps())
 
     def names(self) -> tuple[str, ...]:
         """Names of the parameters that can be varied; of initial states, only stated ones."""
@@ -150,6 +148,10 @@ class SimulatedCase(ByValue):
     def settings(self) -> dict[str, Any]:
         """The settings of the simulation by name, without the diagram."""
         return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "diagram"}
+
+    def settings_of_steps(self) -> dict[str, Any]:
+        """The settings without the one that says which rows of the result are kept."""
+        return {n: v for n, v in self.settings().items() if n != "every_step"}
 
 
 def case_of(diagram: Diagram | SimulatedCase, **settings: Any) -> SimulatedCase:
