@@ -1,4 +1,5 @@
-"""An effect, control law, diagram, command, check, theorem or shape of logs is one added file."""
+"""An effect, control law, diagram, command, check, theorem or shape of logs is one added file; a
+column of the table of candidates is one line."""
 
 import os
 import shutil
@@ -253,3 +254,19 @@ def test_a_shape_of_logs_is_one_file_and_its_line_in_the_list(copy, add_file, tm
         assert '"pos_rad"' in run(copy, *command)
     finally:
         listing.write_text(before, encoding="utf-8")
+
+
+def test_a_column_of_the_table_of_candidates_is_one_line(copy, tmp_path):
+    answer = tmp_path / "answer.json"
+    few = ("--only", "coulomb", "viscous", "stribeck")
+    run(copy, "diagnose", str(td.example("rod")), *few, "--json", str(answer))
+    table = copy / ROOT.name / "show/report/candidate_table.py"
+    before = table.read_text(encoding="utf-8")
+    line = 'COLUMNS = (NumberColumn("throw-away", lambda one: 100.0 * one.check_error),'
+    try:
+        table.write_text(before.replace("COLUMNS = (", line), encoding="utf-8")
+        run(copy, "report", str(answer))
+    finally:
+        table.write_text(before, encoding="utf-8")
+    page = answer.with_suffix(".html").read_text(encoding="utf-8")
+    assert ">throw-away</th>" in page and ">probability</th>" in page

@@ -86,9 +86,11 @@ def passes_of(experiment: DiagramExperiment, log: RecordedLog) -> Passes:
             f"{log.file}: rows are {gap * 1e3:g} ms apart, the computer passes each "
             f"{period * 1e3:g} ms: log every pass"
         )
-    if np.abs(np.diff(time) - gap).max() > 0.5 * gap:
-        at = time[int(np.argmax(np.abs(np.diff(time) - gap)))]
-        raise UnevenRows(f"{log.file}: a row is missing at {at:g} s: log every pass")
+    off = np.diff(time) - gap
+    if np.abs(off).max() > 0.5 * gap:
+        row = int(np.argmax(np.abs(off)))
+        what = "missing" if off[row] > 0 else "written twice"
+        raise UnevenRows(f"{log.file}: a row is {what} at {time[row]:g} s: log every pass once")
     signals = {name: experiment.signal(name, log)[::every] for name in experiment.recorded}
     for name, values in signals.items():
         if not np.isfinite(values).all():

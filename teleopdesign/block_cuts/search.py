@@ -82,8 +82,7 @@ def find_missing(
             for cut in computed:
                 cuts = _without_cut(cuts, cut.name, str(error))
     if not (bodies or ladder):
-        why = "; ".join(f"{block}: {text}" for block, text in cuts.untested.items())
-        raise ExperimentError(f"{experiment.title}: no block can be tested: {why}")
+        raise ExperimentError(f"{experiment.title}: no block can be tested: {_reasons(cuts)}")
     bodies = {c.name: bodies[c.name] for c in cuts.of("body")}
     return BlockDiagnosis(experiment, cuts, bodies, ladder, data, joined)
 
@@ -117,6 +116,13 @@ def data_of_computer(
         [d.bandwidth for d in bodies.values()] or [_BAND / rows[0].period]
     )
     return ControlData(part, rows, bandwidth)
+
+
+def _reasons(cuts: Cuts) -> str:
+    """Why blocks are untested, each reason once."""
+    texts = dict.fromkeys(cuts.untested.values())
+    blocks = {why: [b for b, text in cuts.untested.items() if text == why] for why in texts}
+    return "; ".join(f"{', '.join(names)}: {why}" for why, names in blocks.items())
 
 
 def _without_cut(cuts: Cuts, name: str, why: str) -> Cuts:

@@ -119,3 +119,14 @@ def test_the_last_digit_of_a_column_is_that_of_its_rounding(written):
 
 def test_a_signal_of_few_values_is_not_taken_for_rounded():
     assert last_digit(np.array([0.5, 10.0] * 50)) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(("rows", "what"), [((899, 901), "missing"), ((899, 900, 900), "twice")])
+def test_the_reason_why_laws_are_untested_is_said_once(diagram, log, rows, what):
+    before, after = np.arange(rows[0]), np.arange(rows[-1] + 1, len(log["R_A"]))
+    every = np.concatenate([before, rows, after])
+    changed = {name: values[every] for name, values in log.items()}
+    made = experiment(diagram, changed, "R_A", "R_D", "R_M", "L")
+    with pytest.raises(td.ExperimentError, match=r"a row is .* at 0\.(899|9) s") as error:
+        td.find_missing(made, at=["R_A"])
+    assert str(error.value).count(what) == 1

@@ -37,6 +37,7 @@ from ...base.sentences import (
     with_error_on_page as with_error,
 )
 from ...diagnose import Diagnosis, SimulationComparison
+from .candidate_table import COLUMNS
 from .figures import (
     WIDE,
     colour_scale,
@@ -184,6 +185,7 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.globals["columns"] = COLUMNS
     environment.filters |= {
         "number": number,
         "short": short,
