@@ -52,9 +52,11 @@ def join_ladders(
     """The rows over all cuts; the arguments are those of `BlockDiagnosis`."""
     fit = {name: d.before.fit_error for name, d in bodies.items()}
     check = {name: d.before.check_error for name, d in bodies.items()}
-    for ladder in (*joined.values(), *(() if computer is None else (computer,))):
-        fit |= ladder.base.errors["fit"]
-        check |= ladder.base.errors["check"]
+    for ladder in (*joined.values(), computer):
+        # where no law's effect is accepted, the body alone is estimated, and its clock
+        if ladder is not None and (ladder.accepted or not ladder.with_body):
+            fit |= ladder.base.errors["fit"]
+            check |= ladder.base.errors["check"]
     waiting = [_steps_of_body(name, d, joined.get(name)) for name, d in bodies.items()]
     waiting.append(_steps_of(computer))
     names = [c.name for c in cuts.tested if c.name in check]

@@ -68,8 +68,13 @@ def test_without_the_command_an_effect_of_a_law_is_named_along_the_motion(tmp_pa
 @pytest.mark.slow
 def test_without_the_command_an_effect_of_the_body_is_none_of_the_laws(tmp_path):
     hidden = {("quadratic_drag", "Z_M"): 6.0}
-    diagnosis = diagnosis_of(tmp_path, hidden, 5, at="Z_M", without="R_A")
+    diagnosis = diagnosis_of(tmp_path / "case", hidden, 5, at="Z_M", without="R_A")
     assert diagnosis.missing == (("quadratic_drag", "Z_M"),)
+    body, (before, after) = diagnosis.bodies["Z_M"], diagnosis.rows
+    assert before.check["Z_M"] == body.before.check_error
+    assert after.check["Z_M"] == body.after.check_error
+    write_answer(diagnosis, tmp_path / "answer.json")
+    assert td.load_answer(tmp_path / "answer.json").rows == diagnosis.rows
 
 
 @pytest.mark.slow
