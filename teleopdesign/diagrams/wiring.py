@@ -1,7 +1,7 @@
 """A diagram: named blocks, wired by the names of their signals; data, no computation.
 
-All uses (symbolic transfer functions, LTI systems, python-control system, compiled simulation)
-follow from this one wiring.
+All uses (symbolic transfer functions, LTI systems, interconnected python-control system, compiled
+simulation) follow from this one wiring.
 """
 
 from __future__ import annotations

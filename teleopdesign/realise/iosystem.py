@@ -1,13 +1,16 @@
-"""A diagram as a nonlinear python-control system: interchange and reference.
+"""A diagram as an interconnected nonlinear python-control system: interchange and reference.
 
-Controllers act in continuous time: python-control cannot mix sampled and continuous blocks. With
-its computer the diagram is a system in discrete time (`sampled_iosystem.py`).
+Bodies and their connections are one system. Each controller and each of its junctions is another
+one; they are connected by the names of their signals. Controllers act in continuous time:
+python-control cannot mix sampled and continuous blocks. With its computer the diagram is one system
+in discrete time (`sampled_iosystem.py`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,16 +19,27 @@ import sympy as sp
 from ..base.arguments import check_types
 from ..base.errors import ModelError
 from ..controllers import Controller, Stage, from_control
-from ..diagrams import Diagram, with_shared_states
-from .equations import build_equations
+from ..diagrams import Control, Diagram, Junction, Kinematics, with_shared_states
+from .equations import Equations, build_equations
 from .laws import needed_steps
 from .private_names import PrivateNames, private_names
 from .sampled_iosystem import sampled_iosystem
-from .signal_symbols import TIME, signal, velocity
+from .signal_symbols import TIME, motion_of, signal, velocity
 from .simulated import prepare_for_simulation
+from .wired_parts import sum_inputs
 
 if TYPE_CHECKING:
     import control
+
+MECHANICS = "mechanics"
+
+
+@dataclass(frozen=True)
+class SymbolValues:
+    """Values of symbols in the equations: parameters, with the user's names, and fixed values."""
+
+    parameters: dict[sp.Symbol, tuple[str, float]]
+    fixed: dict[sp.Symbol, float]
 
 
 @check_types
@@ -60,9 +74,13 @@ def to_iosystem(
     diagram = prepare_for_simulation(diagram, give, prescribed)
     if dt is not None:
         return _build_sampled(diagram, prescribed, delay_order, dt, step)
-    names = private_names(with_shared_states(_approximate_delays(diagram, delay_order)))
+    diagram = with_shared_states(_approximate_delays(diagram, delay_order))
+    blocks = tuple(
+        replace(b, analog=False) if isinstance(b, Control) else b for b in diagram.blocks
+    )
+    names = private_names(replace(diagram, blocks=blocks))
     with names.in_errors():
-        return _one_system(names, tuple(names.private.get(motion, motion) for motion in prescribed))
+        return _join_parts(names, tuple(names.private.get(motion, motion) for motion in prescribed))
 
 
 def _build_sampled(
@@ -110,64 +128,148 @@ def _approximate_delays(
     return diagram
 
 
-def _one_system(names: PrivateNames, prescribed: tuple[str, ...]) -> control.NonlinearIOSystem:
-    """The system of a diagram with private names, with the user's names of its signals."""
+def _join_parts(names: PrivateNames, prescribed: tuple[str, ...]) -> control.InterconnectedSystem:
+    """The parts of the diagram, built on private names, connected by the user's names."""
     from ..base import python_control as control
 
     diagram = names.diagram
-    parts = build_equations(diagram, prescribed=prescribed, sampled=False)
+    parts = build_equations(_replace_code_by_wires(diagram), prescribed=prescribed)
     if parts.late:
         raise ModelError(
             f"{diagram.name}: actuation_delay has no python-control form: use `simulate` instead"
         )
-    states = sorted(parts.rates, key=lambda state: names.public_name(str(state)))
-    moved = [s for m in parts.motions for s in (signal(m), velocity(m))]
-    outputs = {str(s): s for s in moved} | dict(parts.signals)
-    rates, results = [parts.rates[s] for s in states], list(outputs.values())
     values = diagram.values
-    defaults = {s: (names.public_name(n), values[n]) for s, n in parts.parameters.items()}
-    every = (*rates, *results, *parts.joined.values())
-    read = set().union(*(sp.sympify(e).free_symbols for e in every))
-    inputs = [s for s in parts.inputs if s in read]
-    labels = names.public_names(*map(str, (*inputs, *states)), *outputs)
-    arguments = _Arguments(states, inputs, defaults, parts.joined)
-    return control.nlsys(
-        arguments.function(rates) if states else None,
-        arguments.function(results),
-        inputs=list(labels[: len(inputs)]),
-        outputs=[names.public_name(n) for n in outputs],
-        states=[names.public_name(str(s)) for s in states] or None,
-        params=dict(defaults.values()),
+    numbers = SymbolValues(
+        {s: (names.public_name(n), values[n]) for s, n in parts.parameters.items()}, {}
+    )
+    every: tuple[Junction | Kinematics, ...] = (*diagram.kinematics, *diagram.junctions)
+    static = [p for p in every if p.output in parts.computer.signals]
+    # python-control has no system without inputs: constant sums are outputs of the mechanics
+    idle = {signal(p.output): float(sum_inputs(p, signal)) for p in static if not p.inputs}
+    numbers.fixed.update(idle)
+    systems = [_mechanics(parts, numbers, idle, names)]
+    for part in diagram.controls:
+        systems.append(_controller(part, numbers, names))
+    systems += [_static(p, names) for p in static if p.inputs]
+    driven = {f"{m}{end}" for m in parts.prescribed for end in ("", "_velocity", "_acceleration")}
+    outside = [s for s in diagram.outside if s not in parts.signals]
+    outside_names = names.public_names(*outside, *sorted(driven))
+    read = {s for system in systems for s in system.input_labels}
+    made = [s for system in systems for s in system.output_labels]
+    labels = [*parts.inputs, *parts.signals, *parts.computer.signals, *parts.rates]
+    names.public_names(*map(str, labels))
+    return control.interconnect(
+        systems,
+        inputs=[s for s in outside_names if s in read],
+        outputs=made,
         name=names.public_name(diagram.name).replace(" ", "_"),
+        params=dict(numbers.parameters.values()),
     )
 
 
-@dataclass(frozen=True)
-class _Arguments:
-    """What the functions of a system of python-control take.
+def _mechanics(
+    parts: Equations,
+    numbers: SymbolValues,
+    idle: Mapping[sp.Symbol, float],
+    names: PrivateNames,
+) -> Any:
+    moved = [s for m in parts.motions for s in (signal(m), velocity(m))]
+    inputs = [s for s in (*parts.inputs, *parts.commands.values()) if s not in idle]
+    states = sorted(parts.rates, key=lambda state: names.public_name(str(state)))
+    # a signal that the system takes and returns under one name would be wired to itself
+    outputs = {str(s): s for s in moved} | {n: e for n, e in parts.signals.items()}
+    outputs |= {str(s): s for s in idle}
+    rates = [parts.rates[s] for s in states]
+    return _nlsys(
+        MECHANICS, states, inputs, rates, outputs, names, numbers=numbers, joined=parts.joined
+    )
 
-    parameters: symbol -> its name in `params`, and its value;  joined: named steps of the equations
-    """
 
-    states: Sequence[sp.Symbol]
-    inputs: Sequence[sp.Symbol]
-    parameters: Mapping[sp.Symbol, tuple[str, float]]
-    joined: Mapping[sp.Symbol, sp.Expr]
+def _replace_code_by_wires(diagram: Diagram) -> Diagram:
+    """The diagram with a wire in place of each system known as code; the mechanics are the same."""
+    for part in diagram.controls:
+        if _code(part) is not None:
+            diagram = diagram.with_block(part.name, Controller(()))
+    return diagram
 
-    def function(self, expressions: Sequence[sp.Expr]) -> Callable[..., np.ndarray]:
-        """The expressions as a function (t, x, u, params), as python-control calls it."""
-        printed = [sp.sympify(e, strict=True) for e in expressions]
-        steps = list(needed_steps(printed, self.joined).items())
+
+def _code(part: Control) -> Any:
+    """The continuous-time system that a controller consists of; None where it is a law."""
+    assert isinstance(part.controller, Controller)
+    stages = part.controller.stages
+    system = stages[0].law.system if len(stages) == 1 and not part.others else None
+    return None if system is None or system.isdtime(strict=True) else system
+
+
+def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> Any:
+    if (system := _code(part)) is not None:
+        return _rename_signals(system, part, names)
+    assert isinstance(part.controller, Controller)
+    v = motion_of(names.diagram, part.motion)[1] if part.motion else sp.S(0)
+    signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
+    others = tuple(map(signal, part.others))
+    signals |= {"period": sp.S(0)} | ({"command": others[0]} if others else {})
+    equation = part.controller.equation(part.name, signals, others=others, code=True)
+    states = sorted(equation.rates, key=str)
+    rates = [equation.rates[s] for s in states]
+    used = set().union(*(e.free_symbols for e in (equation.output, *rates)))
+    inputs = sorted(
+        used - set(states) - set(numbers.parameters) - set(numbers.fixed) - {TIME}, key=str
+    )
+    outputs = {part.output: equation.output}
+    return _nlsys(
+        names.public_name(part.name), states, inputs, rates, outputs, names, numbers=numbers
+    )
+
+
+def _static(part: Junction | Kinematics, names: PrivateNames) -> Any:
+    """A system without states: a sum or a position."""
+    inputs = [signal(s) for s in part.inputs]
+    value = sum_inputs(part, signal)
+    name = f"sum_{names.public_name(part.output)}"
+    return _nlsys(name, [], inputs, [], {part.output: value}, names, numbers=SymbolValues({}, {}))
+
+
+def _rename_signals(system: Any, part: Control, names: PrivateNames) -> Any:
+    """A python-control system with the block's name and signals."""
+    from ..base import python_control as control
+
+    return control.nlsys(
+        (lambda t, x, u, params: system.dynamics(t, x, u)) if system.nstates else None,
+        lambda t, x, u, params: system.output(t, x, u),
+        inputs=[names.public_name(part.input)],
+        outputs=[names.public_name(part.output)],
+        states=list(system.state_labels) or None,
+        name=names.public_name(part.name),
+    )
+
+
+def _nlsys(
+    name: str,
+    states: Sequence[sp.Symbol],
+    inputs: Sequence[sp.Symbol],
+    rates: Sequence[sp.Expr],
+    outputs: dict[str, sp.Expr],
+    names: PrivateNames,
+    *,
+    numbers: SymbolValues,
+    joined: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
+) -> Any:
+    from ..base import python_control as control
+
+    def function(expressions: Sequence[sp.Expr]) -> Callable[..., Any]:
+        printed = [sp.sympify(e, strict=True).subs(numbers.fixed) for e in expressions]
+        needed = needed_steps(expressions, joined)
+        steps = [(s, e.subs(numbers.fixed)) for s, e in needed.items()]
 
         def shared(results: list[sp.Expr]) -> tuple[list[Any], list[sp.Expr]]:
             common, out = sp.cse(results)
             return [*steps, *common], out
 
-        whole = (*printed, *(e for _, e in steps))
-        used = set().union(*(e.free_symbols for e in whole))
-        symbols = [s for s in self.parameters if s in used]
-        defaults = [self.parameters[s] for s in symbols]
-        arguments = [TIME, list(self.states), list(self.inputs), symbols]
+        used = set().union(*(e.free_symbols for e in (*printed, *(e for _, e in steps))))
+        symbols = [s for s in numbers.parameters if s in used]
+        defaults = [numbers.parameters[s] for s in symbols]
+        arguments = [TIME, list(states), list(inputs), symbols]
         call = sp.lambdify(arguments, printed, "math", cse=shared)
 
         def values(
@@ -176,5 +278,15 @@ class _Arguments:
             return np.array(call(t, x, u, [params.get(n, v) for n, v in defaults]), dtype=float)
 
         # the law of a contact is also evaluated without contact
-        one_sided = any(e.has(sp.Piecewise) for e in whole)
+        one_sided = any(e.has(sp.Piecewise) for e in (*printed, *(e for _, e in steps)))
         return np.errstate(all="ignore")(values) if one_sided else values
+
+    return control.nlsys(
+        function(rates) if states else None,
+        function(list(outputs.values())),
+        inputs=[names.public_name(str(s)) for s in inputs],
+        outputs=[names.public_name(s) for s in outputs],
+        states=[names.public_name(str(s)) for s in states] or None,
+        params=dict(numbers.parameters.values()),
+        name=name,
+    )

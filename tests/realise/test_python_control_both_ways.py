@@ -80,7 +80,7 @@ def compare(diagram, inputs, motions, step=STEP):
         np.asarray(inputs[n](time)) if n in inputs else 0 * time for n in system.input_labels
     ]
     answer = control.input_output_response(
-        system, time, signals, solve_ivp_kwargs={"rtol": 1e-11, "atol": 1e-15, "max_step": 2.5e-4}
+        system, time, signals, solve_ivp_kwargs={"rtol": 1e-10, "atol": 1e-14, "max_step": 5e-4}
     )
     at = np.rint(kernel["time"].values / GRID[1]).astype(int)  # each time of it is on the grid
     worst = 0.0
