@@ -15,7 +15,7 @@ def plain_loop(laws, lanes):
     """The loop in plain Python."""
     module = {"__name__": "plain"}
     exec(compile(module_source(laws, jit=False, lanes=lanes), "<generated>", "exec"), module)
-    return CompiledLoop(lanes, module["run"], module["differentiate_at_rest"])
+    return CompiledLoop(lanes, module["run"], module["follow"], module["differentiate_at_rest"])
 
 
 def push(t):

@@ -203,7 +203,9 @@ def test_a_type_counts_as_a_class_and_as_a_name(code, defined):
 
 
 def test_one_function_is_called_teleoperator():
-    assert [m for m, f in functions() if f.name == "teleoperator"] == ["diagrams/teleoperator"]
+    assert [m for m, f in functions() if f.name == "teleoperator"] == [
+        "diagrams/shipped/teleoperator"
+    ]
 
 
 def test_no_file_holds_a_second_concept():

@@ -34,6 +34,7 @@ from .expectations import (
 __all__ = [
     "check_arguments",
     "check_types",
+    "checked_in_place",
     "describe_value",
     "instance",
     "matrix_of",
@@ -98,12 +99,16 @@ def check_arguments(names: dict[str, Any], public: Iterable[str]) -> None:
     names: the names of a folder (`globals()`); changed in place
     public: the names of its public functions
     """
-    for name in public:
-        function = names[name]
-        if isinstance(function, types.FunctionType) and not hasattr(function, "_is_checked"):
-            names[name] = check_types(function)
-            # also where it is defined: a function pickles as what its module has under its name
-            setattr(sys.modules[function.__module__], function.__name__, names[name])
+    names |= {name: checked_in_place(names[name]) for name in public}
+
+
+def checked_in_place(value: Any) -> Any:
+    """A function with its arguments checked, in its module too; any other value as it is."""
+    if isinstance(value, types.FunctionType) and not hasattr(value, "_is_checked"):
+        value = check_types(value)
+        # a function pickles as what its module has under its name
+        setattr(sys.modules[value.__module__], value.__name__, value)
+    return value
 
 
 def number(value: Any, where: str) -> float:

@@ -23,10 +23,10 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
-from types import FunctionType, ModuleType
+from types import ModuleType
 from typing import Any, TypeVar
 
-from .arguments import check_types, type_imports
+from .arguments import checked_in_place, type_imports
 from .frozen import Catalogue
 from .recipes import remember
 
@@ -43,11 +43,7 @@ def lazy_face(folder: str) -> tuple[Callable[[str], Any], Callable[[], list[str]
         if name not in homes:
             raise AttributeError(f"module {folder!r} has no attribute {name!r}")
         module, local = homes[name]
-        value = getattr(import_module(module), local)
-        if isinstance(value, FunctionType) and not hasattr(value, "_is_checked"):
-            value = check_types(value)
-            # also where it is defined: a function pickles as what its module has under its name
-            setattr(sys.modules[value.__module__], value.__name__, value)
+        value = checked_in_place(getattr(import_module(module), local))
         setattr(sys.modules[folder], name, value)
         return value
 

@@ -13,14 +13,9 @@ import numpy as np
 from ..base.finding import Finding
 from ..measurement.encoder import STEPS, reading_noise
 from ..measurement.filtering import Array
+from ..measurement.limits import HALF, SEVERAL
 from ..measurement.repeated_rows import runs_of, stuck_stretches
 from ._recording import CheckedRecording, RecordingCheck, Signal
-
-#: a value counts as a limit if the signal arrives there so often while it moves, and stays there
-#: for so many samples
-VISITS = 3
-#: deceleration before the arrival, relative to the speed, above which the body stopped by itself
-SLOWING = 0.5
 
 
 def find_flat_channels(recording: CheckedRecording) -> Iterator[Finding]:
@@ -82,7 +77,7 @@ def check_clipped(signal: Signal) -> Iterator[Finding]:
     for name, value in (("largest", signal.values.max()), ("smallest", signal.values.min())):
         limit = float(value)
         count = sum(visits(x, limit, signal.rounded_to, noisy=noisy) for _, x in signal.stretches)
-        if count < VISITS:
+        if count < SEVERAL:
             continue
         at = np.flatnonzero(signal.values == value)
         part = len(at) / len(signal.values)
@@ -106,7 +101,7 @@ def visits(x: Array, limit: float, step: float, *, noisy: bool) -> int:
     noisy: readings scatter, so that equal successive readings are unlikely: every stay counts
     """
     first, past = runs_of(x == limit)
-    lasting = first[(past - first >= VISITS) & (first >= 4)]
+    lasting = first[(past - first >= SEVERAL) & (first >= 4)]
     if noisy:
         return len(lasting)
     count = 0
@@ -115,5 +110,5 @@ def visits(x: Array, limit: float, step: float, *, noisy: bool) -> int:
         arrived = abs(float(coming[-1]))
         slowing = abs(float(coming[-1] - coming[0])) / 2
         towards = np.all(np.sign(coming) == np.sign(limit - x[row - 1]))
-        count += bool(towards and arrived >= STEPS * step and slowing < SLOWING * arrived)
+        count += bool(towards and arrived >= STEPS * step and slowing < HALF * arrived)
     return count

@@ -9,6 +9,7 @@ import numpy as np
 from ..base.finding import Finding
 from ..measurement.encoder import is_most, is_on_grid
 from ..measurement.hum import STRONG, hum_of
+from ..measurement.limits import NEARLY_ALL
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
 #: rounding error over the standard deviation of the signal, from which a step is reported. A step
@@ -17,8 +18,6 @@ from ._recording import CheckedRecording, RecordingCheck, Signal
 COARSE = 0.03
 #: fewest levels of a rounded signal: a relay has two or three, on purpose
 LEVELS = 5
-#: part of all changes that lead to the next level: a rounded signal passes through every level
-TO_THE_NEXT = 0.9
 #: rows, and fewest times, that a force differs from zero at a time, where its log lacks readings: a
 #: test with pulses holds each one for longer, or has fewer
 SHORT, OFTEN = 4.0, 20
@@ -44,7 +43,7 @@ def check_force_steps(signal: Signal) -> Iterator[Finding]:
         return
     levels = np.round((signal.values - signal.values[0]) / step)
     changes = np.abs(np.diff(levels))
-    if len(np.unique(levels)) < LEVELS or np.mean(changes[changes > 0] == 1) < TO_THE_NEXT:
+    if len(np.unique(levels)) < LEVELS or np.mean(changes[changes > 0] == 1) < NEARLY_ALL:
         return
     words = (
         f" moves in steps of {step:.4g} {signal.unit}: if the log alone is rounded, "

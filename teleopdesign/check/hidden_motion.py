@@ -14,15 +14,13 @@ import numpy as np
 from ..base.finding import Finding
 from ..measurement.bandwidth import hides_motion, share_in_motion
 from ..measurement.encoder import rests
+from ..measurement.limits import NEARLY_ALL
 from ..measurement.prepare import Prepared, Stretch
 from ._recording import CheckedRecording, RecordingCheck
 
 if TYPE_CHECKING:
     from ..model import Model
 
-#: a bandwidth is proposed if the rows in motion are at least this part of those at a bandwidth two
-#: octaves lower
-ENOUGH = 0.9
 #: independent values for each free parameter, at which the smaller model fails, from which a
 #: larger one counts, and fewest that check a model: as many again are left to contradict it.
 #: Lower: chance is named; higher: short records say nothing
@@ -75,7 +73,7 @@ def _band_that_shows_more(prepared: Prepared, body: str) -> dict[str, float]:
     lower = (bandwidth / 2, bandwidth / 4)
     shares = {b: share_in_motion(experiment, body, b) for b in (bandwidth, *lower)}
     could = shares[bandwidth / 4]
-    proposed = max(b for b in lower if shares[b] >= ENOUGH * could)
+    proposed = max(b for b in lower if shares[b] >= NEARLY_ALL * could)
     numbers = {"bandwidth": bandwidth, "proposed": proposed, "seen": shares[bandwidth]}
     return numbers | {"could": could, "shown": shares[proposed]}
 

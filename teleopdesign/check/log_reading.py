@@ -9,12 +9,10 @@ import numpy as np
 from ..base.finding import Finding
 from ..measurement.experiment import Experiment
 from ..measurement.hum import STRONG
+from ..measurement.limits import SMALL
 from ..measurement.motion import SHORTEST
 from ..measurement.record import Record
 from ._recording import CheckedRecording, RecordingCheck
-
-#: part of a record that may be left out, in short segments, without a warning
-FEW = 0.1
 
 
 def find_corrections(recording: CheckedRecording) -> Iterator[Finding]:
@@ -61,7 +59,7 @@ def check_segments(record: Record) -> Iterator[Finding]:
     )
     yield Finding(
         "gaps",
-        "warning" if out > FEW * lengths.sum() else "note",
+        "warning" if out > SMALL * lengths.sum() else "note",
         f"{len(lengths)} segments of {lengths.min():.3g} to {lengths.max():.3g} s, {pause}{left}. "
         "Hidden states start anew at each.",
         {

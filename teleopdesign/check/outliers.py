@@ -8,25 +8,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.finding import Finding
 from ..measurement.filtering import Array
+from ..measurement.limits import HALF
+from ..measurement.prepare import FEWEST
 from ..measurement.repeated_rows import BY_CHANCE
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
 #: an outlier explains its neighbours if their remaining deviation is within EXPLAINED local
 #: standard deviations (five errors of this deviation), or within RELATIVE of the outlier
 EXPLAINED, RELATIVE = 3.0, 0.2
-#: a command may have any value, so a sample is an outlier if it leaves the range of all others by
-#: more than this part of the range
-OUT_OF_RANGE = 0.5
 #: part of the second differences of a position up to which they are usual
 USUAL = 0.99
-#: fewest samples of a stretch that show what is usual
-FEWEST = 16
+#: of standard deviation 1: scipy's normal law takes longer to import than a log to check
+NORMAL = NormalDist()
 #: rms of the two statistics for readings rounded to a step: sqrt(70)/6 and sqrt(5) times 0.29
 _ROUNDED_LONE, _ROUNDED_JUMP = 0.40, 0.65
 
@@ -49,9 +49,9 @@ def check_outliers(signal: Signal) -> Iterator[Finding]:
     for first, x in signal.stretches:
         at, size = lone_samples(x, signal.rounded_to)
         is_outlier = x[at] != x[at - 1]
-        if signal.quantity == "actuator_force":
+        if signal.quantity == "actuator_force":  # a command may have any value within its range
             rest = np.delete(x, at)
-            margin = OUT_OF_RANGE * float(np.ptp(rest))
+            margin = HALF * float(np.ptp(rest))
             is_outlier &= (x[at] > rest.max() + margin) | (x[at] < rest.min() - margin)
         rows.append(at[is_outlier] + first)
         sizes.append(size[is_outlier])
@@ -94,7 +94,7 @@ def check_jumps(signal: Signal) -> Iterator[Finding]:
     wraps = signal.unit == "rad" and abs(abs(leap) / (2 * np.pi) - 1.0) < 0.05
     if wraps:
         why = "a whole turn: the angle wraps, `unwrap = true` in its channel mends that"
-    elif 0.5 < lost < 1000:
+    elif HALF < lost < 1000:
         why = f"as far as it moves in {lost:.0f} samples: if samples are missing, give a `segment` "
         why += "column that changes there"
     time = signal.time(row)
@@ -146,11 +146,9 @@ def _match_events(
 
     left: shape of the event: distance in samples -> part of its size
     """
-    from scipy.special import ndtri
-
     reach, scale = max(left), _local_scale(off, floor)
     # the largest of so many normal values by chance, in standard deviations
-    largest = float(-ndtri(0.5 * BY_CHANCE / max(len(off), 1)))
+    largest = -NORMAL.inv_cdf(0.5 * BY_CHANCE / max(len(off), 1))
     at = np.flatnonzero(np.abs(off) > largest * scale)
     at = at[(at >= 2 * reach) & (at < len(off) - 2 * reach)]
     size = off[at]
@@ -170,16 +168,14 @@ def _local_scale(e: Array, floor: float) -> Array:
 
     floor: least value
     """
-    from scipy.ndimage import maximum_filter1d
-    from scipy.special import ndtri
-
     scale = np.full(len(e), max(floor, 1e-300))
     for size, part in ((256, 0.5), (1024, 0.99)):
         size = min(size, len(e))
         count = len(e) // size
         blocks = np.abs(e[: count * size]).reshape(count, size)
-        each = np.quantile(blocks, part, axis=1) / ndtri(0.5 + 0.5 * part)
-        each = maximum_filter1d(each, 3, mode="nearest")
+        each = np.quantile(blocks, part, axis=1) / NORMAL.inv_cdf(0.5 + 0.5 * part)
+        beside = np.pad(each, 1, mode="edge")
+        each = np.maximum(np.maximum(beside[:-2], beside[2:]), each)
         scale = np.maximum(scale, each[np.minimum(np.arange(len(e)) // size, count - 1)])
     return scale
 

@@ -16,6 +16,7 @@ from ..base.units import si_factor
 from ..measurement.channel import BODY_QUANTITIES
 from ..measurement.encoder import is_on_grid, reading_noise, reading_step
 from ..measurement.filtering import Array
+from ..measurement.limits import SMALL
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
 #: multiples of the stated step that are tested as the true one
@@ -104,7 +105,7 @@ def true_step(x: Array, stated: float) -> float | None:
     if not is_on_grid(x, stated):
         return None
     reached, ratio = float(np.ptp(x)), round(reading_step(x) / stated)
-    multiples = [k for k in (*MULTIPLES, ratio) if k > 1 and k * stated < 0.1 * reached]
+    multiples = [k for k in (*MULTIPLES, ratio) if k > 1 and k * stated < SMALL * reached]
     places = np.unique(x)
     on = [k for k in multiples if is_on_grid(places, k * stated)]
     return stated * max(on, default=1)

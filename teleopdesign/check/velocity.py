@@ -14,14 +14,13 @@ import numpy as np
 
 from ..base.finding import Finding
 from ..measurement.filtering import Array, spectrum
+from ..measurement.limits import HALF
 from ._recording import ENOUGH, CheckedRecording, RecordingCheck, Signal
 
 #: iterations of the shift; each leaves an error of about the square of the one before, in periods
 STEPS = 4
 #: bandwidth of the comparison of both signals, as a part of the sample rate
 BAND = 0.05
-#: part of a velocity that its position leaves unexplained, from which it is something else
-OTHER = 0.5
 #: factor beyond which units or clock are doubted
 FACTOR = 1.05
 #: relative difference of a factor from that of a slip of units within which it is this slip
@@ -63,7 +62,7 @@ def check_velocity(position: Signal, velocity: Signal) -> Iterator[Finding]:
         return
     shift, factor, left = shift_and_factor(x, v, h)
     numbers = {"shift": shift, "factor": factor, "left": left}
-    if left > OTHER:
+    if left > HALF:
         words = " does not follow the position's derivative: one of the two is something else."
         yield velocity.finding("velocity", "warning", words, numbers)
         return
@@ -101,7 +100,7 @@ def shift_and_factor(
         (factor, both), *_ = np.linalg.lstsq(columns, target, rcond=None)
         rest = target - columns @ np.array([factor, both])
         left = float(np.sqrt(np.mean(rest**2) / max(float(np.mean(target**2)), 1e-300)))
-        if factor == 0.0 or abs(both / factor) > 0.5 * len(position) * sample_time:
+        if factor == 0.0 or abs(both / factor) > HALF * len(position) * sample_time:
             break
         shift += both / factor
     return float(shift), float(factor), left

@@ -22,9 +22,6 @@ from ..measurement.record import Record
 from ..measurement.reversals import BACK
 from ._recording import CheckedRecording, RecordingCheck
 
-#: what a spring inside of the device may hold, over largest force times travel: the area below the
-#: line of a spring that bends over the whole travel
-STORED = 0.5
 #: first turns from which the longest way back to the same position is searched
 TURNS = 20
 #: shifts of the force at which the work is computed: over their range, the work of a sine that
@@ -64,7 +61,8 @@ def work_out_of_record(record: Record, body: str) -> float:
     shifts = np.unique(np.linspace(-most, most, SHIFTS).round().astype(int))
     at = np.arange(first, last)
     work = max(float(force[np.clip(at - s, 0, len(force) - 1)] @ moved) for s in shifts)
-    held = STORED * float(np.abs(force).max() * np.ptp(position))
+    # a spring inside of the device holds the area below its line: half of force times travel
+    held = 0.5 * float(np.abs(force).max() * np.ptp(position))
     return -work if work < -held else 0.0
 
 

@@ -6,6 +6,7 @@ import argparse
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -105,6 +106,14 @@ def _add_spans(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Survey the logs, ask, write the folder and a picture of what was understood."""
+    from threadpoolctl import threadpool_limits
+
+    import_module("numpy")  # a library is limited when it is there
+    with threadpool_limits(1, user_api="blas"):  # threads that wait take a third more time
+        return _run(options)
+
+
+def _run(options: argparse.Namespace) -> int:
     from ..check import CheckedRecording, stopping_findings
     from ..measurement import load_experiment
     from ..measurement.new_folder import make_folder, require_new

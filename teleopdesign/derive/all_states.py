@@ -30,7 +30,7 @@ from ..diagrams import (
     position_symbol,
     with_shared_states,
 )
-from ..diagrams.second_input import acts_along_another
+from ..diagrams.wiring import acts_along_another
 from ..effects import Effect, sort_by_action
 from ..realise.lti import S
 from ..realise.tips import with_tips
@@ -75,9 +75,7 @@ class AllStates:
         more: equations of some signals from outside, which become unknowns
         returns: a polynomial; zero where the equations do not determine all signals
         """
-        known = set(self.outside) - {n for row in more for n in row}
-        rows = [{n: c for n, c in row.items() if n not in known} for row in (*self.rows, *more)]
-        return solve(rows, (), (), self.ring)[0]
+        return solve(self.rows_between((), (), more), (), (), self.ring)[0]
 
     def solve(
         self, wanted: Sequence[str], given: Sequence[str], more: Sequence[Row] = ()
@@ -87,10 +85,14 @@ class AllStates:
         given: signals or new names that `more` defines;  more: further equations
         returns: d = 0 where the equations do not determine the signals
         """
-        new = {n for row in more for n in row}
-        zero = set(self.outside) - {*wanted, *given} - new
-        rows = [{n: c for n, c in row.items() if n not in zero} for row in (*self.rows, *more)]
-        return solve(rows, wanted, given, self.ring)
+        return solve(self.rows_between(wanted, given, more), wanted, given, self.ring)
+
+    def rows_between(
+        self, wanted: Sequence[str], given: Sequence[str], more: Sequence[Row]
+    ) -> list[Row]:
+        """All equations without the signals from outside that are zero; arguments: as `solve`."""
+        zero = set(self.outside) - {*wanted, *given, *(n for row in more for n in row)}
+        return [{n: c for n, c in row.items() if n not in zero} for row in (*self.rows, *more)]
 
 
 def all_states(
@@ -125,12 +127,7 @@ def is_well_posed(diagram: Diagram, states: AllStates) -> bool:
     """
     others = {c.name: 1 + sp.Rational(1, sp.prime(50 + k)) for k, c in enumerate(diagram.controls)}
     elsewhere = all_states(diagram, gains=others)
-    return bool(_order(elsewhere.determinant()) == _order(states.determinant()))
-
-
-def _order(polynomial: Any) -> int:
-    """The highest power of s; -1 of zero."""
-    return max((powers[0] for powers in polynomial), default=-1)
+    return bool(elsewhere.determinant().degree() == states.determinant().degree())
 
 
 @dataclass

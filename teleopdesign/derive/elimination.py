@@ -17,7 +17,7 @@ import sympy as sp
 from ..base.errors import ModelError
 from ..controllers import exact_decimal
 from ..diagrams import Attached, Control, Diagram, Kinematics, Linked, Moving, Part, position_symbol
-from ..diagrams.second_input import acts_along_another
+from ..diagrams.wiring import acts_along_another
 from .noncommutative import counterexample
 from .printing import block_symbol, delay_symbol, motion_controller_symbol
 
@@ -199,10 +199,12 @@ def _eliminate(system: list[_Row], signal: str, diagram: Diagram) -> None:
 
 
 def _vanishes(coefficient: sp.Expr) -> bool:
-    """Whether a sum that contains inverses is zero, decided on exact random rational matrices."""
-    if not (coefficient.is_Add and any(p.exp < 0 for p in coefficient.atoms(sp.Pow))):
+    """Whether a sum is zero; with inverses in it, decided on exact random rational matrices."""
+    if not coefficient.is_Add:
         return False
-    return counterexample(coefficient, sp.S(0), tries=1) is None
+    if any(p.exp < 0 for p in coefficient.atoms(sp.Pow)):
+        return counterexample(coefficient, sp.S(0), tries=1) is None
+    return bool(sp.expand(coefficient) == 0)
 
 
 def _explain_undetermined(diagram: Diagram, signal: str) -> str:

@@ -126,13 +126,13 @@ def _symbol_text(name: str) -> str:
     return f"{head}_{{{index}}}" if len(index) == 1 else rf"{head}_{{\mathrm{{{index}}}}}"
 
 
-def polynomial_as_text(coefficients: Sequence[float], variable: str = "s") -> str:
+def polynomial_as_text(coefficients: Sequence[float]) -> str:
     """A polynomial such as 2 s^2 + 3.5 s - 1, from the highest power, with four digits."""
     n, out = len(coefficients) - 1, ""
     for k, c in enumerate(coefficients):
         if c == 0 and n > 0:
             continue
-        power = {0: "", 1: variable}.get(n - k, f"{variable}^{n - k}")
+        power = {0: "", 1: "s"}.get(n - k, f"s^{n - k}")
         size = f"{abs(c):.4g}" if abs(c) != 1 or not power else ""
         out += (" - " if c < 0 else " + ") + " ".join(w for w in (size, power) if w)
     out = out or " + 0"

@@ -31,11 +31,8 @@ class Responses:
     @cached_property
     def _rows(self) -> list[Row]:
         """The equations, with fewer unknowns; signals from outside that are not given are zero."""
-        new = {n for row in self.more for n in row}
-        zero = set(self.states.outside) - {*self.wanted, *self.given} - new
-        rows = (*self.states.rows, *self.more)
-        kept = [{n: c for n, c in row.items() if n not in zero} for row in rows]
-        return eliminate_numbers(kept, {*self.wanted, *self.given})[1]
+        rows = self.states.rows_between(self.wanted, self.given, self.more)
+        return eliminate_numbers(rows, {*self.wanted, *self.given})[1]
 
     @cached_property
     def _names(self) -> list[str]:

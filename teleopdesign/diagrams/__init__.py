@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
-    from .admittance_device import admittance_device as admittance_device
     from .arms import Arm as Arm
     from .arms import joint as joint
     from .arms import teleoperator_of_arms as teleoperator_of_arms
@@ -17,9 +16,6 @@ if TYPE_CHECKING:
     from .energy_tanks import energy_tanks as energy_tanks
     from .felt_friction import FeltFriction as FeltFriction
     from .felt_friction import felt_friction as felt_friction
-    from .four_channel import four_channel as four_channel
-    from .haptic_interface import four_cases as four_cases
-    from .haptic_interface import haptic_interface as haptic_interface
     from .junctions import Junction as Junction
     from .junctions import Kinematics as Kinematics
     from .junctions import position_symbol as position_symbol
@@ -35,14 +31,18 @@ if TYPE_CHECKING:
     from .shared_states import with_shared_states as with_shared_states
     from .shipped import SHIPPED as SHIPPED
     from .shipped import load_shipped as load_shipped
-    from .teleoperator import teleoperator as teleoperator
+    from .shipped.admittance_device import admittance_device as admittance_device
+    from .shipped.four_channel import four_channel as four_channel
+    from .shipped.haptic_interface import four_cases as four_cases
+    from .shipped.haptic_interface import haptic_interface as haptic_interface
+    from .shipped.teleoperator import teleoperator as teleoperator
+    from .shipped.wave_variables import wave_variables as wave_variables
+    from .shipped.world_haptics_2005 import READINGS as READINGS
+    from .shipped.world_haptics_2005 import Reading as Reading
+    from .shipped.world_haptics_2005 import read_open_number as read_open_number
+    from .shipped.world_haptics_2005 import world_haptics_2005 as world_haptics_2005
     from .toml_reading import read_diagram as read_diagram
     from .toml_writing import write_diagram as write_diagram
-    from .wave_variables import wave_variables as wave_variables
     from .wiring import Diagram as Diagram
-    from .world_haptics_2005 import READINGS as READINGS
-    from .world_haptics_2005 import Reading as Reading
-    from .world_haptics_2005 import read_open_number as read_open_number
-    from .world_haptics_2005 import world_haptics_2005 as world_haptics_2005
 
 __getattr__, __dir__, __all__ = lazy_face(__name__)

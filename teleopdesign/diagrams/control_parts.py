@@ -14,10 +14,9 @@ from ..base.errors import ModelError
 from ..blocks import Body, Value
 from ..controllers import Controller, from_control, measured_plant, opaque_laws
 from ..effects import EFFECTS
-from .common_modes import with_common_modes
 from .junctions import Junction
 from .parts import Control, Entry, Moving
-from .plant_states import states_of_plant
+from .system_states import states_of_plant, with_common_modes
 
 if TYPE_CHECKING:
     import control

@@ -21,7 +21,7 @@ from ..controllers import from_control
 from .control_parts import code_parts, controller_parts, entry_of
 from .junctions import Junction
 from .parts import Control, Linked, Moving
-from .plant_states import states_of_plant
+from .system_states import states_of_plant
 
 if TYPE_CHECKING:
     import control

@@ -10,9 +10,9 @@ from typing import Any
 from ..base.errors import ModelError
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
-from .haptic_interface import haptic_interface
 from .parts import AnyBlock, Control
-from .teleoperator import teleoperator
+from .shipped.haptic_interface import haptic_interface
+from .shipped.teleoperator import teleoperator
 from .wiring import Diagram
 
 Content = Body | MatrixImpedance | Controller | AnyBlock

@@ -20,7 +20,6 @@ from ..base.units import QUANTITIES
 from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller
 from .junctions import Junction, Kinematics, Weight, position_symbol
-from .one_axis import require_one_axis
 from .parts import (
     AnyBlock,
     Attached,
@@ -32,6 +31,7 @@ from .parts import (
     list_laws,
     write_equation,
 )
+from .units import require_one_axis
 
 
 @check_types
@@ -284,3 +284,25 @@ def _prune(diagram: Diagram) -> Diagram:
     # forces stay: what drives a motion that is prescribed is no input of its body
     outside = {s: q for s, q in diagram.outside.items() if s in used or q == "force"}
     return replace(diagram, outside=outside)
+
+
+def acts_along_another(diagram: Diagram, part: Control) -> bool:
+    """Whether the law uses the velocity of a motion that is not its input.
+
+    Its linear form then has two transfer functions: from the input, and from that motion.
+    """
+    if not part.motion or part.input == part.motion:
+        return False
+    if not isinstance(part.controller, Controller) or not part.controller.sees_velocity:
+        return False
+    if not (diagram.is_position(part.input) and diagram.is_position(part.motion)):
+        return True
+    apart = diagram.position(part.input) - diagram.position(part.motion)
+    return bool(sp.expand(apart) != 0)
+
+
+def without_motion(where: str) -> ModelError:
+    """The error for a law that uses a velocity when no motion is wired to it."""
+    return ModelError(
+        f'{where}: its law sees a velocity, and no motion is wired: motion="X" says along which'
+    )

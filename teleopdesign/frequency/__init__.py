@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from .matrix_response import matrix_response as matrix_response
     from .measured_response import measured_impedance as measured_impedance
     from .measured_response import measured_response as measured_response
+    from .measured_response import recorded_response as recorded_response
     from .measured_response import simulated_response as simulated_response
-    from .recorded import recorded_response as recorded_response
     from .response import FrequencyResponse as FrequencyResponse
     from .response import bode as bode
 

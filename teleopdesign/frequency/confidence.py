@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from ..base.errors import ModelError
 from ..base.frozen import ByValue
-from ..blocks import NINETY_FIVE, Body
-from ..diagrams import Control, Diagram
+from ..blocks import NINETY_FIVE
+from ..diagrams import Diagram
+from ..diagrams.units import bounds_of_value
 
 Array = NDArray[np.float64]
 #: difference of a parameter for its derivative, in standard errors: far below the width of the
@@ -103,7 +104,9 @@ def _variances(
     matrix = covariance.matrix[np.ix_(chosen, chosen)]
     slopes = np.zeros((len(chosen), *np.shape(values_of(diagram))), dtype=complex)
     for row, k in enumerate(chosen):
-        low, high = _ends(diagram, covariance.names[k], STEP * spread[k])
+        value, step = diagram.values[covariance.names[k]], STEP * spread[k]
+        lower, upper = bounds_of_value(diagram, covariance.names[k])
+        low, high = max(value - step, lower), min(value + step, upper)
         before, after = (
             values_of(diagram.with_values({covariance.names[k]: x})) for x in (low, high)
         )
@@ -112,13 +115,3 @@ def _variances(
     return [
         np.einsum("p...,pq,q...->...", part, matrix, part) for part in (slopes.real, slopes.imag)
     ]
-
-
-def _ends(diagram: Diagram, name: str, step: float) -> tuple[float, float]:
-    """Values of a parameter on both sides, within its bounds."""
-    block, _, parameter = name.partition(".")
-    value, part = diagram.values[name], diagram.block(block)
-    if isinstance(part, Control) or not isinstance(part.body, Body):
-        return value - step, value + step
-    declared = part.body.parameter(parameter)
-    return max(value - step, declared.lower), min(value + step, declared.upper)

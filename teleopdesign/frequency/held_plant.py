@@ -61,9 +61,7 @@ class HeldPlant:
         grown = a * whole if n else a
         return cls(mpmath.eye(n) + grown if n else a, grown, tuple(inputs))
 
-    def polynomials(
-        self,
-    ) -> tuple[list[mpmath.mpf], list[tuple[int, list[mpmath.mpf], list[mpmath.mpf]]]]:
+    def polynomials(self) -> tuple[np.ndarray, list[tuple[int, np.ndarray, np.ndarray]]]:
         """det(z I - e^(A h)); for each input m, C adj B0, C adj B1 + D det, highest power first."""
         n, f = self.step.rows, self.step
         below, adjoint = [mpmath.mpf(1)], list[mpmath.matrix]()
@@ -74,11 +72,11 @@ class HeldPlant:
             c = -sum((moved[i, i] for i in range(n)), mpmath.mpf(0)) / k
             below.append(c)
             power = moved + c * mpmath.eye(n)
-        shares = []
+        shares, made = [], np.array(below)
         for m, now, before, straight in self.inputs:
-            first, second = ([(p * b)[0] for p in adjoint] for b in (now, before))
-            shares.append((m, first, add(second, [straight * c for c in below])))
-        return below, shares
+            first, second = (np.array([(p * b)[0] for p in adjoint]) for b in (now, before))
+            shares.append((m, first, np.polyadd(second, straight * made)))
+        return made, shares
 
     def as_floats(self) -> tuple[np.ndarray, ...]:
         """e^(A h) - I, B0 and B1 (n, inputs), D and m (inputs,), C (n,)."""
@@ -175,19 +173,3 @@ def _companion(monic: Sequence[Fraction]) -> mpmath.matrix:
 def as_mpf(value: Fraction) -> mpmath.mpf:
     """The fraction in `mpmath`, with the present number of digits."""
     return mpmath.mpf(value.numerator) / value.denominator
-
-
-def add(p: list[mpmath.mpf], q: list[mpmath.mpf]) -> list[mpmath.mpf]:
-    """The sum of polynomials, highest power first."""
-    n = max(len(p), len(q))
-    p, q = ([mpmath.mpf(0)] * (n - len(x)) + x for x in (p, q))
-    return [a + b for a, b in zip(p, q, strict=True)]
-
-
-def multiply(p: list[mpmath.mpf], q: list[mpmath.mpf]) -> list[mpmath.mpf]:
-    """The product of polynomials, highest power first."""
-    out = [mpmath.mpf(0)] * (len(p) + len(q) - 1)
-    for i, a in enumerate(p):
-        for j, b in enumerate(q):
-            out[i + j] += a * b
-    return out

@@ -97,11 +97,11 @@ def loop_as_written(gain: sp.Expr) -> LateRatio:
 
 def _count_modes(above: Any, below: Any, times: Mapping[sp.Symbol, sp.Expr]) -> LateRatio:
     unseen, above, below = above.cofactors(below)
-    closed, order = above + below, max(_order(above), _order(below))
+    closed, order = above + below, max(above.degree(), below.degree())
     fault = ""
     if modes := describe_growth(unseen, times):
         fault = f"a mode that it does not see grows: {modes}"
-    elif _order(closed) < order:
+    elif closed.degree() < order:
         fault = "its gain is -1 at high frequency: the least change makes a mode grow at once"
     largest = max(abs(c) for side in (above, below) for c in side.values())
     unit = Fraction(int(largest.numerator), int(largest.denominator))
@@ -110,11 +110,6 @@ def _count_modes(above: Any, below: Any, times: Mapping[sp.Symbol, sp.Expr]) -> 
     made = ({t - first: p for t, p in terms.items()} for terms in sides)
     over, under = made
     return LateRatio(over, under, fault)
-
-
-def _order(p: Any) -> int:
-    """The highest power of s; -1 if all are zero."""
-    return max((powers[0] for powers in p), default=-1)
 
 
 def crossings(above: np.ndarray, below: np.ndarray) -> np.ndarray:

@@ -29,7 +29,7 @@ from ..derive.all_states import all_states
 from ..derive.polynomials import fraction, is_free_of_growth
 from ..diagrams import Control, Diagram
 from ..realise.lti import LinearBlocks
-from .held_plant import HeldPlant, add, as_mpf, multiply
+from .held_plant import HeldPlant, as_mpf
 from .late_loop import LateRatio
 from .late_zeros import describe_growth, exact_terms
 
@@ -96,18 +96,18 @@ class SampledLoop:
         with mpmath.workdps(_DIGITS):
             return not _decays(self._characteristic())
 
-    def _characteristic(self) -> list[mpmath.mpf]:
+    def _characteristic(self) -> np.ndarray:
         """Characteristic polynomial of the closed loop in z, highest first, `_DIGITS` digits."""
         plant = HeldPlant.of(self.period, self.below, self.above)
         below, shares = plant.polynomials()
         most = max((m for m, *_ in shares), default=0) + 1
-        above = [mpmath.mpf(0)]
+        above = np.zeros(1)
         for m, now, before in shares:
             # (z now + before) z^(most - 1 - m)
-            both = add(now + [mpmath.mpf(0)], before)
-            above = add(above, both + [mpmath.mpf(0)] * (most - 1 - m))
-        law = [[as_mpf(c) for c in side] for side in self.law]
-        return add(multiply(law[1], below + [mpmath.mpf(0)] * most), multiply(law[0], above))
+            both = np.polyadd([*now, 0], before)
+            above = np.polyadd(above, [*both, *[0] * (most - 1 - m)])
+        over, under = (np.array([as_mpf(c) for c in side]) for side in self.law)
+        return np.polyadd(np.convolve(under, [*below, *[0] * most]), np.convolve(over, above))
 
     @cached_property
     def _floats(self) -> tuple[np.ndarray, ...]:
@@ -194,7 +194,7 @@ def _rationals(polynomial: sp.Poly) -> Coefficients:
     return tuple(map(fraction, polynomial.all_coeffs()))
 
 
-def _decays(polynomial: list[mpmath.mpf]) -> bool:
+def _decays(polynomial: np.ndarray) -> bool:
     """Whether all roots are inside the unit circle (Schur, Cohn, Jury)."""
     p = list(polynomial)
     while p and p[0] == 0:

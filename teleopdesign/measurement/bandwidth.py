@@ -10,13 +10,11 @@ from numpy.typing import NDArray
 from .encoder import reading_step
 from .experiment import Experiment
 from .filtering import Array
+from .limits import HALF
 from .motion import motions
 from .record import Record
 from .repeated_rows import SENSED, SLOWER
 
-#: a bandwidth hides the motion if the share of rows in motion, over the share at a bandwidth two
-#: octaves lower, is below this: then most rows that could be tested are lost
-LEAST_SHARE = 0.5
 #: Hz: no lower bandwidth is chosen or proposed
 LOWEST = 1.0
 #: highest bandwidth at which a motion is compared, as a part of the sample rate
@@ -92,7 +90,7 @@ def hides_motion(experiment: Experiment, body: str, bandwidth: float) -> bool:
     if lower < LOWEST:
         return False
     could = share_in_motion(experiment, body, lower)
-    return share_in_motion(experiment, body, bandwidth) < LEAST_SHARE * could
+    return share_in_motion(experiment, body, bandwidth) < HALF * could
 
 
 def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
@@ -190,5 +188,5 @@ def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Arr
     density: Array = np.mean(np.abs(spectra) ** 2, 0).astype(np.float64)
     frequency: Array = np.fft.rfftfreq(n, record.sample_time).astype(np.float64)
     rate = record.rate_of(name)
-    noise = density[(frequency > PROPOSED * rate) & (frequency <= 0.5 * rate)]
+    noise = density[(frequency > PROPOSED * rate) & (2 * frequency <= rate)]
     return frequency, density, float(np.median(noise))

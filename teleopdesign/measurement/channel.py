@@ -9,8 +9,9 @@ import numpy as np
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.toml import Table
 from ..base.units import si_factor, to_si
-from .conversion import KEYS, Array, Conversion, conversion_of
+from .conversion import KEYS, Conversion, conversion_of
 from .description import ONE_BODY, BodyDescription
+from .encoder import Array
 
 # name of a body's channel -> its quantity in the table of units
 BODY_QUANTITIES = {

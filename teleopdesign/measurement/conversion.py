@@ -17,14 +17,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError, quote
 from ..base.toml import Table, describe_toml_value
 from ..base.units import converting_factor, is_unit, measures, si_factor, to_si
+from .encoder import Array
 from .signed_numbers import SIGN_BIT, TWOS_COMPLEMENT, SignCode, sign_code_from
-
-Array = NDArray[np.float64]
 
 #: words for the steps of a counter
 COUNTS = ("counts", "count", "ticks", "increments")

@@ -7,6 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from .limits import HALF, NEARLY_ALL
+
 Array = NDArray[np.float64]
 
 #: steps that a column must span to show a grid, a law or a unit; and steps between two readings
@@ -19,17 +21,11 @@ STEPS = 3.0
 #: standard errors from which the sign of a value counts as known; three: wrong by chance once in
 #: 700
 SURELY = 3.0
-#: values lie on a grid if the size of the mean of exp(2 pi i x/step) exceeds this: 1 exactly on
-#: the grid, 0.04 for 600 random values
-ON_GRID = 0.9
-#: the grid is that of an encoder if the different values are less than this part of the readings: a
-#: body at rest repeats a value, while an even motion lies on another grid and repeats none
-DIFFERENT = 0.9
 #: most values that are evaluated
 ENOUGH = 20_000
-#: fewest changes of a reading that show a period, and least part of them that lies a whole number
-#: of periods apart: a slow body changes its reading at odd rows
-CHANGES, IN_TURN = 50, 0.9
+#: fewest changes of a reading that show a period: nearly all of them lie a whole number of periods
+#: apart, while a slow body changes its reading at odd rows
+CHANGES = 50
 #: fewest changes of a force: a position at constant speed passes its steps in even time, a force
 #: does not. Of 20 changes at random rows, 18 lie whole periods of two apart with a probability of
 #: 0.0002
@@ -45,7 +41,7 @@ AT_REST = 1.5
 
 def is_most(mask: NDArray[np.bool_]) -> bool:
     """Whether more than half of some values are true."""
-    return bool(len(mask) and np.mean(mask) > 0.5)
+    return bool(len(mask) and np.mean(mask) > HALF)
 
 
 def rests(position: Array, step: float) -> bool:
@@ -79,7 +75,7 @@ def reading_step(position: Array) -> float:
     is_noisy = rounding > LOST * float(np.ptp(position))
     if not (is_noisy and moving and step > STEPS * rounding):
         return step
-    if len(values) < DIFFERENT * len(position) and grid_of(position[:ENOUGH], step):
+    if len(values) < NEARLY_ALL * len(position) and grid_of(position[:ENOUGH], step):
         return step
     return min(step, rounding)
 
@@ -87,7 +83,7 @@ def reading_step(position: Array) -> float:
 def is_on_grid(x: Array, step: float) -> bool:
     """Whether readings (n,), of which `ENOUGH` are looked at, lie on a grid with any origin."""
     some = x[:: max(1, len(x) // ENOUGH)]
-    return bool(np.abs(np.exp(2j * np.pi * (some - some[0]) / step).mean()) > ON_GRID)
+    return bool(np.abs(np.exp(2j * np.pi * (some - some[0]) / step).mean()) > NEARLY_ALL)
 
 
 def grid_of(position: Array, step: float) -> float:
@@ -133,7 +129,7 @@ def update_period(*stretches: Array, fewest: int = CHANGES) -> int:
     if len(apart) < fewest:
         return 1
     every = int(np.median(apart))
-    return every if every > 1 and np.mean(apart % every == 0) >= IN_TURN else 1
+    return every if every > 1 and np.mean(apart % every == 0) >= NEARLY_ALL else 1
 
 
 def sampling_jitter(x: Array, step: float, sample_time: float) -> float:

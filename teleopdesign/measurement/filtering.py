@@ -22,6 +22,20 @@ CONTINUED = 0.6
 FORGOTTEN = 3.0
 
 
+def fast_length(least: int) -> int:
+    """The smallest length from `least` on without other prime factors than 2, 3 and 5."""
+    best = 1 << (least - 1).bit_length()
+    fives = 1
+    while fives < best:
+        threes = fives
+        while threes < best:
+            twos = 1 << max(-(-least // threes) - 1, 0).bit_length()
+            best = min(best, threes * twos)
+            threes *= 3
+        fives *= 5
+    return best
+
+
 class Spectrum:
     """Multiplies signals on one uniform grid of n samples by functions of frequency.
 
@@ -29,11 +43,9 @@ class Spectrum:
     """
 
     def __init__(self, n: int, sample_time: float) -> None:
-        from scipy.fft import next_fast_len
-
         self.n, self.sample_time = n, sample_time
         self.margin = max(1, min(round(CONTINUED / sample_time), n - 1))
-        self.length = next_fast_len(n + 4 * self.margin, real=True)
+        self.length = fast_length(n + 4 * self.margin)
         self.frequency = np.arange(self.length // 2 + 1) / (self.length * sample_time)
         ramp = np.linspace(0.0, 1.0, self.length - n - 2 * self.margin + 2)[1:-1]
         # a smooth bridge closes the circle without a step in level or slope
@@ -44,20 +56,16 @@ class Spectrum:
 
     def transform(self, y: Array) -> NDArray[np.complex128]:
         """Fourier transform of (..., n) signals, continued at both ends."""
-        from scipy.fft import rfft  # its import takes longer than a Bode plot, which needs none
-
         m = self.margin
         left = 2 * y[..., :1] - y[..., m:0:-1]
         right = 2 * y[..., -1:] - y[..., -2 : -m - 2 : -1]
         bridge = right[..., -1:] + (left[..., :1] - right[..., -1:]) * self._bridge
         whole = np.concatenate([left, y, right, bridge], axis=-1)
-        return np.asarray(rfft(whole), dtype=np.complex128)
+        return np.asarray(np.fft.rfft(whole), dtype=np.complex128)
 
     def back(self, transformed: NDArray[np.complex128]) -> Array:
         """The signals (..., n) from their transform."""
-        from scipy.fft import irfft
-
-        y: Array = irfft(transformed, self.length)
+        y: Array = np.fft.irfft(transformed, self.length)
         return np.ascontiguousarray(y[..., self.margin : self.margin + self.n])
 
     def multiply(self, y: Array, gain: NDArray[np.complex128] | Array) -> Array:

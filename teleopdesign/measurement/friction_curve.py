@@ -21,6 +21,7 @@ from ..base.toml import Table
 from .channel import Channel, channels_from, conversion_to_si
 from .description import ONE_BODY, BodyDescription, ModelValue, bodies_from
 from .filtering import Array, spectrum
+from .limits import SEVERAL
 from .motion import Motion
 from .reading import ReadingStep, count_of
 from .record import Record
@@ -163,7 +164,7 @@ def noise_of_points(velocity: Array, force: Array) -> tuple[float, str]:
         here = np.flatnonzero(np.sign(velocity) == way)
         here = here[np.argsort(velocity[here], kind="stable")]
         v, f = velocity[here], force[here]
-        if len(here) < 3:
+        if len(here) < SEVERAL:
             continue
         share = (v[1:-1] - v[:-2]) / np.maximum(v[2:] - v[:-2], 1e-300)
         between = (1.0 - share) * f[:-2] + share * f[2:]

@@ -10,16 +10,13 @@ from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError, quote
 from .channel import Channel, LogLayout
+from .encoder import Array
 from .reading import ReadingStep, count_of
 from .record_clock import DATE, RecordClock, clock_of, counted_clock, segments_of
-from .repeated_rows import repeated_rows, rows_between_readings, with_slower_signals
-from .row_places import Array
+from .repeated_rows import MOST, repeated_rows, rows_between_readings, with_slower_signals
 from .stamps import read_at_stamps
 from .tables import LogColumns
 
-#: a log is refused if more than this part of the rows lack a number in some cell: such a column is
-#: another column, or belongs to a slower clock
-MOST_EMPTY = 0.2
 #: what to do with such a column
 OF_ANOTHER_CLOCK = "a signal of a slower clock goes with its times into a table beside, in a folder"
 #: channels that are no signals
@@ -119,13 +116,13 @@ def _filled_rows(
     filled = np.ones(max((len(columns.values[c]) for c in wanted), default=0), dtype=bool)
     for column in wanted:
         bad = ~np.isfinite(columns.values[column])
-        if len(bad) and bad.mean() > MOST_EMPTY:
+        if len(bad) and bad.mean() > MOST:
             key = next(k for k, ch in channels.items() if column in ch.columns)
             row = int(np.argmax(bad))
             raise ExperimentError(
                 f"{name}: channels.{key.removeprefix('device.')}: column {quote(column)}, "
                 f"row {row + 1}: found {columns.values[column][row]:g}, and no number in "
-                f"{bad.mean():.0%} of the rows, expected at most {MOST_EMPTY:.0%}; "
+                f"{bad.mean():.0%} of the rows, expected at most {MOST:.0%}; "
                 f"{OF_ANOTHER_CLOCK}"
             )
         filled &= ~bad

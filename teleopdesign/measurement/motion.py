@@ -12,6 +12,7 @@ from ..base.frozen import ByValue
 from .encoder import reading_noise, reading_step
 from .filtering import Array, Spectrum, held_command, spectrum
 from .hum import hum_of, without_hum
+from .limits import HALF
 from .record import Record
 
 #: edge of the smoothing over the bandwidth of the comparison: below the bandwidth |H| > 0.998
@@ -141,7 +142,7 @@ def direction_of(position: Array, change: float, step: float, patience: int) -> 
     change: smallest change of a reading that counts;  step: uncertainty of one reading
     """
     direction = np.zeros(len(position), dtype=np.int8)
-    changes = np.flatnonzero(np.abs(np.diff(position)) > 0.5 * change) + 1
+    changes = np.flatnonzero(np.abs(np.diff(position)) > HALF * change) + 1
     if len(changes) < 2:
         return direction
     sign = np.sign(position[changes] - position[changes - 1]).astype(np.int64)

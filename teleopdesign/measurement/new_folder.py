@@ -16,6 +16,7 @@ from .channel import layout_from
 from .description import bodies_from
 from .encoder import reading_step, rests
 from .first_guess import FirstGuess, guess_from
+from .limits import SMALL
 from .motion import SHORTEST as SEGMENT
 from .record import RecordEntry, overlap, read_record
 from .record_clock import FEWEST, SHORTEST
@@ -27,8 +28,6 @@ from .survey.derivative import unwrap_column, wrap_of
 #: (begin, end) of the fit record and of the check record, s from the first row of a log
 FitAndCheck = tuple[tuple[float, float], tuple[float, float]]
 
-#: durations of a log within which a stated span may end: its rounded end is meant
-BEYOND = 1.1
 _FILE = "experiment.toml"
 
 
@@ -104,7 +103,8 @@ def check_spans(spans: FitAndCheck, duration: float, names: Sequence[str]) -> No
             "last is the check record"
         )
     for use, (begin, end) in zip(("fit", "check"), spans, strict=True):
-        if not 0 <= begin < end or begin >= duration or end > BEYOND * duration:
+        # a rounded end is meant
+        if not 0 <= begin < end or begin >= duration or end > (1 + SMALL) * duration:
             raise ExperimentError(
                 f"{names[0]}: {use} span: found {begin:g} to {end:g} s, expected two instants in "
                 f"order within the log's {duration:.4g} s"

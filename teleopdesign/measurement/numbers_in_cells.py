@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError, quote
 from .doors._cells import number_of, stamps_in_texts
+from .encoder import Array
+from .signed_numbers import MOST_BITS
 
-Array = NDArray[np.float64]
 #: whole numbers above are stamps in nanoseconds: 2^53, beyond which float64 skips some
-_LONG = 2**53
+_LONG = 2**MOST_BITS
 #: cells that tell whether a column holds dates
 _SOME = 100
 

@@ -18,12 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
-from .encoder import LOST, is_most
+from .encoder import LOST, Array, is_most
 from .reading import count_of
 from .row_places import (
     GOES_ON,
     UNEVEN,
-    Array,
     RowNumbers,
     places_of,
     rows_in_order,

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .channel import Channel
-from .encoder import CHANGES, STEPS, reading_step
-from .row_places import Array
+from .encoder import CHANGES, STEPS, Array, reading_step
+from .limits import HALF
 from .tables import LogColumns
 
 #: probability by chance up to which all readings of a row repeat because it is lost, a channel is
@@ -24,7 +24,8 @@ from .tables import LogColumns
 BY_CHANCE = 1e-3
 #: rows to either side that show how often each channel repeats alone
 BESIDE = 25
-#: if more than this share of the rows repeat, the log has a slower source, which is another case
+#: part of the rows that a log may lose. Where more of them repeat, or lack a number in some cell,
+#: the log or a column has a slower source
 MOST = 0.2
 #: part of the changes that must be in step with the slower source, and their largest distance from
 #: the step, in its periods: of rows that repeat at random, 0.6 lie as near
@@ -149,7 +150,7 @@ def repeats(x: Array, step: float) -> NDArray[np.intp]:
     usual = (x[high] - x[low]) / (high - low)
     way, size = np.sign(usual), np.abs(usual)
     into, out = way * change[first - 1], way * change[past]
-    is_held = (size >= STEPS * step) & (np.minimum(into, out) >= 0.5 * size)
+    is_held = (size >= STEPS * step) & (np.minimum(into, out) >= HALF * size)
     pairs = zip(first[is_held].tolist(), past[is_held].tolist(), strict=True)
     rows = [np.arange(a, b) + 1 for a, b in pairs]
     return np.concatenate(rows) if rows else np.zeros(0, dtype=np.intp)
@@ -175,7 +176,7 @@ def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int
         ends = b == len(change)
         leaps = not ends and abs(change[b]) > LEAP * max(usual, step)
         # a stuck reading jumps once; a body that rested at a reversal continues with similar steps
-        leaps = leaps and (b + 1 >= len(change) or abs(change[b + 1]) < 0.5 * abs(change[b]))
+        leaps = leaps and (b + 1 >= len(change) or abs(change[b + 1]) < HALF * abs(change[b]))
         if quantity == "position":
             slowing = abs(change[a - 1] - change[a - 3]) / 2
             dead = abs(change[a - 1]) > max(STEPS * step, LEAP * slowing)

@@ -12,9 +12,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from .encoder import Array
 from .record_clock import RecordClock
 
-Array = NDArray[np.float64]
 Rule = Literal["held", "position", "line"]
 
 #: encoder steps between two rows up to which interpolated readings are rounded to whole steps. In

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .channel import Channel
 from .conversion import Conversion
-from .encoder import is_on_grid, reading_step
+from .encoder import Array, is_on_grid, reading_step
 from .reading import ReadingStep, count_of
 from .record_clock import RecordClock
 from .repeated_rows import SLOWER
@@ -22,10 +21,6 @@ from .resample import (
 from .spikes import filled_spikes
 from .tables import LogColumns
 
-Array = NDArray[np.float64]
-
-#: a channel of whole numbers with at most so many different values is a state, and no measurement
-STATES = 16
 #: part of the steps between stamps that are usual, and times the longest of these that a pause
 #: lasts: stamps of a bus come in bursts, and some are lost
 USUAL, PAUSE = 0.9, 10.0
@@ -48,7 +43,7 @@ def signals_of_log(
             steps += more
             continue
         values = readings[key]
-        rule, step = rule_of(channel, values), encoder_step(channel, values)
+        rule, step = rule_of(channel), encoder_step(channel, values)
         out = resample_on_grid(values, clock, rule, step=step, delay=conversion.delay)
         signals[key] = _restore_steps(out, values, channel, step)
     if clock.lost:
@@ -130,17 +125,10 @@ def _fill_spikes(
     return filled, [done]
 
 
-def rule_of(channel: Channel, values: Array) -> Rule:
+def rule_of(channel: Channel) -> Rule:
     """The rule for the values of a channel between two rows."""
-    if channel.quantity == "actuator_force":
-        return "held"
-    if channel.quantity == "position":
-        return "position"
-    few = np.unique(values[:: max(1, len(values) // 5000)])
-    states = len(few) <= STATES and bool(np.all(few == np.round(few)))
-    return (
-        "held" if states and channel.quantity not in ("velocity", "interaction_force") else "line"
-    )
+    rules: dict[str, Rule] = {"actuator_force": "held", "position": "position"}
+    return rules.get(channel.quantity, "line")
 
 
 def encoder_step(channel: Channel, values: Array) -> float:
@@ -181,7 +169,7 @@ def _resample_by_stamps(
     at, values = at[once], values[once]
     values, spikes = _fill_spikes(values, key, channel, [slice(None)], None, file)
     h = clock.sample_time
-    rule, step = rule_of(channel, values), encoder_step(channel, values)
+    rule, step = rule_of(channel), encoder_step(channel, values)
     rate = _rate_without_pauses(at)
     if channel.quantity == "interaction_force" and rate * h < SLOWER:
         rule = "position"  # a line between slow readings would weaken what changes fast
@@ -240,7 +228,7 @@ def _describe_lost_rows(
         if channel.quantity == "velocity":
             continue
         step = encoder_step(channel, values)
-        wrong = filling_error(values, clock, rule_of(channel, values), step=step)
+        wrong = filling_error(values, clock, rule_of(channel), step=step)
         if channel.quantity == "position":
             unit = f"{float(f'{wrong / step:.2g}'):g} steps" if step > 0 else f"{wrong:.2g}"
             positions.append(unit)

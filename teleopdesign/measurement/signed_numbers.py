@@ -9,25 +9,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
 from ..base.toml import Table
-
-Array = NDArray[np.float64]
+from .encoder import Array
+from .limits import HALF, SEVERAL, SMALL
 
 #: keys of a channel, one for each code
 TWOS_COMPLEMENT, SIGN_BIT = "twos_complement", "sign_bit"
 #: most bits of a whole number that float64 holds exactly
 MOST_BITS = 53
-#: part of its changes from row to row that a column may keep where a bit of it is a sign: without
-#: the sign it leaps at each change of direction
-KEPT_CHANGES = 0.5
-#: least range of readings that are looked at, and least number of values with either sign: a
-#: command that is on or off has two values, and may be 0 and 200 by choice
-LEAST_RANGE, EACH_SIGN = 2**7, 3
-#: least size of the smaller sign in that of the larger one: a force that drives to both sides
-COMPARABLE = 0.1
+#: least range of readings that are looked at
+LEAST_RANGE = 2**7
 
 
 @dataclass(frozen=True)
@@ -49,7 +42,7 @@ class SignCode:
     def decode(self, counts: Array) -> Array:
         """The numbers (n,) of counts (n,); a count below half of `end` is itself."""
         negative = 0.5 * self.end - counts if self.key == SIGN_BIT else counts - self.end
-        return np.where(counts >= 0.5 * self.end, negative, counts)
+        return np.where(counts >= HALF * self.end, negative, counts)
 
     def refuse_other_counts(self, counts: Array, where: str) -> None:
         """Raise an ExperimentError for a reading that is no count of this code."""
@@ -92,14 +85,15 @@ def sign_code_of(readings: Array) -> SignCode | None:
     codes = (SignCode(SIGN_BIT, bit), SignCode(TWOS_COMPLEMENT, bit + 1))
     changes = {code: _changes(code.decode(counts)) for code in codes}
     best = min(codes, key=lambda code: changes[code])
-    if changes[best] >= KEPT_CHANGES * _changes(counts):
+    if changes[best] >= HALF * _changes(counts):
         return None
     numbers = best.decode(counts)
     of_sign = [np.unique(numbers[sign * numbers > 0]) for sign in (1, -1)]
-    if min(map(len, of_sign)) < EACH_SIGN:
+    # a command that is on or off has two values, and may be 0 and 200 by choice
+    if min(map(len, of_sign)) < SEVERAL:
         return None
     sizes = sorted(float(np.max(np.abs(values))) for values in of_sign)
-    return best if sizes[0] >= COMPARABLE * sizes[1] else None
+    return best if sizes[0] >= SMALL * sizes[1] else None
 
 
 def _changes(numbers: Array) -> float:

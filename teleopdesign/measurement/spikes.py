@@ -12,11 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from .encoder import Array
+from .limits import HALF, SMALL
 from .record_clock import FEWEST
 from .repeated_rows import runs_of
 from .resample import cubic_through_four
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 #: rows whose median is the course of a reading: of seven, three may be spikes
@@ -29,12 +30,6 @@ MOST = 0.05
 #: three follow one another by chance; then so do as many as are expected in `BY_CHANCE` records;
 #: and the probability that spikes are taken for contacts by chance
 LONGEST, BY_CHANCE = 2, 0.01
-#: part of its distance by which level and slope on both sides of a spike may differ at most: at
-#: the peak of a triangle the slopes differ by more than the peak is off
-BESIDE = 0.5
-#: share of the rows with the largest changes of velocity. If half of the spikes of a force lie at
-#: such rows, more of them than by chance, they are contacts of less than a row
-ABRUPT = 0.1
 
 
 def filled_spikes(
@@ -86,7 +81,7 @@ def are_contacts(spikes: Mask, position: Array) -> bool:
     larger = np.sort(1.0 - np.searchsorted(usual, changes, side="left") / len(usual))
     half = (len(larger) + 1) // 2
     share = float(larger[half - 1])
-    return share <= ABRUPT and float(bdtrc(half - 1, len(larger), share)) < BY_CHANCE
+    return share <= SMALL and float(bdtrc(half - 1, len(larger), share)) < BY_CHANCE
 
 
 def fill_spikes(x: Array, spikes: Mask) -> Array:
@@ -99,9 +94,9 @@ def fill_spikes(x: Array, spikes: Mask) -> Array:
 
 def _course(x: Array) -> Array:
     """The median of the rows about each reading (n,); at the ends the parabola through medians."""
-    from scipy.ndimage import median_filter
-
-    course, half = median_filter(x, NEAR), NEAR // 2
+    course, half = x.copy(), NEAR // 2
+    about = np.lib.stride_tricks.sliding_window_view(x, NEAR)
+    course[half:-half] = np.partition(about, half)[:, half]
     nodes = half + NEAR * np.arange(3)
     for side in (course, course[::-1]):
         parabola = np.polyfit(nodes, side[nodes], 2)
@@ -123,7 +118,7 @@ def _are_lone(x: Array, spikes: Mask) -> bool:
     size = np.minimum(np.abs(x - y)[first], np.abs(x - y)[past - 1])
     before, after = _slopes(y, first, past)
     level = y[past] - y[first - 1] - 0.5 * (past - first + 1) * (before + after)
-    return bool((np.maximum(np.abs(level), np.abs(after - before)) <= BESIDE * size).all())
+    return bool((np.maximum(np.abs(level), np.abs(after - before)) <= HALF * size).all())
 
 
 def _inner_runs(spikes: Mask) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.units import si_factor
-from .encoder import SURELY
+from .encoder import SURELY, Array
+from .limits import HALF
 from .reading import ReadingStep
 from .record_clock import EVEN, SHORTEST, RecordClock
-from .row_places import Array, are_set_back
+from .row_places import are_set_back
 
 #: s in a day
 DAY = 86_400.0
@@ -40,8 +41,6 @@ TURN = 0.25
 _SECONDS = (1.0, 1e3, 1e6, 1e9)
 #: longest step over a wrap, in usual steps: a few rows may be lost there
 LONGEST_STEP = 20.0
-#: fewest usual steps in the period of a wrap: with fewer, the column counts the rows of blocks
-FEWEST_STEPS = 500.0
 #: days between two rows: 0.2 s, as in seconds
 LONGEST_DAYS = 0.2 / DAY
 #: rows a second that no log of a machine has; a scope may have 1 MHz
@@ -70,7 +69,7 @@ def unwrap_stamps(stamps: Array) -> tuple[Array, tuple[str, ...]]:
     for row in np.flatnonzero(steps < 0).tolist():
         for period, why in periods.items():
             step = float(steps[row]) + period
-            if 0 < step <= LONGEST_STEP * usual and period > FEWEST_STEPS * usual:
+            if 0 < step <= LONGEST_STEP * usual:
                 moved[row + 1 :] += period
                 count[why] = count.get(why, 0) + 1
                 break
@@ -145,8 +144,8 @@ def unit_of_steps(stamps: Array) -> tuple[str, str]:
     if step < LONGEST_DAYS and SHORTEST / DAY < float(np.ptp(finite)) < SHORTEST:
         return "day", f"day: only in days are steps of {step:.4g} usual for a log"
     scales = ((0.2, "s"), (200.0, "ms"), (2e5, "us"), (math.inf, "ns"))
-    unit = next(name for largest, name in scales if step < largest or largest == math.inf)
-    if unit == "s" and step > 1e-5:
+    unit = next(name for largest, name in scales if step < largest)
+    if unit == "s":
         return "s", ""
     return unit, f"{unit}: only in {unit} are steps of {step:.4g} usual for a log"
 
@@ -189,7 +188,7 @@ def read_at_stamps(
     off = float(f"{100 * clock.jitter / h:.2g}")
     text = f"stamps {off:g} % of a row off an even clock"
     share = f"{slope:.2f} +- {error:.1g} of what they say"
-    stamped, effect = slope > 0.5 and math.isfinite(error), "none"
+    stamped, effect = slope > HALF and math.isfinite(error), "none"
     if stamped:
         rule = f"the position was read at its stamps ({share}): {rule}"
         effect = effect_of_even_stamps(clock, positions)

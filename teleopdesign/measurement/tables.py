@@ -10,9 +10,6 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..base.errors import ExperimentError, did_you_mean, quote
 from .doors._dialect import LOOKED_AT
 from .doors._log import Log, bare_column, join_names, refuse_odd_names
@@ -26,11 +23,11 @@ from .doors.parquet import open_parquet
 from .doors.shapes import with_best_shape
 from .doors.text import open_text
 from .doors.workbook import open_workbook
+from .encoder import Array
 from .numbers_in_cells import numbers_of
 from .reading import ReadingStep
 from .stamps import unwrap_stamps
 
-Array = NDArray[np.float64]
 Result = TypeVar("Result")
 Wanted = Mapping[str, str]
 """Column -> the channel that wants it (for messages, "channels.position")."""

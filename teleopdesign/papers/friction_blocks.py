@@ -1,4 +1,7 @@
-"""The blocks C, H and K of the haptic interface: P12 to P15, from the laws of the controllers."""
+"""The blocks C, H and K of the haptic interface: P12 to P15, from the laws of the controllers.
+
+Also statements of the first paper that rest on its experiments and users: P24 to P26.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ import sympy as sp
 from ..controllers import CONTROLLERS, SIGNALS, controller, scheduled_force_feedback
 from ._laws import coulomb, schedule, smoothed_coulomb
 from ._proof import Equal, Holds, Limit, NotNegative, ProofSteps, proof
-from ._statement import BERNSTEIN, shows
+from ._statement import BERNSTEIN, claim, shows
 
 v, a, b, k, F_C = sp.symbols("v a b k F_C", positive=True)
 UP, DOWN = smoothed_coulomb(v, F_C, a), smoothed_coulomb(-v, F_C, a)
@@ -140,3 +143,30 @@ def position_loop_against_friction() -> ProofSteps:
         ),
         assuming=[F_C - stiff * amplitude],
     )
+
+
+two_compensators = claim(
+    24,
+    BERNSTEIN,
+    "comparison of the two methods",
+    "Motion-based cancellation needs an accurate model, cannot act before motion and "
+    "suffers from delay at reversals. Force feedback needs neither model nor motion, and its "
+    "roll-off limits it.",
+    (13, 38, 47, 48),
+)
+users = claim(
+    25,
+    BERNSTEIN,
+    "experiments",
+    "Four users felt least friction with the hybrid. The model omits low-velocity detail on "
+    "purpose. a and b were tuned by hand. F_C is half the force difference between motion up and "
+    "motion down.",
+    (13,),
+)
+untested = claim(
+    26,
+    BERNSTEIN,
+    "text",
+    "Independence of amplitude was not a design goal, and 4 to 20 Hz was not tested.",
+    (20, 22),
+)

@@ -6,14 +6,14 @@ derivatives by states and parameters. `ode_scan.py` describes the loop, and runs
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 
 import sympy as sp
 
 from ..effects import SIGNALS, UNEXPLAINED, Effect
 from .compiled import head
-from .laws import Names, assignments, indent, source_of
+from .laws import assignments, indent, source_of
+from .scan import write_tangent
 
 
 @lru_cache(maxsize=256)
@@ -39,32 +39,6 @@ def list_parameters(effect: Effect) -> tuple[sp.Symbol, ...]:
     return (*of_effect, *sorted(others, key=str))
 
 
-def _write_tangents(
-    name: str,
-    law: sp.Expr,
-    states: Sequence[sp.Symbol],
-    parameters: Sequence[sp.Symbol],
-    names: Names,
-) -> tuple[list[str], str, dict[int, str]]:
-    """Code of a law's tangents: derivatives once, then the products for each column.
-
-    name: of the law in the code
-    returns: lines that compute the derivatives; the sum over states d_j in one column; index of a
-        parameter -> variable of its derivative
-    """
-    lines, terms, by_parameter = [], [], {}
-    for j, symbol in enumerate((*states, *parameters)):
-        slope = sp.diff(law, symbol)
-        if slope == 0:
-            continue
-        lines += assignments({f"{name}_{j}": slope}, names)
-        if j < len(states):
-            terms.append(f"{name}_{j} * d_{j}")
-        else:
-            by_parameter[j - len(states)] = f"{name}_{j}"
-    return lines, " + ".join(terms) or "0.0", by_parameter
-
-
 #: private name of the force that is left unexplained
 _LEFT = "left"
 
@@ -75,6 +49,12 @@ def _name_symbols(effect: Effect) -> dict[sp.Symbol, str]:
     parameters = {s: f"p_{i}" for i, s in enumerate(list_parameters(effect))}
     signals = {SIGNALS[d]: f"u_{i}" for i, d in enumerate(list_drivers(effect))}
     return states | parameters | signals | {UNEXPLAINED: _LEFT}
+
+
+def _tangents(effect: Effect) -> dict[sp.Symbol, str]:
+    """States and parameters -> code of their tangents in column c."""
+    states = {s: f"d_{i}" for i, s in enumerate(effect.state_symbols().values())}
+    return states | {s: f"unit[{i}, c]" for i, s in enumerate(list_parameters(effect))}
 
 
 def _write_stage_signals(effect: Effect) -> list[str]:
@@ -109,74 +89,52 @@ def _write_left(effect: Effect) -> list[str]:
 
 def _write_rates(effect: Effect) -> list[str]:
     """Code of f, the rates of the states, and of g, their tangents, in one stage."""
-    states = list(effect.state_symbols().values())
-    parameters, names = list_parameters(effect), _name_symbols(effect)
+    count, names, by = len(effect.states), _name_symbols(effect), _tangents(effect)
     corrections = effect.corrections()
     lines: list[str] = []
-    each = [f"d_{i} = d[{i}, c] + ahead * g[before, {i}, c]" for i in range(len(states))]
-    ends: list[str] = []
+    each = [f"d_{i} = d[{i}, c] + ahead * g[before, {i}, c]" for i in range(count)]
     if corrections:
-        before, moved, law_slopes = _write_tangents(
-            "by_law", effect.expression(), states, parameters, names
-        )
-        lines += [*_write_left(effect), *before]
+        slopes, tangent = write_tangent("by_law", effect.expression(), by, names)
+        lines += [*_write_left(effect), *slopes]
         each += [
             f"d{_LEFT} = 0.0",
             "if bound:",
             "    needed = ddrive[0, k, c] + here * (ddrive[0, k + 1, c] - ddrive[0, k, c])",
             "    step_of = ddrive[bound, k + 1, c] - ddrive[bound, k, c]",
-            f"    d{_LEFT} = needed - (ddrive[bound, k, c] + here * step_of) - ({moved})",
+            f"    d{_LEFT} = needed - (ddrive[bound, k, c] + here * step_of) - ({tangent})",
         ]
+        by = by | {UNEXPLAINED: f"d{_LEFT}"}
     for i, (name, rate) in enumerate(effect.rates().items()):
         whole = rate + corrections.get(name, sp.S(0))
-        lines += assignments({f"f[stage, {i}]": whole}, names)
-        before, moved, by_parameter = _write_tangents(f"by_{i}", whole, states, parameters, names)
-        lines += before
-        by_left = sp.diff(whole, UNEXPLAINED)
-        here = f"g[stage, {i}, columns"
-        ends += [f"if columns[{j}] >= 0:\n    {here}[{j}]] += {k}" for j, k in by_parameter.items()]
-        if by_left != 0:
-            lines += assignments({f"by_{i}_left": by_left}, names)
-            moved += f" + by_{i}_left * d{_LEFT}"
-            ends += [
-                f"if bound and columns[{j}] >= 0:\n    {here}[{j}]] -= by_{i}_left * {k}"
-                for j, k in law_slopes.items()
-            ]
-        each.append(f"g_{i} = {moved}")
+        slopes, tangent = write_tangent(f"by_{i}", whole, by, names)
+        lines += [*assignments({f"f[stage, {i}]": whole}, names), *slopes]
+        each.append(f"g_{i} = {tangent}")
     # slopes are stored when all are known, because a state may depend on the slope of another
-    each += [f"g[stage, {i}, c] = g_{i}" for i in range(len(states))]
-    lines.append("for c in range(m):")
-    lines += [f"    {line}" for line in each]
-    return [*lines, *(line for end in ends for line in end.split("\n"))]
+    each += [f"g[stage, {i}, c] = g_{i}" for i in range(count)]
+    return [*lines, "for c in range(m):", *(f"    {line}" for line in each)]
 
 
 def _write_dry(effect: Effect) -> list[str]:
     """Code of hold, the rates by which dry friction slows the states, and of their tangents."""
-    states = list(effect.state_symbols().values())
-    places = {n: i for i, n in enumerate(effect.states)}
-    parameters, names = list_parameters(effect), _name_symbols(effect)
+    places, names = {n: i for i, n in enumerate(effect.states)}, _name_symbols(effect)
     lines: list[str] = []
     for name, bound in effect.dry_bounds().items():
         i = places[name]
-        before, moved, by_parameter = _write_tangents(f"dry_{i}", bound, states, parameters, names)
-        lines += [*assignments({f"most_{i}": bound}, names), *before]
+        slopes, tangent = write_tangent(f"dry_{i}", bound, _tangents(effect), names)
         lines += [
+            *assignments({f"most_{i}": bound}, names),
+            *slopes,
             # half a step ahead, because the driving force changes: else a stuck state creeps
             f"wanted = z_{i} / w + 1.5 * f[0, {i}] - 0.5 * before_f[{i}]",
             f"within = abs(wanted) <= most_{i}",
             f"hold[{i}] = wanted if within else copysign(most_{i}, wanted)",
             "for c in range(m):",
-            *(f"    d_{j} = d[{j}, c]" for j in range(len(states))),
+            *(f"    d_{j} = d[{j}, c]" for j in range(len(places))),
             "    if within:",
             f"        dhold[{i}, c] = d_{i} / w + 1.5 * g[0, {i}, c] - 0.5 * before_g[{i}, c]",
             "    else:",
-            f"        dhold[{i}, c] = copysign(1.0, wanted) * ({moved})",
+            f"        dhold[{i}, c] = copysign(1.0, wanted) * ({tangent})",
         ]
-        for j, slope in by_parameter.items():
-            lines += [
-                f"if not within and columns[{j}] >= 0:",
-                f"    dhold[{i}, columns[{j}]] += copysign(1.0, wanted) * {slope}",
-            ]
     return lines
 
 
@@ -201,24 +159,22 @@ def write_scan(effect: Effect) -> str:
     """Source of the scan: states `out` (s, n) and tangents `dout` (s, q, n) at the rows.
 
     drive: signals (m, n), those of corrections last;  bends: their deviations from chords (2, m, n)
+    unit: tangents (p, q + 1) of the parameters; (p, 0) without tangents. The last column is a
+        difference without input, whose growth is measured
     ddrive: tangents of the signals of corrections
     size, growth: size of a difference of states, and the growth at which tangents restart
     """
     parameters = [f"p_{i} = p[{i}]" for i in range(len(list_parameters(effect)))]
-    stage = [
-        *_write_stage_signals(effect),
-        *_write_rates(effect),
-        *_write_friction_of_stage(effect),
-    ]
+    signals, friction = _write_stage_signals(effect), _write_friction_of_stage(effect)
+    stage = [*signals, *_write_rates(effect), *friction]
     return f"""{head("Generated from an effect's rates; do not edit.")}
 
 @jitted
-def scan(h, steps, p, columns, drive, bends, ddrive, size, growth, z, out, dout):
+def scan(h, steps, p, unit, drive, bends, ddrive, size, growth, z, out, dout):
     n = drive.shape[1]
     s, q = {len(effect.states)}, dout.shape[1]
 {indent(parameters, 4)}
-    # the last column is a difference without input, whose growth is measured for the tangents
-    m = q + 1 if q else 0
+    m = unit.shape[1]
     d = np.zeros((s, m))
     f = np.zeros((4, s))
     g = np.zeros((4, s, m))

@@ -16,7 +16,7 @@ from sympy.printing.c import C99CodePrinter
 
 from ..base.errors import ModelError
 from ..controllers import SIGNALS, Controller, parameter_symbol
-from .delays import LateSignals, delay_in_samples, without_delays
+from .signal_symbols import LateSignals, delay_in_samples, without_delays
 from .simulated import without_no_delay
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")

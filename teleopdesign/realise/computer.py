@@ -10,8 +10,15 @@ import sympy as sp
 from ..base.errors import ModelError
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ._linear import solve_linear
-from .delays import LateSignals
-from .signal_symbols import PERIOD, estimate, rate_of, reading_symbol, signal, travel_rate
+from .signal_symbols import (
+    PERIOD,
+    LateSignals,
+    estimate,
+    rate_of,
+    reading_symbol,
+    signal,
+    travel_rate,
+)
 from .wired_parts import NO_VELOCITY, SignalReader, place_controller, sum_inputs
 
 

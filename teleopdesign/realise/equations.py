@@ -26,12 +26,13 @@ from .computer import (
     solve_computer,
     write_computer,
 )
-from .delays import LateSignals, replace_delays
 from .signal_symbols import (
     TIME,
+    LateSignals,
     acceleration,
     motion_of,
     parameter_names,
+    replace_delays,
     signal,
     velocity,
 )

@@ -254,6 +254,18 @@ def retain(n, place, period, sampled, past, slots, memory, lane):
 
 
 @jitted
+def compute(first, n, place, period, sampled, late_samples, past, slots, memory, lane):
+    """Signals and steps of the computer after its sensors were read;  arguments: as in `sample`."""
+    recall(place, late_samples, past, slots, memory, lane)
+    if not first:
+        computer_before(n, period, sampled, memory, lane)
+    computer_signals(n, period, sampled, memory, MADE, lane)
+    held_commands(n, sampled, memory, NEW_COMMANDS, lane)
+    retain(n, place, period, sampled, past, slots, memory, lane)
+    computer_after(n, period, sampled, memory, lane)
+
+
+@jitted
 def sample(
     first, n, place, time, period, encoder_step, smoothing, inputs, sampled, late_samples,
     past, slots, memory, lane,
@@ -262,16 +274,10 @@ def sample(
 
     first: whether it is the first sample;  n: its number;  place: its number for the ring `past`
     """
-    recall(place, late_samples, past, slots, memory, lane)
     # sensors read just before the new command
     signals(time, STATES, BRISTLES, inputs, LATE, memory, NOW, lane)
     read_sensors(first, encoder_step, period, smoothing, inputs, memory, lane)
-    if not first:
-        computer_before(n, period, sampled, memory, lane)
-    computer_signals(n, period, sampled, memory, MADE, lane)
-    held_commands(n, sampled, memory, NEW_COMMANDS, lane)
-    retain(n, place, period, sampled, past, slots, memory, lane)
-    computer_after(n, period, sampled, memory, lane)
+    compute(first, n, place, period, sampled, late_samples, past, slots, memory, lane)
 
 
 @jitted
@@ -446,6 +452,19 @@ def differentiate_at_rest(inputs, memory, small, slopes_of):
                     at = (i - MANY_STATES) * LANES + lane
                     change = memory[RESTS_0 + at] - memory[RESTS_1 + at]
                 slopes_of[(i * many + k) * LANES + lane] = change / (2.0 * small)
+
+
+@entry
+def follow(period, sampled, late_samples, past, slots, memory, out):
+    """The computer alone, without sensors, along all samples;  out: its first command, (samples,).
+
+    sampled: (sampled inputs, samples)
+    """
+    find_inverses(memory, 0)
+    for n in range(len(out)):
+        now = sampled_inputs_at(sampled, n)
+        compute(False, n, n, period, now, late_samples, past, slots, memory, 0)
+        out[n] = memory[NEW_COMMANDS]
 
 
 @entry

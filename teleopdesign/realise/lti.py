@@ -19,7 +19,7 @@ from ..base.errors import ModelError
 from ..blocks import Body
 from ..controllers import Controller, Stage, exact_decimal, make_exact, parameter_symbol
 from ..diagrams import Control, Diagram, Linked, Moving
-from ..diagrams.second_input import acts_along_another, without_motion
+from ..diagrams.wiring import acts_along_another, without_motion
 
 if TYPE_CHECKING:
     import control

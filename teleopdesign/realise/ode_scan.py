@@ -123,7 +123,8 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
     # without corrections, only the parameters of the rates change the states
     moved = joined_rows(*corrected, more=places[places >= 0].tolist())
     mine = np.arange(len(columns)) if moved is None else np.array(moved, dtype=int)
-    places = np.where(places >= 0, np.searchsorted(mine, places), -1)
+    width = len(mine) + 1 if len(mine) else 0
+    unit = 1.0 * np.equal.outer(places, np.append(mine, -2)[:width])
     moving = np.zeros((len(corrected), n, len(mine) + 1))
     for i, r in enumerate(corrected):
         moving[i, :, :-1] = r.tangent[mine].T
@@ -139,7 +140,7 @@ def ode_scan(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> dict[
         growth = GROWTH if effect.corrections() and not effect.linear else np.inf
         by_mine = tangent if len(mine) == len(columns) else np.empty((count, len(mine), n))
         scan = compile_source(write_scan(effect), "scan")
-        known = (step, steps, parameters, places, drive, bends, moving)
+        known = (step, steps, parameters, unit, drive, bends, moving)
         scan(*known, size, growth, start, out, by_mine)
         if by_mine is not tangent:
             tangent[:, mine] = by_mine

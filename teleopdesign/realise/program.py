@@ -30,6 +30,7 @@ class CompiledLoop:
 
     lanes: int
     run: Callable[..., None]
+    follow: Callable[..., None]
     differentiate_at_rest: Callable[..., None]
 
 
@@ -88,16 +89,19 @@ def _program(
     if key not in _programs:
         with names.in_errors():
             private = build_equations(names.diagram, prescribed=motions, sampled=sampled)
-        generator = Generator(private, observer=observer)
-        laws = generator.source()
-        calls = generator.calls()
-        plain = _execute(module_source(laws, jit=False))
-        plain.update(calls)
-        loop = loop_of(laws, 1) if jit and not calls else _entries(plain, 1)
-        _programs[key] = Program(
-            generator.equations, generator.layout(), laws, loop, plain, bool(calls)
-        )
+        _programs[key] = write_program(private, observer=observer, jit=jit)
     return _restore_names(_programs[key], names)
+
+
+def write_program(equations: Equations, *, observer: int = 0, jit: bool = True) -> Program:
+    """The loop for equations on private symbols;  observer, jit: as in `program`."""
+    generator = Generator(equations, observer=observer)
+    laws = generator.source()
+    calls = generator.calls()
+    plain = _execute(module_source(laws, jit=False))
+    plain.update(calls)
+    loop = loop_of(laws, 1) if jit and not calls else _entries(plain, 1)
+    return Program(equations, generator.layout(), laws, loop, plain, bool(calls))
 
 
 @lru_cache(maxsize=256)
@@ -107,7 +111,7 @@ def loop_of(laws: str, lanes: int) -> CompiledLoop:
 
 
 def _entries(module: Mapping[str, Any], lanes: int) -> CompiledLoop:
-    return CompiledLoop(lanes, module["run"], module["differentiate_at_rest"])
+    return CompiledLoop(lanes, module["run"], module["follow"], module["differentiate_at_rest"])
 
 
 def _restore_names(private: Program, names: PrivateNames) -> Program:

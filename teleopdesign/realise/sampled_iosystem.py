@@ -17,9 +17,9 @@ import numpy as np
 
 from ..base.errors import GrowsWithoutBound, ModelError
 from ..diagrams import Diagram
-from .delays import delay_in_samples
 from .kernel import FASTEST, RELOAD, fastest_rate, first_memory, long_step_error, refine_factor
 from .program import Program, program
+from .signal_symbols import delay_in_samples
 from .simulated import realise_in_computer
 
 if TYPE_CHECKING:

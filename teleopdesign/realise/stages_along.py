@@ -6,7 +6,7 @@ averages over parts of the row, because edges of the held command then lie betwe
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -27,6 +27,9 @@ _COMMAND = SIGNALS["command"]
 #: several rows. The longest sample is a fifth of a period at the bandwidth: an average over it
 #: would weaken the force by 1 %, an average over a sixteenth of it by 0.03 %
 PARTS, MOST_PARTS = 4, 16
+#: the cubic through samples that are a hold less, none, one and two holds late: its coefficients of
+#: the powers 0 to 3 (rows) by each sample
+_CUBIC = np.array([[0, 6, 0, 0], [-2, -3, 6, -1], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0
 #: name of the time by which the log of a body's command is late, used besides the body's parameters
 RECORD_SHIFT = "record_shift"
 #: the same of the time by which the log of the hand's force is late
@@ -122,9 +125,10 @@ def _shift(along: Along, delay: sp.Expr) -> Traced:
     """
     signal, step = along.signals[_COMMAND], along.step
     whole, part = divmod(max(_value_at(delay, along.values), 0.0) / step, 1.0)
-    weights, slopes = _cubic(part)
+    weights = np.array([1.0, part, part**2, part**3]) @ _CUBIC
+    slopes = np.array([0.0, 1.0, 2.0 * part, 3.0 * part**2]) @ _CUBIC
 
-    def mix(y: Array, factors: Sequence[float]) -> Array:
+    def mix(y: Array, factors: Array) -> Array:
         holds = (f * _delay_samples(y, int(whole) + k - 1) for k, f in enumerate(factors) if f)
         return sum(holds, np.zeros_like(y))
 
@@ -142,26 +146,6 @@ def _value_at(law: sp.Expr, values: Mapping[sp.Symbol, float]) -> float:
     if law in values:
         return values[law]
     return float(law if law.is_Number else law.subs(values))
-
-
-def _cubic(p: float) -> tuple[list[float], list[float]]:
-    """Weights of four samples whose cubic is read `p` (0 to 1) after the second, and their slopes.
-
-    The samples are a hold less, none, one and two holds late.
-    """
-    weights = [
-        -p * (p - 1.0) * (p - 2.0) / 6.0,
-        (p + 1.0) * (p - 1.0) * (p - 2.0) / 2.0,
-        -(p + 1.0) * p * (p - 2.0) / 2.0,
-        (p + 1.0) * p * (p - 1.0) / 6.0,
-    ]
-    slopes = [
-        -(3.0 * p**2 - 6.0 * p + 2.0) / 6.0,
-        (3.0 * p**2 - 4.0 * p - 1.0) / 2.0,
-        -(3.0 * p**2 - 2.0 * p - 2.0) / 2.0,
-        (3.0 * p**2 - 1.0) / 6.0,
-    ]
-    return weights, slopes
 
 
 def _delay_samples(y: Array, steps: int) -> Array:

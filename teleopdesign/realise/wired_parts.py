@@ -11,9 +11,9 @@ from ..blocks import Body
 from ..controllers import Controller, ControllerEquation
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Moving
 from ..diagrams.junctions import Weight
-from ..diagrams.second_input import without_motion
+from ..diagrams.wiring import without_motion
 from ..effects import SIGNALS, Effect
-from .delays import LateSignals, without_delays
+from .signal_symbols import LateSignals, without_delays
 
 #: signal's name -> symbol that stands for it
 SignalReader = Callable[[str], sp.Symbol]

@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 
 from ..base.errors import ModelError, did_you_mean
 from ..blocks import Body
-from ..controllers import Controller
-from ..diagrams import Control, Diagram
+from ..diagrams import Diagram
+from ..diagrams.units import bounds_of_value
 from ..realise.simulated import check_levels, least_levels, may_be_negative
 
 if TYPE_CHECKING:
@@ -204,23 +204,6 @@ def _change_value(diagram: Diagram, name: str) -> Diagram:
     more = value + _CHANGE * (abs(value) or 1.0)
     less = value - _CHANGE * (abs(value) or 1.0)
     return diagram.with_values({name: float(more if lower <= more <= upper else less)})
-
-
-def bounds_of_value(diagram: Diagram, name: str) -> tuple[float, float]:
-    """Least and largest value of a parameter; infinite where its block states none."""
-    block_name, _, within = name.partition(".")
-    block = diagram.block(block_name)
-    if isinstance(block, Control):
-        if isinstance(block.controller, Controller):
-            law, _, parameter = within.partition(".")
-            for stage in block.controller.stages:
-                if stage.name == law and parameter in stage.law.parameters:
-                    declared = stage.law.parameters[parameter]
-                    return declared.lower, declared.upper
-    elif isinstance(block.body, Body):
-        declared = block.body.parameter(within)
-        return declared.lower, declared.upper
-    return -np.inf, np.inf
 
 
 def _absent_values(diagram: Diagram, name: str) -> list[float]:

@@ -14,7 +14,7 @@ import numpy as np
 from ..base.errors import GrowsWithoutBound, ModelError
 from ..base.expectations import describe_value
 from ..diagrams import Diagram, Moving
-from ..realise.delays import is_whole
+from ..realise.signal_symbols import is_whole
 
 if TYPE_CHECKING:
     from ..realise.kernel import Timing

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.errors import ModelError, UnknownSignal, did_you_mean, unknown
 from ..diagrams import Diagram, with_shared_states
-from ..realise.delays import delay_in_samples, is_whole
+from ..realise.signal_symbols import delay_in_samples, is_whole
 from ..realise.simulated import prepare_for_simulation, realise_in_computer, refuse_massless
 from . import on_grid
 from .on_grid import (

@@ -30,6 +30,8 @@ from ..simulate.units import signal_units
 _COMPUTER = {"period": "s", "delay": "s", "encoder_step": "", "velocity_bandwidth": "Hz"}
 _SINE = {"amplitude": "", "frequency": "Hz", "phase": "rad"}
 _OF_SIMULATION = {"duration": "s", "step": "s", "give": ""}
+#: most parameters that a message lists
+_MOST_NAMED = 12
 
 
 @check_types
@@ -58,9 +60,7 @@ class SimulatedCase(ByValue):
 
     def setup(self) -> Setup:
         """The simulation, ready to run; raises ModelError as `simulate` does."""
-        settings = self.settings()
-        del settings["every_step"]  # which rows are kept is no matter of the setup
-        return prepare(self.diagram, **settings)
+        return prepare(self.diagram, **self.settings_of_steps())
 
     def names(self) -> tuple[str, ...]:
         """Names of the parameters that can be varied; of initial states, only stated ones."""
@@ -149,6 +149,10 @@ class SimulatedCase(ByValue):
         """The settings of the simulation by name, without the diagram."""
         return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "diagram"}
 
+    def settings_of_steps(self) -> dict[str, Any]:
+        """The settings without the one that says which rows of the result are kept."""
+        return {n: v for n, v in self.settings().items() if n != "every_step"}
+
 
 def case_of(diagram: Diagram | SimulatedCase, **settings: Any) -> SimulatedCase:
     """The diagram with settings of its simulation; a case is returned unchanged."""
@@ -172,6 +176,6 @@ def _sine_with(motion: Trajectory, part: str, value: float) -> Trajectory:
     return sine(**{**_sine_parts(motion), part: value})
 
 
-def _join_names(known: tuple[str, ...], most: int = 12) -> str:
-    more = f", ... ({len(known)} in all)" if len(known) > most else ""
-    return ", ".join(known[:most]) + more
+def _join_names(known: tuple[str, ...]) -> str:
+    more = f", ... ({len(known)} in all)" if len(known) > _MOST_NAMED else ""
+    return ", ".join(known[:_MOST_NAMED]) + more

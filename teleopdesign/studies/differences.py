@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.errors import ModelError, TeleopDesignError, unknown
-from ..simulate.cases import bounds_of_value
+from ..diagrams.units import bounds_of_value
 from .case import SimulatedCase
 from .evaluate import group_alike, simulate_rows
 

@@ -230,18 +230,7 @@ def simulate_rows(
 
     columns: parameter -> values (cases,);  keep: names of the signals
     """
-    return simulate_many(
-        case.diagram,
-        columns,
-        duration=case.duration,
-        inputs=case.inputs,
-        motion=case.motion,
-        initial=case.initial,
-        computer=case.computer,
-        step=case.step,
-        give=case.give,
-        keep=keep,
-    )
+    return simulate_many(case.diagram, columns, **case.settings_of_steps(), keep=keep)
 
 
 @dataclass(frozen=True, eq=False)

@@ -231,7 +231,7 @@ class _Scale:
         violation = trial.violation + beyond
         if violation > 0:
             return 1 + violation / (1 + violation)
-        value = trial.objectives[number]
+        value = trial.objectives[0]
         self.size = self.size or abs(value) or 1.0
         return value / self.size / (1 + abs(value / self.size))
 
@@ -241,20 +241,19 @@ def make_tuned(
     trial: TrialPoint,
     start: TrialPoint,
     limits: tuple[CheckedLimit, ...],
-    number: int = 0,
 ) -> Tuned:
     """The result of a search at a point."""
     share = shares_of(problem.parameters, np.array(trial.values))
     ends = [
         n for n, u in zip(problem.parameters.names, share, strict=True) if min(u, 1 - u) < AT_END
     ]
-    name = problem.objectives[number].name
+    name = problem.objectives[0].name
     return Tuned(
         problem.within(trial.values).diagram,
         problem.parameters.named(np.array(trial.values)),
         name,
-        trial.objectives[number],
-        start.objectives[number],
+        trial.objectives[0],
+        start.objectives[0],
         problem.units.get(name, ""),
         limits,
         tuple(ends),

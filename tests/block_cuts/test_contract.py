@@ -122,7 +122,7 @@ def test_a_signal_of_few_values_is_not_taken_for_rounded():
 
 
 @pytest.mark.parametrize(("rows", "what"), [((899, 901), "missing"), ((899, 900, 900), "twice")])
-def test_the_reason_why_laws_are_untested_is_said_once(diagram, log, rows, what):
+def test_the_reason_why_laws_are_untested_stands_once(diagram, log, rows, what):
     before, after = np.arange(rows[0]), np.arange(rows[-1] + 1, len(log["R_A"]))
     every = np.concatenate([before, rows, after])
     changed = {name: values[every] for name, values in log.items()}

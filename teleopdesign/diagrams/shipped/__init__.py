@@ -7,21 +7,27 @@ Commands know it by the file's name with dashes.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from importlib import import_module
 from pkgutil import iter_modules
+from typing import TYPE_CHECKING
 
 from ...base.frozen import Catalogue
-from ..wiring import Diagram
+
+if TYPE_CHECKING:
+    from ..wiring import Diagram
 
 
-def _list_builders() -> Mapping[str, Callable[[], Diagram]]:
-    files = sorted(m.name for m in iter_modules(__path__) if not m.name.startswith("_"))
-    makers = {n: import_module(f"{__name__}.{n}").diagram for n in files}
-    return Catalogue({n.replace("_", "-"): maker for n, maker in makers.items()}, "diagram")
+def _wire(file: str) -> Diagram:
+    made: Diagram = import_module(f"{__name__}.{file}").diagram()
+    return made
 
 
+_FILES = sorted(m.name for m in iter_modules(__path__) if not m.name.startswith("_"))
 #: name -> what makes the diagram
-SHIPPED: Mapping[str, Callable[[], Diagram]] = _list_builders()
+SHIPPED: Mapping[str, Callable[[], Diagram]] = Catalogue(
+    {file.replace("_", "-"): partial(_wire, file) for file in _FILES}, "diagram"
+)
 
 
 def load_shipped(name: str) -> Diagram:

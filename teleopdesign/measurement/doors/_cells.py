@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._log import Array
+from ..encoder import Array
 
 #: a number. Possessive quantifiers ("++") match digits once, so that a cell of a million digits and
 #: a letter needs no time

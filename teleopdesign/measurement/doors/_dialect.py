@@ -14,10 +14,10 @@ import numpy as np
 
 from ...base.errors import ExperimentError, quote
 from ..encoder import is_most
+from ..limits import HALF, SEVERAL
 from ._cells import is_number, seconds_of
 from ._encoding import encoding_of
 from ._header import (
-    MOSTLY,
     NAME_LABELS,
     bare_unit,
     is_row_of_units,
@@ -35,8 +35,6 @@ SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", " ": 
 LOOKED_AT = 65_536
 #: lines of which there are few in so many bytes, and most bytes of a file that is then read whole
 FEW_LINES, MOST_OF_FEW_LINES = 128, 20_000_000
-#: rows of numbers that follow each other in a table: a header of blocks has two ("X0", "Delta_X")
-IN_A_ROW = 3
 #: lines above a table that are kept, for what they say of constants
 MOST_REMARKS = 100
 
@@ -119,7 +117,7 @@ def _first_row(lines: Sequence[str], separator: str, comma: bool) -> tuple[int, 
     """Line of the first row of numbers, and the most frequent number of cells in such rows.
 
     Numbers above a table (a rate, a count of samples) differ from its rows: another number of
-    cells, or fewer than `IN_A_ROW` such rows in succession.
+    cells, or fewer than `SEVERAL` such rows in succession.
     """
     widths = {
         k: len(cells)
@@ -136,7 +134,7 @@ def _first_row(lines: Sequence[str], separator: str, comma: bool) -> tuple[int, 
     place = {k: n for n, k in enumerate(filled)}
     begins = [n for n, k in enumerate(rows) if n == 0 or place[k] != place[rows[n - 1]] + 1]
     lengths = np.diff([*begins, len(rows)])
-    whole = np.flatnonzero(lengths >= min(IN_A_ROW, lengths.max()))
+    whole = np.flatnonzero(lengths >= min(SEVERAL, lengths.max()))
     here = begins[int(whole[0])]
     # labelled rows of numbers ("SampleTime[ms]; 1", "Samples; 100; 100") belong to what stands
     # above; a single one without more labels is a row with a garbled cell
@@ -145,7 +143,7 @@ def _first_row(lines: Sequence[str], separator: str, comma: bool) -> tuple[int, 
     count = labelled.index(False) if False in labelled else 0
     above = (cells_of(line, separator) for line in lines[: rows[here]])
     if any(cells and cells[0].casefold() in NAME_LABELS for cells in above) or (
-        count > 1 and labelled.count(True) < MOSTLY * len(labelled)
+        count > 1 and labelled.count(True) < HALF * len(labelled)
     ):
         here += count
     return rows[here], width

@@ -11,6 +11,7 @@ import codecs
 import unicodedata
 
 from ...base.errors import ExperimentError
+from ..limits import HALF, SMALL
 
 _LATIN = "ÄÖÜäöüßéèêëàâçîïôûùœñáíóúãõåøæÅØÆÉ°µ²³±·×–"
 _JAPANESE = (
@@ -35,12 +36,6 @@ ALPHABETS = {
     "cp1251": "",
     "mac_roman": _LATIN,
 }
-#: share of the letters beyond ASCII that an encoding must explain; else the usual Western one is
-#: used
-KNOWN = 0.5
-#: least share of ASCII (digits and separators) in a table in UTF-16. Random bytes have 0.002, a
-#: table with a long head in another script a few tenths
-PLAIN = 0.1
 
 
 def encoding_of(raw: bytes, file: str, *, whole: bool) -> str:
@@ -51,7 +46,7 @@ def encoding_of(raw: bytes, file: str, *, whole: bool) -> str:
     """
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
         text = _decode(raw, "utf-16", whole=False)
-        if text is None or sum(letter.isascii() for letter in text) < PLAIN * len(text):
+        if text is None or sum(letter.isascii() for letter in text) < SMALL * len(text):
             raise ExperimentError(
                 f"{file}: not a text (it begins as UTF-16 does, and does not go on so)"
             )
@@ -64,7 +59,7 @@ def encoding_of(raw: bytes, file: str, *, whole: bool) -> str:
         return "utf-8"
     shares = {e: _known_share(_decode(raw, e, whole), e) for e in ALPHABETS}
     best = max(shares, key=lambda e: shares[e])
-    if shares[best] >= KNOWN:
+    if shares[best] >= HALF:
         return best
     return "cp1252" if _decode(raw, "cp1252", whole) is not None else "latin-1"
 

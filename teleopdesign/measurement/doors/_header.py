@@ -10,10 +10,9 @@ from collections.abc import Sequence
 
 from ...base.units import is_unit
 from ..column_names import unit_of_text
+from ..limits import HALF
 
 _BRACKETED = re.compile(r"[(\[{<][^()\[\]{}<>]*+[)\]}>]$")
-#: if at least this part of the cells of a row are units, the other cells are unknown units
-MOSTLY = 0.5
 #: begin of a label beside that of the names
 _LABEL = re.compile(r"data.?type|sample.?time|symbol|comment|description|unit", re.IGNORECASE)
 #: a cell that says what it states: "Unit: deg", "Type: double"
@@ -52,7 +51,7 @@ def is_row_of_units(cells: Sequence[str], names: Sequence[str]) -> bool:
     known = sum(unit_of_text(cell.strip("[](){}<> ")) is not None for cell in filled)
     # letters such as "t", "a", "v" are names as well as units: names above them are no units
     above = sum(unit_of_text(name) is not None for name in names)
-    return known > MOSTLY * len(filled) and above < known
+    return known > HALF * len(filled) and above < known
 
 
 def names_and_units(rows: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -12,16 +12,13 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 
 from ...base.errors import ExperimentError, quote
+from ..limits import HALF, NEARLY_ALL, SEVERAL
 from ..record_clock import FEWEST
 from ._cell_shapes import LineShape, units_behind_numbers, vectors_in_cells
 from ._cells import is_empty, is_number, seconds_of
 from ._dialect import COMMENTS, cells_of, separator_of
 from ._header import bare_unit, is_unit_cell
 
-#: part of the lines that have a shape: the first ones after a start may be messages
-MOST_OF_THEM = 0.8
-#: part of the lines that are frames of a bus; others are comments and events
-MANY_OF_THEM = 0.5
 #: readings of a switch in a trace
 SWITCH = {"TRUE": "1", "FALSE": "0"}
 #: name of the column of a monitor's stamps. No word of time, so that a time of the microcontroller
@@ -64,7 +61,7 @@ def frames_of_a_bus(lines: Sequence[str], file: str) -> LineShape | None:
     can0  181   [8]  37 12 A0 FE FF FF 2C 00
     """
     filled = [line[:200] for line in lines if line.strip()]
-    if _share(filled, _FRAME.search) < MANY_OF_THEM:
+    if _share(filled, _FRAME.search) < HALF:
         return None
     raise ExperimentError(
         f"{file}: found frames of a CAN bus, expected signals: decode them into a table with "
@@ -79,7 +76,7 @@ def stamps_of_a_monitor(lines: Sequence[str], file: str) -> LineShape | None:
     10:11:12.789 -> angle,current            received,angle,current
     10:11:12.799 -> 0.12,1.3        becomes  36672.799,0.12,1.3
     """
-    if _share(lines, _STAMP.match) < MOST_OF_THEM:
+    if _share(lines, _STAMP.match) < NEARLY_ALL:
         return None
     sent = [_STAMP.sub("", line, count=1) for line in lines]
     separator, comma = separator_of([line for line in sent if line.strip()])
@@ -122,7 +119,7 @@ def names_and_values(lines: Sequence[str], file: str) -> LineShape | None:
     """Names and values in each line, as a microcontroller prints it: "t=0.001 pos=0.28 cmd=-1"."""
     filled = [line for line in lines if line.strip()]
     rows = [row for line in filled if (row := pairs_of(line))]
-    if len(rows) < 3 or len(rows) < MOST_OF_THEM * len(filled):
+    if len(rows) < SEVERAL or len(rows) < NEARLY_ALL * len(filled):
         return None
     # names from the second line: the first line of a dump may be incomplete
     names = [name for name, _, _ in rows[1]]
@@ -245,4 +242,4 @@ def _share(lines: Sequence[str], has_shape: Callable[[str], object]) -> float:
     """Part of the lines with a text that have a shape; 0 for less than three."""
     filled = [line for line in lines if line.strip()]
     count = sum(bool(has_shape(line)) for line in filled)
-    return count / len(filled) if count >= 3 else 0.0
+    return count / len(filled) if count >= SEVERAL else 0.0

@@ -12,12 +12,10 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.errors import ExperimentError, quote
 
 _NUMBER = re.compile(r" #\d+$")
-Array = NDArray[np.float64]
 
 #: rows above which a file is refused before it is read: fourteen hours at 1 kHz, 0.4 GB a column
 MOST_ROWS = 50_000_000

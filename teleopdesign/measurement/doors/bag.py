@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 
 from ...base.errors import LONGEST, ExperimentError, quote
-from ._log import MOST_FIELDS, Array, Log, join_names, optional, refuse_damage, refuse_size
+from ..encoder import Array
+from ._log import MOST_FIELDS, Log, join_names, optional, refuse_damage, refuse_size
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
 STAMP = "stamp"

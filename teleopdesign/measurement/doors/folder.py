@@ -17,10 +17,11 @@ import numpy as np
 from ...base.errors import ExperimentError
 from ...base.units import measures, si_factor
 from ..column_names import likeness, unit_in_name
+from ..encoder import Array
+from ..limits import HALF
 from ..numbers_in_cells import numbers_of
 from ..stamps import unit_of_steps, unwrap_stamps
-from ._log import Array, Log, join_names
-from .shapes._table import SHARED
+from ._log import Log, join_names
 
 
 def open_folder(
@@ -181,7 +182,7 @@ def _time_column(log: Log, file: str) -> str:
 def _require_shared_time(seconds: Mapping[str, Array], file: str) -> None:
     ends = {name: (float(np.nanmin(s)), float(np.nanmax(s))) for name, s in seconds.items()}
     shared = min(end for _, end in ends.values()) - max(begin for begin, _ in ends.values())
-    if shared < SHARED * min(end - begin for begin, end in ends.values()):
+    if shared < HALF * min(end - begin for begin, end in ends.values()):
         spans = ", ".join(f"{n} from {b:.9g} to {e:.9g} s" for n, (b, e) in ends.items())
         raise ExperimentError(
             f"{file}: found tables that do not run at the same time ({spans}), expected one clock "

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.errors import ExperimentError, quote
+from ..encoder import Array
 from ._cell_shapes import LineShape
 from ._cells import column_of, part_of_column, parts_thousands
 from ._dialect import (
@@ -30,7 +31,7 @@ from ._dialect import (
     open_bytes,
 )
 from ._line_shapes import LINE_SHAPES
-from ._log import Array, Log
+from ._log import Log
 from ._stray_lines import CUT_LETTER, rows_of_numbers
 from .shapes import best_shape, table_of
 from .shapes._table import MOST_ROWS

@@ -12,22 +12,13 @@ folder.
 import hashlib
 import shutil
 import tempfile
-from collections.abc import Mapping
 from pathlib import Path
 
 from ...base.arguments import check_types
 from ...base.errors import ExperimentError, did_you_mean, quote
-from . import emps, hsm150, mtm_wrist, psm_insertion
-from ._recording import RawFile, Recording
+from ._recording import RECORDINGS, RawFile, Recording
 
 _PUBLIC = "https://raw.githubusercontent.com"
-
-RECORDINGS: Mapping[str, Recording] = {
-    "emps": emps.RECORDING,
-    "hsm150": hsm150.RECORDING,
-    "mtm_wrist": mtm_wrist.RECORDING,
-    "psm_insertion": psm_insertion.RECORDING,
-}
 
 
 @check_types

@@ -19,12 +19,13 @@ from ...base.units import is_several_times, is_unit
 from ..column_names import WORDS, as_unit, words_of
 from ..doors._log import Log, join_names
 from ..doors.folder import are_quantities
+from ..encoder import Array
 from ..numbers_in_cells import numbers_of
 from ..record_clock import FEWEST, segments_of
 from ..stamps import unwrap_stamps
 from .axis_kind import axis_of
 from .clock import duration_of, interpolate_columns, numeric_columns, time_column
-from .content import ASSUMED, NONE, Array, Choices, Survey, SurveyedColumn
+from .content import ASSUMED, NONE, Choices, Survey, SurveyedColumn
 from .derivative import wrap_of
 from .forces import describe_forces
 from .position import describe_position, find_position

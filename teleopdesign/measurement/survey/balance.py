@@ -17,11 +17,13 @@ import numpy as np
 from ...base.sentences import with_standard_error
 from ...base.units import measures, si_factor
 from ..column_names import is_wanted, likeness
+from ..encoder import Array
 from ..first_guess import balance_factor, explain_force
-from .content import NONE, SURE_NAME, Array, Choices, Survey, SurveyedColumn
+from ..limits import SMALL
+from .content import NONE, SURE_NAME, Choices, Survey, SurveyedColumn
 from .force_entry import PLACEHOLDER, force_to_si
 from .remarks import gear_ratio_in
-from .roles import score_of
+from .roles import LEAST_LEFT, score_of
 from .words import says
 
 #: a column without a clear name counts as the force of the hand if it leaves at most this part of
@@ -33,14 +35,6 @@ FACTOR_OF_ONE = 1.25
 #: relative standard error of a factor up to which a balance states a constant: the printed number
 #: then has more than one valid digit
 KNOWN = 0.05
-#: a measured current equals the commanded one if the difference has at most this part of its
-#: squares, without the noise of single rows: the current loop of a drive and its sensor leave less
-#: than a tenth of the force. If the difference is larger, another force than the command acted:
-#: feedback, or a limit
-FOLLOWED = 0.01
-#: part of the larger of two sides (values above and below zero) up to which the smaller one may be
-#: noise about zero: the current that a drive draws from its supply has one side, a motor's has both
-ONE_SIDE = 0.1
 #: most rows by which a drive may be late behind its command; it may also smooth over these rows
 LATE = 4
 
@@ -230,13 +224,13 @@ def current_that_acted(
         for name, column in columns.items()
         if name != force and _is_current(column) and not is_wanted(name)
         # the current that a drive draws from its supply has one side
-        if not _smaller_side(column.values) < ONE_SIDE < _smaller_side(columns[force].values)
+        if not _smaller_side(column.values) < SMALL < _smaller_side(columns[force].values)
     ]
     if not measured:
         return None
     best = max(measured, key=lambda name: scores[name])
     share = _unexplained_share(columns[force].values, columns[best].values)
-    return (best, share**0.5) if share > FOLLOWED else None
+    return (best, share**0.5) if share > LEAST_LEFT else None
 
 
 def _is_current(column: SurveyedColumn) -> bool:
@@ -259,8 +253,6 @@ def _unexplained_share(wanted: Array, measured: Array) -> float:
     the steps of a converter average out.
     """
     rows = len(measured) - LATE
-    if rows <= LATE:
-        return 0.0
     late = [wanted[LATE - k : LATE - k + rows] for k in range(LATE + 1)]
     columns = np.column_stack([*late, np.ones(rows)])
     target = measured[LATE:]

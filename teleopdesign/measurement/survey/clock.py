@@ -11,13 +11,13 @@ from ...base.errors import ExperimentError, quote
 from ...base.units import is_several_times, measures, si_factor
 from ..column_names import is_wanted, likeness
 from ..doors._log import Log, bare_column, join_names
-from ..encoder import is_most
+from ..encoder import Array, is_most
 from ..log_clock import OF_ANOTHER_CLOCK
 from ..numbers_in_cells import holds_dates, numbers_of
 from ..record_clock import clock_of
 from ..signed_numbers import sign_code_of
 from ..stamps import seconds_since_first, unit_in_place_of, unit_of_steps
-from .content import ASSUMED, SURE_NAME, Array, Choices, SurveyedColumn, reasons, unit_in_log
+from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, reasons, unit_in_log
 from .remarks import sample_rate_in
 from .time_role import (
     busiest_clock,

@@ -8,17 +8,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.units import is_unit, measures
 from ..column_names import likeness, unit_in_name
 from ..doors._log import bare_column, join_names
-from ..encoder import is_most
+from ..encoder import Array, is_most
 from ..first_guess import FirstGuess
 from ..signed_numbers import SignCode
 from .words import says
-
-Array = NDArray[np.float64]
 
 #: likeness of a name from which the name alone decides, without physics
 SURE_NAME = 0.75

@@ -8,18 +8,15 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..column_names import is_another_quantity, likeness
+from ..encoder import SURELY, Array
 from ..filtering import spectrum
 from ..first_guess import motion_columns, rows_each_way
-from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of, rises
+from ..limits import NEARLY_ALL, SMALL
+from .content import SURE_NAME, SurveyedColumn, is_unit_of, rises
 from .words import says
 
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9
-#: part of its path that a motion one way goes forward, noise of the readings included; times its
-#: spread that the mean of a speed is, from which its noise says little
-ONE_WAY, STEADY = 0.9, 3.0
-#: part by which a factor between two columns may miss one: filters, rounding, a start from rest
-SAME = 0.1
 #: units of a speed over those of the derivative: the same, and revolutions a minute of turns, rad
 #: and deg
 RATES = (1.0, 1 / 60.0, 2 * math.pi / 60.0, 6.0)
@@ -60,7 +57,7 @@ def wrap_of(x: Array) -> float | None:
         return None
     jumps = np.abs(steps[is_jump])
     jump = float(np.median(jumps))
-    if np.any(np.abs(jumps - jump) > SAME * jump):
+    if np.any(np.abs(jumps - jump) > SMALL * jump):
         return None
     # across a wrap the motion is as in the neighbouring rows
     beside = np.pad(np.where(is_jump, 0.0, steps), 1)
@@ -71,7 +68,7 @@ def wrap_of(x: Array) -> float | None:
         periods += [n for n in USUAL_COUNTS if n >= FEWEST_COUNTS]
     period = min(periods, key=lambda one: abs(one - turn))
     near = abs(period - turn) < NEAR_USUAL * period
-    return period if near and reach <= 1.001 * period else None
+    return period if near else None
 
 
 def leaps(x: Array) -> bool:
@@ -128,7 +125,7 @@ def _is_rate(factor: float, agree: float) -> bool:
 
     What rises with a ramp agrees with the motion that the ramp causes, too.
     """
-    return agree > DERIVATIVE and any(abs(factor * u - 1.0) < SAME for u in RATES)
+    return agree > DERIVATIVE and any(abs(factor * u - 1.0) < SMALL for u in RATES)
 
 
 def may_be_ramp(column: SurveyedColumn) -> bool:
@@ -180,7 +177,7 @@ def has_both_signs(x: Array, v: Array, sample_time: float) -> bool:
     direction = motion_columns(x, sample_time)[2]
     inner = slice(len(x) // 50 + 1, -len(x) // 50 - 1)
     forward, backward = (v[inner][way] for way in rows_each_way(direction[inner]))
-    if min(len(forward), len(backward)) < (1.0 - ONE_WAY) * len(v):
+    if min(len(forward), len(backward)) < (1.0 - NEARLY_ALL) * len(v):
         return True
     return float(forward.mean() * backward.mean()) <= 0.0
 
@@ -193,10 +190,10 @@ def is_mean_rate(x: Array, v: Array, sample_time: float) -> bool:
     """
     total, path = float(x[-1] - x[0]), float(np.sum(np.abs(np.diff(x))))
     mean = float(np.mean(v))
-    if not abs(total) > ONE_WAY * path or not abs(mean) > STEADY * float(np.std(v)):
+    if not abs(total) > NEARLY_ALL * path or not abs(mean) > SURELY * float(np.std(v)):
         return False
     factor = total / (sample_time * (len(x) - 1)) / mean
-    return any(abs(factor / usual - 1.0) < SAME for usual in RATES)
+    return any(abs(factor / usual - 1.0) < SMALL for usual in RATES)
 
 
 def follows_direction(x: Array, v: Array, sample_time: float) -> bool:

@@ -17,9 +17,9 @@ from ...base.toml import Table
 from ...base.units import is_unit, measures, unit_of
 from ..column_names import is_wanted, unit_in_name, why_no_unit
 from ..conversion import conversion_of
-from ..encoder import CHANGES_OF_FORCE, reading_noise, update_period
+from ..encoder import CHANGES_OF_FORCE, Array, reading_noise, update_period
 from ..signed_numbers import SIGN_BIT
-from .content import Array, Choices, Survey
+from .content import Choices, Survey
 from .remarks import torque_constant_in
 from .words import says
 

@@ -8,23 +8,23 @@ from dataclasses import replace
 
 from ...base.units import si_factor
 from ..column_names import likeness
+from ..encoder import Array
 from ..first_guess import SURELY_LESS, explain_force, is_turned
 from .axes import of_another_axis, stand_together
 from .balance import current_that_acted, find_hand, scale_by_balance
-from .content import (
-    SURE_NAME,
-    Array,
-    Choices,
-    Survey,
-    SurveyedColumn,
-    explain_ambiguity,
-    sample_time_of,
-)
+from .content import SURE_NAME, Choices, Survey, SurveyedColumn, explain_ambiguity, sample_time_of
 from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si, state_scatter
-from .refusals import error_without_force, tells_forces
-from .relations import left_in_turn, possible_forces, relations_of
-from .roles import AS_LIKELY, LEAST_LEFT, as_likely, is_named_force, score_of
+from .refusals import error_without_force, error_without_position, tells_forces
+from .relations import causes_acceleration, left_in_turn, possible_forces, relations_of
+from .roles import (
+    AS_LIKELY,
+    LEAST_LEFT,
+    as_likely,
+    is_named_force,
+    is_nameless,
+    score_of,
+)
 from .words import says
 
 
@@ -132,6 +132,10 @@ def _find_driving_force(
         if not is_named_force(free[force]):
             if AS_LIKELY * (1.0 - share) > 1.0 or not tells_forces(survey):
                 raise error_without_force(survey, file, velocity, force)
+            place = survey.columns[survey.channels["position"]["column"]]
+            if choices.position is None and is_nameless(place):
+                if causes_acceleration(place.values, free[force].values, sample_time_of(survey)):
+                    raise error_without_position(survey, free, file, place.name, force)
         why = f"{force!r} is read as the actuator's force: the motion explains {share:.0%} of it"
     elif others := as_likely(scores, force):
         why = explain_ambiguity(force, others, "the actuator's force")
@@ -171,32 +175,25 @@ def _position_to_si(survey: Survey) -> float:
     return scale / float(position.get("gear_ratio", 1.0))
 
 
-def _sign_of_hand(u: Array, f: Array, x: Array, h: float) -> tuple[float, str | None]:
-    """The sign with which a measured force (n,) adds to the actuator's; -1 with the reason."""
-    left = {s: explain_force(u + s * f, x, h).left for s in (1.0, -1.0)}
-    if left[-1.0] < SURELY_LESS * left[1.0]:
-        return -1.0, f"{1 - left[-1.0] / left[1.0]:.0%} less of the forces unexplained"
-    return 1.0, None
-
-
 def _choose_signs(
     survey: Survey, motion: tuple[Array, float], force: str, hand: str | None
 ) -> None:
     """Choose the signs of position and hand so that friction brakes and inertia is positive."""
     x, h = motion
     u = survey.columns[force].values * force_to_si(survey, "actuator_force")
-    whole = explain_force(u, x, h)
-    with_hand, total = whole, u
-    if hand is not None:
+    if hand is None:
+        total, fit = u, explain_force(u, x, h)
+    else:
         f = survey.columns[hand].values * force_to_si(survey, "interaction_force")
-        better, why = _sign_of_hand(u, f, x, h)
-        if why is not None:
+        total, fit = u + f, explain_force(u + f, x, h)
+        other = explain_force(u - f, x, h)
+        if other.left < SURELY_LESS * fit.left:
             survey.channels["interaction_force"]["sign"] = -1
             survey.guesses["channels.interaction_force.sign"] = (
-                f"-1: with this sign, {hand!r} balances {force!r} and leaves {why}"
+                f"-1: with this sign, {hand!r} balances {force!r} and leaves "
+                f"{1 - other.left / fit.left:.0%} less of the forces unexplained"
             )
-        total = u + better * f
-        with_hand = explain_force(total, x, h)
+            total, fit = u - f, other
     if is_turned(total, x, h):
         survey.channels["position"]["sign"] = -1
         if "velocity" in survey.channels:
@@ -205,9 +202,8 @@ def _choose_signs(
             "-1: with the sign of the log, friction would drive the motion, or inertia be "
             "negative; a motor that brakes what a hand or a spring moves looks the same"
         )
-        size = with_hand
-        with_hand = replace(size, inertia=-size.inertia, level=-size.level, damping=-size.damping)
-    survey.first = with_hand
+        fit = replace(fit, inertia=-fit.inertia, level=-fit.level, damping=-fit.damping)
+    survey.first = fit
     ratio = float(survey.channels["position"].get("gear_ratio", 1.0))
     if ratio != 1.0:
         survey.notes.append(

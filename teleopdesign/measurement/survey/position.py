@@ -15,7 +15,8 @@ from ..column_names import (
     likeness,
     why_no_unit,
 )
-from ..encoder import ENOUGH, grid_of, reading_step
+from ..encoder import ENOUGH, Array, grid_of, reading_step
+from ..limits import SMALL
 from .axes import of_another_axis
 from .axis_kind import (
     MOST_ANGLE,
@@ -28,7 +29,6 @@ from .axis_kind import (
 from .content import (
     OF_SENSORS,
     SURE_NAME,
-    Array,
     Choices,
     Survey,
     SurveyedColumn,
@@ -41,7 +41,6 @@ from .content import (
 from .derivative import (
     DERIVATIVE,
     NEAR_USUAL,
-    SAME,
     follows_direction,
     is_no_velocity,
     is_velocity,
@@ -57,9 +56,6 @@ from .forces import score_beside
 from .refusals import error_without_position
 from .roles import as_likely, first_of, is_nameless, is_no_position, score_of
 from .set_point import lags, may_be_set_point
-
-#: part of a step by which readings at the end of a range may lie beside a grid of rounded steps
-OFF_GRID = 0.1
 
 
 def find_position(survey: Survey, choices: Choices, file: str) -> tuple[str, str | None]:
@@ -223,7 +219,7 @@ def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) ->
         return
     slower = size_by_velocity(survey, column, velocity)
     slower /= si_factor(unit, quantity="position", axis=survey.axis)
-    if slower <= 0 or abs(slower - 1.0) < SAME:
+    if slower <= 0 or abs(slower - 1.0) < SMALL:
         return
     clock = survey.channels["time"]
     tick = 1e6 * si_factor(clock["unit"], quantity="time") / slower
@@ -237,14 +233,13 @@ def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) ->
 def _step_of_readings(values: Array) -> float:
     """Step of the encoder, estimated from the readings; 0 if they show none."""
     raw = values[:ENOUGH]
-    changes = int(np.count_nonzero(np.diff(raw)))
-    return grid_of(raw, reading_step(raw)) if changes >= 9 else 0.0
+    return grid_of(raw, reading_step(raw))
 
 
 def _with_few_digits(step: float, reach: float) -> float:
     """A step with as few digits as keep it on its grid over a whole range."""
     rounded = (float(f"{step:.{digits}g}") for digits in range(5, 17))
-    return next((r for r in rounded if abs(r / step - 1.0) * reach < OFF_GRID * step), step)
+    return next((r for r in rounded if abs(r / step - 1.0) * reach < SMALL * step), step)
 
 
 def unit_of_reach(reach: float, axis: str) -> str:
@@ -261,7 +256,7 @@ def _position_unit(
     reach = float(np.ptp(unwrap_column(column.values, wrap_of(column.values))))
     size = 0.0 if velocity is None else size_by_velocity(survey, column, velocity)
     for unit in ("deg", "rad", "turns") if axis == "revolute" else ("mm", "m", "um"):
-        if abs(size / si_factor(unit, quantity="position", axis=axis) - 1.0) < SAME:
+        if abs(size / si_factor(unit, quantity="position", axis=axis) - 1.0) < SMALL:
             in_unit = f"{velocity!r} in {survey.columns[velocity or ''].unit}"
             return unit, f"{unit}: with it, the derivative agrees with {in_unit}"
     if axis == "revolute" and (drives := drives_in_turns(column.name)):

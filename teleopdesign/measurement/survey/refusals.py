@@ -33,11 +33,16 @@ def tells_forces(survey: Survey) -> bool:
 
 
 def error_without_position(
-    survey: Survey, moving: Mapping[str, SurveyedColumn], file: str, nearest: str = ""
+    survey: Survey,
+    moving: Mapping[str, SurveyedColumn],
+    file: str,
+    nearest: str = "",
+    acceleration: str = "",
 ) -> ExperimentError:
     """The error for a log without a position; moving: the columns that change, by name.
 
     nearest: a column whose name leaves open what it is, and of which no velocity is the derivative
+    acceleration: the column beside it that is like its force or its acceleration
     """
     why = "no column changes without being a force or velocity by unit or name"
     speeds = sorted((n for n, c in moving.items() if is_velocity(c)), key=is_wanted)
@@ -50,6 +55,9 @@ def error_without_position(
     how = ""
     if nearest:
         why = f"{nearest!r} is none by name or unit, and no velocity is its derivative"
+        if acceleration:
+            pair = f"{nearest!r} and {acceleration!r}"
+            why = f"{pair} are like a force and the acceleration that it causes"
         how = f"; if it is one: --position {nearest!r}"
     if speeds:
         how += f"; {'else ' * bool(nearest)}add a column with the integral of {speeds[0]!r}"

@@ -8,6 +8,7 @@ would look like physics that the model lacks.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
@@ -15,13 +16,12 @@ import numpy as np
 from ...base.units import is_unit
 from ..column_names import is_another_quantity, is_wanted, likeness, words_of
 from ..doors._log import Log
-from ..encoder import SURELY
+from ..encoder import SURELY, Array
 from ..first_guess import least_squares, stretch_of
 from ..law_of_readings import is_copy
 from .axes import of_another_axis, same_but_axis
 from .content import (
     SURE_NAME,
-    Array,
     Survey,
     SurveyedColumn,
     columns_in_use,
@@ -111,13 +111,34 @@ def left_in_turn(force: Array, position: Array, sample_time: float) -> tuple[flo
     of_place = least_squares(powers, target, sample_time)
     of_all = least_squares(np.vstack([columns[:3], powers]), target, sample_time)
     whole = float(np.var(target))
-    if of_place is None or of_all is None or not of_place[2] * whole > 0.0:
+    if not of_place[2] * whole > 0.0:
         return 1.0, 1.0
     (factors, errors, left), beside = of_all, of_place[2]
     brakes = factors[1:3] * np.sign(target @ place) > SURELY * errors[1:3]
     share = beside**2 / whole
     is_place = share < LEAST_LEFT and not brakes.any()
     return min(share, 1.0), 1.0 if is_place else min(left / beside, 1.0) ** 2
+
+
+def causes_acceleration(place: Array, column: Array, sample_time: float) -> bool:
+    """Whether a column (n,) is the acceleration that another one causes as a force.
+
+        place = m column + c sgn(v) + b v + k,   v: the integral of the column
+
+    A torque and an acceleration imitate a position and its force: each is in proportion to the
+    other but for friction. The relation that leaves less holds, if its inertia is surely positive.
+    """
+    rows = np.arange(len(column))
+    speed = sample_time * np.cumsum(column - column.mean())
+    # the speed at the first row, and the offset of a sensor, are not known
+    speed -= np.polynomial.Polynomial.fit(rows, speed, 1)(rows)
+    stretch = stretch_of((place, column, np.sign(speed), speed), place, sample_time)
+    if stretch is None:
+        return False
+    (*_, one), (target, *caused) = stretch
+    factors, errors, left = least_squares(np.stack([*caused, one]), target, sample_time)
+    by_motion = math.prod(left_in_turn(column, place, sample_time))
+    return bool(factors[0] > SURELY * errors[0] and left**2 < np.var(target) * by_motion)
 
 
 def possible_forces(survey: Survey, *used: str | None) -> dict[str, SurveyedColumn]:

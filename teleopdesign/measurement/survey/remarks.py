@@ -44,8 +44,6 @@ _SAMPLE_TIME = re.compile(
 )
 #: units that are recognised whatever their case, where no other unit is meant by these letters
 _UNITS = {"hz": "Hz", "khz": "kHz", "mhz": "MHz"}
-#: times from row to row in s, and rates in Hz, between which a clock ticks
-_CLOCKS = (1e-9, 1e9)
 
 
 def sample_rate_in(remarks: Sequence[str]) -> tuple[float, str] | None:
@@ -68,7 +66,7 @@ def sample_rate_in(remarks: Sequence[str]) -> tuple[float, str] | None:
 
 
 def _size(text: str, unit: str = "s", quantity: str = "time") -> float:
-    """A number with a decimal point or comma, in SI; 0: it is none, or no clock has such a time.
+    """A number with a decimal point or comma, in SI; 0: it is none.
 
     unit: as a program writes it, also "HZ" or "khz"
     """
@@ -76,8 +74,7 @@ def _size(text: str, unit: str = "s", quantity: str = "time") -> float:
     known = unit_of_text(unit) or unit_of_text(unit.lower()) or _UNITS.get(unit.lower(), unit)
     if not isinstance(number, float) or not measures(known, quantity):
         return 0.0
-    size = number * si_factor(known, quantity=quantity)
-    return size if _CLOCKS[0] < size < _CLOCKS[1] else 0.0
+    return number * si_factor(known, quantity=quantity)
 
 
 def counts_per_turn_in(remarks: Sequence[str]) -> tuple[float, str] | None:

@@ -44,13 +44,14 @@ def score_of(role: str, column: SurveyedColumn, *, left: float = 1.0, **more: fl
     left: part of a signal that the relation of the role leaves unexplained
     more: what relations to other columns say, 0 to 1, by keys of `roles.toml` with "_" for blanks
     """
-    evidence = _evidence_in(column) | {key.replace("_", " "): value for key, value in more.items()}
+    evidence = evidence_of(column, **more)
     logs = (odds * evidence[key] for key, odds in _odds()[role].items() if evidence.get(key))
-    return sum(logs) - math.log(min(max(left, LEAST_LEFT), 1.0))
+    # of a column that is logged twice, the first: not the one that rounding favours
+    return round(sum(logs) - math.log(min(max(left, LEAST_LEFT), 1.0)), 9)
 
 
-def _evidence_in(column: SurveyedColumn) -> dict[str, float]:
-    """What name and unit of a column say, by the keys of `roles.toml`: 0 to 1."""
+def evidence_of(column: SurveyedColumn, **more: float) -> dict[str, float]:
+    """What name and unit of a column, and `more`, say by the keys of `roles.toml`: 0 to 1."""
     name, kinds = column.name, kinds_of(column)
     quantities = ("time", "position", "velocity", "actuator_force", "interaction_force")
     evidence = {f"name of {_noun(q)}": likeness(name, q) for q in quantities}
@@ -63,7 +64,8 @@ def _evidence_in(column: SurveyedColumn) -> dict[str, float]:
         f"unit of {_noun(q)}": float(q in kinds) for q in ("position", "velocity", "force")
     }
     evidence |= {word: float(says(name, word)) for word in ("difference", "voltage")}
-    return evidence | {"wanted": is_wanted(name), "another quantity": is_no_position(column)}
+    evidence |= {"wanted": is_wanted(name), "another quantity": is_no_position(column)}
+    return evidence | {key.replace("_", " "): value for key, value in more.items()}
 
 
 def is_nameless(column: SurveyedColumn) -> bool:

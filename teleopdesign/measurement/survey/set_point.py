@@ -12,23 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..column_names import WANTED, likeness, words_of
-from .content import SURE_NAME, Array, SurveyedColumn, is_unit_of
+from ..encoder import Array
+from ..limits import HALF, SEVERAL, SMALL
+from .content import SURE_NAME, SurveyedColumn, is_unit_of
 from .derivative import DERIVATIVE
 
 Indices = NDArray[np.intp]
 
-#: part of a log by which a machine may be late behind its set point
-LATEST = 0.1
 #: part of the squares of a column by which its position may differ: two columns that agree as a
 #: velocity and the derivative of its position must
 APART = 1.0 - DERIVATIVE**2
-#: holds at whose ends the position rests: between fewer, a position that starts and ends at rest
-#: moves from one value to another under any force
-FEWEST_HOLDS = 3
-#: least size of a set point over its largest one, from which it is surely no force: a hobby servo
-#: takes pulses of 500 to 2500 us (0.2), and counts of a converter begin above zero. A force so far
-#: from zero at all times leaves no free body at rest. A higher limit reads such pulses as a force
-NEVER_ZERO = 0.15
 #: likeness of a name to that of a force, from which it is no set point whatever the numbers are:
 #: "torque", "current", "effort". "pwm", "u" and "cmd" name pulses of a set point as well
 FORCE_NAME = 0.85
@@ -64,7 +57,8 @@ def is_sent_to_places(position: Array, column: SurveyedColumn) -> bool:
         return False
     if values.min() * values.max() <= 0.0:
         return False
-    if np.abs(values).min() < NEVER_ZERO * np.abs(values).max():
+    # pulses of a hobby servo have 500 to 2500 us; no force keeps so far from zero beside a rest
+    if np.abs(values).min() < SMALL * np.abs(values).max():
         return False
     ends = np.flatnonzero(np.diff(values))  # the last row of each hold
     ends = ends[ends > 0]
@@ -77,7 +71,7 @@ def is_sent_to_places(position: Array, column: SurveyedColumn) -> bool:
 
 def _rests_at(ends: Indices, position: Array) -> bool:
     """Whether a position is slower than on the average at the ends of enough holds."""
-    if len(ends) < FEWEST_HOLDS or 2 * len(ends) > len(position):
+    if len(ends) < SEVERAL or 2 * len(ends) > len(position):
         return False
     change = np.abs(np.diff(position))
     return float(np.mean(change[ends - 1])) < float(np.mean(change))
@@ -108,13 +102,13 @@ def _are_alike(column: Array, other: Array) -> bool:
     """Whether mean and spread let two columns have the same numbers: a quick first look."""
     spread = float(np.std(other))
     within = abs(float(np.mean(column) - np.mean(other))) < spread
-    return within and 0.5 * spread < float(np.std(column)) < 2.0 * spread
+    return within and HALF * spread < float(np.std(column)) < 2.0 * spread
 
 
 def _delays(rows: int) -> Iterator[int]:
     """Delays in rows, each about a quarter longer than the one before."""
     delay = 1
-    while delay <= max(LATEST * rows, 1.0):
+    while delay <= max(SMALL * rows, 1.0):
         yield delay
         delay += 1 + delay // 4
 

@@ -11,33 +11,21 @@ import numpy as np
 from ...base.units import measures, si_factor
 from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text, words_of
 from ..doors._log import Log
+from ..encoder import Array
+from ..limits import HALF, SEVERAL, SMALL
+from ..record_clock import FEWEST
 from ..row_places import are_out_of_order
 from ..stamps import unit_of_steps, unwrap_stamps
-from .content import (
-    ASSUMED,
-    SURE_NAME,
-    Array,
-    Choices,
-    SurveyedColumn,
-    is_unit_of,
-    rises,
-    unit_in_log,
-)
-from .derivative import DERIVATIVE, SAME, derivative_factor, has_both_signs, unwrap_column, wrap_of
+from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, is_unit_of, rises, unit_in_log
+from .derivative import DERIVATIVE, derivative_factor, has_both_signs, unwrap_column, wrap_of
 from .remarks import sample_rate_in
 from .roles import score_of
 from .words import says, says_only
 
 #: quantities whose units are not those of a time
 QUANTITIES = ("position", "velocity", "force")
-#: least changes of stamps that many rows share, from which they tell the rate of the rows
-FEWEST_CHANGES = 3
-#: part of their median by which times from one row to the next may differ: more uneven ones are no
-#: clock
-UNEVEN = 0.5
-#: fewest rows of a velocity that tells the rate, and part by which a rate with fewer digits may be
-#: off: a derivative along rows tells it no better
-FEWEST, ROUNDED = 60, 0.005
+#: part by which a rate with fewer digits may be off: a derivative along rows tells it no better
+ROUNDED = 0.005
 
 
 def rate_without_time(
@@ -55,7 +43,7 @@ def rate_without_time(
         if not says(name, "step of time") or len(steps) < 2 or steps.min() < 0:
             continue
         usual = float(np.median(steps))
-        if not usual > 0 or float(np.median(np.abs(steps - usual))) > UNEVEN * usual:
+        if not usual > 0 or float(np.median(np.abs(steps - usual))) > HALF * usual:
             continue
         unit = choices.units.get(name) or unit_of_time(name, log)
         if unit is None or not measures(unit, "time"):
@@ -129,7 +117,7 @@ def _is_coarse_time(name: str, values: Array, log: Log) -> bool:
     if not timed and likeness(name, "time") < SURE_NAME:
         return False
     steps = np.diff(values[np.isfinite(values)])
-    return bool(np.all(steps >= 0)) and int(np.count_nonzero(steps)) >= FEWEST_CHANGES
+    return bool(np.all(steps >= 0)) and int(np.count_nonzero(steps)) >= SEVERAL
 
 
 def _names_signal(name: str, log: Log, choices: Choices) -> bool:
@@ -182,7 +170,7 @@ def _rate_of_velocity(
         factor, agree = derivative_factor(whole, v, 1 / ASSUMED)
         if agree > best[1] and has_both_signs(whole, v, 1 / ASSUMED):
             best, pair = (factor * scale, agree), (place, speed)
-    if not best[0] > 0 or abs(best[0] - 1.0) < SAME:
+    if not best[0] > 0 or abs(best[0] - 1.0) < SMALL:
         return None
     rates = [float(f"{ASSUMED * best[0]:.{digits}g}") for digits in (1, 2, 3)]
     rate = next((r for r in rates if abs(r / (ASSUMED * best[0]) - 1.0) < ROUNDED), rates[-1])

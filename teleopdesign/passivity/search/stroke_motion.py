@@ -12,6 +12,8 @@ from ...base.arguments import check_types
 from ...simulate import Trajectory
 
 Array = NDArray[np.float64]
+#: the smallest motions of a search are smaller than the stroke by so many powers of ten
+_DECADES = 3.0
 
 
 @check_types
@@ -80,27 +82,26 @@ class _Along:
 
 
 def families(
-    rng: np.random.Generator, *, stroke: float, speed: float, tries: int, decades: float = 3.0
+    rng: np.random.Generator, *, stroke: float, speed: float, tries: int
 ) -> Iterator[tuple[str, Strokes]]:
     """Motions for a search: sinusoids on a grid, then stops with reversals, then random paths.
 
     stroke: largest position, m or rad;  speed: largest speed, m/s or rad/s
     tries: number of motions in all, about a third for each family
-    decades: the smallest motions are smaller than `stroke` by so many powers of ten
     yields: name of the family, and the motion
     """
     share = max(tries // 3, 1)
     across = max(int(np.sqrt(share)), 1)
-    fractions = np.logspace(-decades, 0.0, -(-share // across))
+    fractions = np.logspace(-_DECADES, 0.0, -(-share // across))
     for a in stroke * fractions:
         for v in speed * np.logspace(-2.0, 0.0, across)[::-1]:
             yield "sinusoid", Strokes((float(a), -float(a)), float(v))
     for _ in range(share):
-        a, v = stroke * 10 ** rng.uniform(-decades, 0), speed * 10 ** rng.uniform(-2, 0)
+        a, v = stroke * 10 ** rng.uniform(-_DECADES, 0), speed * 10 ** rng.uniform(-2, 0)
         back = a * 10 ** rng.uniform(-2, 0)
         points = (a, a - back, a, -a, back - a, -a)
         yield "stop and reverse", Strokes(tuple(map(float, points)), float(v))
     for _ in range(share):
-        a, v = stroke * 10 ** rng.uniform(-decades, 0), speed * 10 ** rng.uniform(-2, 0)
+        a, v = stroke * 10 ** rng.uniform(-_DECADES, 0), speed * 10 ** rng.uniform(-2, 0)
         path = a * rng.uniform(-1, 1, size=rng.integers(2, 9))
         yield "random path", Strokes(tuple(map(float, path)), float(v))

@@ -38,7 +38,7 @@ def save_survey(figure: Figure, path: Path) -> None:
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from font")
         with write_beside(path) as part:
-            figure.savefig(part, format="png")
+            figure.savefig(part, format="png", pil_kwargs={"compress_level": 1})
 
 
 def draw_survey(survey: Survey, experiment: Experiment) -> Figure:

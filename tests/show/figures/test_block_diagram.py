@@ -17,7 +17,7 @@ from teleopdesign.diagrams import (
     Moving,
     haptic_interface,
 )
-from teleopdesign.diagrams.world_haptics_2005 import world_haptics_2005
+from teleopdesign.diagrams.shipped.world_haptics_2005 import world_haptics_2005
 from teleopdesign.show import draw_diagram
 from teleopdesign.show.figures.block_diagram.shapes import Box, Circle, Text, Wire
 

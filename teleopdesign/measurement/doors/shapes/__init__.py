@@ -17,20 +17,20 @@ from numpy.typing import NDArray
 
 from ....base.errors import ExperimentError
 from ....base.units import si_factor
+from ...encoder import Array
+from ...limits import HALF
 from ...numbers_in_cells import holds_dates, numbers_of
 from ...record_clock import DATE, FEWEST
 from ...stamps import unit_of_steps, unwrap_stamps
 from .._cells import is_column_of_texts
-from .._log import Array, Log, join_names
-from ._table import SHARED, CellTable, LongSignal, LongTable, as_text, rises, time_of
+from .._log import Log, join_names
+from ._table import CellTable, LongSignal, LongTable, as_text, rises, time_of
 from .clock_before_signals import clock_before_signals
 from .machines import machines_by_time, machines_in_turn
 from .reading_in_each_row import reading_in_each_row
 from .separate_clocks import separate_clocks
 from .two_part_time import two_part_time
 
-#: how regular rows without a clock are held to be: as regular as a clock with half of its steps
-WITHOUT_A_CLOCK = 0.5
 TableShape = Callable[[CellTable], LongTable | None]
 
 
@@ -57,6 +57,8 @@ SHAPES: tuple[TableShape, ...] = (
 def score(long: LongTable, table: CellTable) -> float:
     """Cells of a table that a reading makes numbers of, weighted by how regular its clocks are.
 
+    Rows without a clock are held to be as regular as a clock with half of its steps.
+
     Cells of the long table that stay empty count against it, as do rows too few for a recording.
     """
     if len(next(iter(table.columns.values()), ())) < FEWEST:
@@ -70,7 +72,7 @@ def score(long: LongTable, table: CellTable) -> float:
         if signal.times is not None and signal.clock not in clocks:
             clocks[signal.clock] = _regularity(signal.times)
             numbers += len(signal.times)
-    regular = float(np.mean([*clocks.values()])) if clocks else WITHOUT_A_CLOCK
+    regular = float(np.mean([*clocks.values()])) if clocks else HALF
     return numbers * regular * numbers / max(numbers + empty, 1.0)
 
 
@@ -163,7 +165,7 @@ def _apart_in_time(long: LongTable) -> bool:
     if not ends:
         return True
     shared = min(end for _, end in ends.values()) - max(begin for begin, _ in ends.values())
-    return bool(shared < SHARED * min(end - begin for begin, end in ends.values()))
+    return bool(shared < HALF * min(end - begin for begin, end in ends.values()))
 
 
 def _regularity(times: Array) -> float:

@@ -11,14 +11,12 @@ from numpy.typing import NDArray
 
 from ....base.units import measures
 from ...column_names import likeness, unit_in_name
-from .._log import Array
+from ...encoder import Array
 
 #: rows of a table by which its shape is judged: batches of up to 200 rows of two machines come back
 MOST_ROWS = 1000
 #: fewest rows of each signal among the rows that are judged
 FEWEST_ROWS = 10
-#: part of the shortest signal's time that signals share: else their clocks count apart
-SHARED = 0.5
 #: part of its usual step by which steps of a clock without a name of one may differ: the
 #: coordinates of a body that is seen by a camera also rise for a while, but not so evenly; a
 #: machine that speeds up or turns back differs by more, and so does a ripple of its speed

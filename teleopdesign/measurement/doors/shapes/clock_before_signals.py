@@ -16,7 +16,8 @@ import numpy as np
 
 from ....base.units import measures
 from ...column_names import likeness, unit_of_text
-from .._log import Array, bare_column, join_names
+from ...encoder import Array
+from .._log import bare_column, join_names
 from ._table import AS_EVEN_AS_A_CLOCK, CellTable, LongSignal, LongTable, rises
 
 

@@ -17,21 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...column_names import words_of
+from ...encoder import Array
+from ...limits import HALF, SEVERAL
 from ...row_places import GOES_ON, are_out_of_order
-from .._log import MOST_PARTS, Array, join_names
+from .._log import MOST_PARTS, join_names
 from ._table import FEWEST_ROWS, CellTable, LongSignal, LongTable, as_text, time_of
 
 #: words of the name of a column that names or numbers machines
 NUMBERS_MACHINES = frozenset(
     "id ids no nr num number name motor joint servo axis actuator node device drive can leg".split()
 )
-
-#: part of its changes from row to row that a signal keeps within one machine, and part of the rows
-#: that belong to another machine than the row before: the direction of one machine lasts for rows
-SMOOTHER, EACH_ROW = 0.5, 0.7
-#: returns to an earlier part from which a table is read so: a clock that is set back once or twice
-#: may come to rest there by chance
-FEWEST_RETURNS = 3
 
 
 def machines_in_turn(table: CellTable) -> LongTable | None:
@@ -62,7 +57,7 @@ def machines_by_time(table: CellTable) -> LongTable | None:
         return None
     parts, returns = parts_by_time(table.numeric[time])
     count = int(parts.max(initial=-1)) + 1
-    if returns < FEWEST_RETURNS or returns <= count or count > MOST_PARTS:
+    if returns < SEVERAL or returns <= count or count > MOST_PARTS:
         return None
     names = [f"part {k + 1}" for k in range(count)]
     how = f"told apart by their times: {join_names(names, most=4)}"
@@ -93,7 +88,7 @@ def _run_together(labels: NDArray[np.intp], stamps: Array, signals: Sequence[NDA
         return False
     if int(np.sum(np.diff(stamps)[changes] < 0)) >= len(rows):
         return True
-    in_turn = float(changes.mean()) >= EACH_ROW
+    in_turn = float(changes.mean()) >= HALF
     return in_turn and any(_leaps_between(signal, rows) for signal in signals)
 
 
@@ -102,7 +97,7 @@ def _leaps_between(signal: Array, rows: Sequence[NDArray[np.intp]]) -> bool:
     if not np.all(np.isfinite(signal)):
         return False
     within = sum(float(np.abs(np.diff(signal[r])).sum()) for r in rows)
-    return within < SMOOTHER * float(np.abs(np.diff(signal)).sum())
+    return within < HALF * float(np.abs(np.diff(signal)).sum())
 
 
 def _apart(

@@ -17,19 +17,18 @@ import numpy as np
 
 from ....base.units import si_factor
 from ...column_names import likeness
+from ...encoder import Array
+from ...limits import HALF
 from ...stamps import unwrap_stamps
-from .._log import Array
 from ._table import CellTable, LongSignal, LongTable
 
-#: last words of the names of whole seconds, and of their part with its unit; part of a second that
-#: the parts must reach
+#: last words of the names of whole seconds, and of their part with its unit
 SECONDS = frozenset("s sec secs second seconds".split())
 PARTS = {
     **dict.fromkeys("ns nsec nsecs nanosec nanosecs nanosecond nanoseconds".split(), "ns"),
     **dict.fromkeys("us usec usecs microsec microsecs microsecond microseconds".split(), "us"),
     **dict.fromkeys("ms msec msecs millisec millisecs millisecond milliseconds".split(), "ms"),
 }
-REACH = 0.5
 
 
 def two_part_time(table: CellTable) -> LongTable | None:
@@ -66,7 +65,7 @@ def are_parts_of_time(whole: Array, part: Array, *, per_second: float) -> bool:
     whole, part = unwrap_stamps(whole[filled])[0], part[filled]
     if len(whole) < 2 or not np.array_equal(whole, np.round(whole)):
         return False
-    if part.min() < 0 or part.max() >= per_second or part.max() < REACH * per_second:
+    if part.min() < 0 or part.max() >= per_second or part.max() < HALF * per_second:
         return False
     turns = np.diff(whole)
     return bool(turns.any() and np.all((turns >= 0) & ((turns > 0) | (np.diff(part) >= 0))))

@@ -1,9 +1,15 @@
-"""A plant with all its states as masses, dampers, springs and the states beside them, exactly.
+"""States of systems of python-control, exactly: of plants, and of matrices of transfer functions.
+
+A plant with all its states is masses, dampers, springs and the states beside them:
 
     x' = A x + B u,   y = C x        M y'' + D y' + K y + F z = u,   z' = G z + H y
 
 The states x are y, y' and others, on which u does not act at once. Less a share of y, these are z:
 no state is lost, also none that no force reaches or that no position shows.
+
+If each entry of a matrix had separate states, each would have a copy of a mode that several entries
+share. A second copy of a mode that decays or stays constant does no harm. Of a mode that grows, no
+loop can stabilise more than one copy.
 """
 
 from __future__ import annotations
@@ -11,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -57,19 +64,24 @@ def states_of_plant(system: control.LTI, name: str) -> PlantStates | None:
     shown = _drop_unreached(*_drop_unreached(a, b, c))
     if shown[0].shape == a.shape:
         return None
-    parts = _split(a, b, c)
-    made = [np.array(m.to_Matrix().tolist(), dtype=float).reshape(m.shape) for m in parts]
-    if not all(
-        exact_decimal(x) == e
-        for m, exact in zip(made, parts, strict=True)
-        for x, e in zip(m.ravel(), exact.to_Matrix(), strict=True)
-    ):
-        whole, rest = (sp.Poly(m.charpoly(), _S, domain="QQ") for m in (a, shown[0]))
-        modes = _roots(whole.quo(rest))
+    (mass, damping, stiffness, *rest), are_exact = _as_floats(*_split(a, b, c))
+    if not are_exact:
+        whole, part = (sp.Poly(m.charpoly(), _S, domain="QQ") for m in (a, shown[0]))
+        modes = _roots(whole.quo(part))
         on_axis = modes[modes.real <= _ROUNDING * np.abs(modes)]  # where rounding would decide
         _refuse(name, on_axis, "in numbers that no state space of decimals has")
-    mass, damping, stiffness, rates, driven, forces = made
-    return PlantStates(mass, damping, stiffness, (rates, driven, forces))
+    return PlantStates(mass, damping, stiffness, (rest[0], rest[1], rest[2]))
+
+
+def _as_floats(*matrices: _Matrix) -> tuple[list[np.ndarray], bool]:
+    """The matrices in floats, and whether these, read as decimals, are the same numbers."""
+    made = [np.array(m.to_Matrix().tolist(), dtype=float).reshape(m.shape) for m in matrices]
+    pairs = zip(made, matrices, strict=True)
+    return made, all(
+        exact_decimal(x) == e
+        for m, exact in pairs
+        for x, e in zip(m.ravel(), exact.to_Matrix(), strict=True)
+    )
 
 
 def _drop_unreached(a: _Matrix, b: _Matrix, c: _Matrix) -> tuple[_Matrix, _Matrix, _Matrix]:
@@ -175,3 +187,104 @@ def _refuse(name: str, modes: np.ndarray, where: str) -> None:
             f"{name}: the plant has a mode at {complex(modes[0]):.4g} 1/s that does not decay and "
             f"is not in its transfer functions, {where}"
         )
+
+
+def with_common_modes(
+    system: control.TransferFunction, *, name: str
+) -> control.TransferFunction | control.StateSpace:
+    """The system as a state space if entries share a mode that does not decay; else unchanged.
+
+    raises ModelError: a mode that grows is shared, and the matrices are no decimal numbers
+    """
+    from ..base import python_control as control
+
+    ratios = [
+        [_ratio(p, q) for p, q in zip(*row, strict=True)]
+        for row in zip(system.num, system.den, strict=True)
+    ]
+    discrete = system.isdtime(strict=True)
+    shared = _shared_poles([q for row in ratios for _, q in row])
+    growth = np.abs(shared) - 1 if discrete else shared.real / np.maximum(np.abs(shared), 1.0)
+    if not (growth >= -_ROUNDING).any():
+        return system
+    if any(p.degree() > q.degree() for row in ratios for p, q in row):
+        return system  # improper: refused entry by entry
+    a, b, c, d = _realise_columns(ratios)
+    matrices = (*_drop_hidden(a, b, c), d)
+    if matrices[0].shape[0] == sum(q.degree() for row in ratios for _, q in row):
+        return system  # no state would be less
+    made, are_exact = _as_floats(*matrices)
+    if are_exact:
+        return control.ss(*made, system.dt)
+    if (growth > _ROUNDING).any():
+        pole = shared[int(np.argmax(growth))]
+        raise ModelError(
+            f"{name}: entries share a mode that grows, at {pole:.4g}, and each would have a copy "
+            "of it, which no loop stabilises: pass the system as a state space (control.ss)"
+        )
+    return system
+
+
+def _ratio(above: Sequence[float], below: Sequence[float]) -> tuple[sp.Poly, sp.Poly]:
+    """Coprime numerator and denominator; the denominator is monic."""
+    p, q = (sp.Poly([exact_decimal(x) for x in side], _S, domain="QQ") for side in (above, below))
+    p, q = p.cancel(q, include=True)
+    return p.quo_ground(q.LC()), q.monic()
+
+
+def _shared_poles(denominators: Sequence[sp.Poly]) -> np.ndarray:
+    """Roots that at least two of the denominators share."""
+    every = [
+        sp.gcd(p, q) for k, p in enumerate(denominators) for q in denominators[k + 1 :]
+    ]  # fmt: skip
+    roots = [np.roots([float(c) for c in p.all_coeffs()]) for p in every if p.degree() > 0]
+    return np.concatenate([np.empty(0, dtype=complex), *roots])
+
+
+def _realise_columns(
+    ratios: Sequence[Sequence[tuple[sp.Poly, sp.Poly]]],
+) -> tuple[_Matrix, _Matrix, _Matrix, _Matrix]:
+    """A, B, C, D: the companion form of each column's common denominator, one for each input."""
+    columns = len(ratios[0])
+    below = [reduce(sp.lcm, (row[j][1] for row in ratios)).monic() for j in range(columns)]
+    starts = np.cumsum([0, *(q.degree() for q in below)]).tolist()
+    n, zero = starts[-1], sp.S(0)
+    a, b = [[zero] * n for _ in range(n)], [[zero] * columns for _ in range(n)]
+    c, d = ([[zero] * size for _ in ratios] for size in (n, columns))
+    for j, q in enumerate(below):
+        start, end = starts[j : j + 2]
+        for k in range(start, end - 1):
+            a[k][k + 1] = sp.S(1)
+        if end > start:
+            a[end - 1][start:end] = [-x for x in _rising(q, q.degree())]
+            b[end - 1][j] = sp.S(1)
+        for i, row in enumerate(ratios):
+            p = row[j][0] * q.quo(row[j][1])
+            d[i][j] = p.coeff_monomial(_S ** q.degree())
+            c[i][start:end] = _rising(p - q * d[i][j], q.degree())
+    shapes = ((n, n), (n, columns), (len(ratios), n), (len(ratios), columns))
+    one, two, three, four = map(_exact, (a, b, c, d), shapes)
+    return one, two, three, four
+
+
+def _rising(p: sp.Poly, count: int) -> list[sp.Rational]:
+    """Coefficients of the lowest powers, as many as `count`."""
+    return [p.coeff_monomial(_S**k) for k in range(count)]
+
+
+def _drop_hidden(a: _Matrix, b: _Matrix, c: _Matrix) -> tuple[_Matrix, _Matrix, _Matrix]:
+    """A, B, C without states that no output shows (Kalman), with as many zeros as possible."""
+    rows, pivots = c.rref()
+    while True:
+        shown = rows.extract(list(range(len(pivots))), list(range(a.shape[0])))
+        known = len(pivots)
+        rows, pivots = shown.vstack(shown * a).rref()
+        if len(pivots) == known:
+            break
+    kept = list(pivots)
+    moved, outputs = shown * a, list(range(c.shape[0]))
+    return (
+        moved.extract(list(range(known)), kept),
+        shown * b,
+        c.extract(outputs, kept),
+    )

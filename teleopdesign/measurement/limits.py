@@ -1,0 +1,12 @@
+"""Limits that many judgements of a log share: one number for one reason, wherever it is asked."""
+
+#: a majority, or what is nearer to one of two readings of a log than to the other
+HALF = 0.5
+#: part of some rows, steps or changes that is all of them, but for a start from rest, an end, and
+#: rounding. Lower: what happens by chance passes for a rule; higher: one odd stretch breaks it
+NEARLY_ALL = 0.9
+#: part of a quantity that is small beside it, so that it decides nothing: filters, offsets and
+#: errors of calibration leave as much
+SMALL = 0.1
+#: times from which something is a rule: once or twice, it may be chance
+SEVERAL = 3
