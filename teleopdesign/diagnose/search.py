@@ -139,12 +139,15 @@ def is_rugged(effect: Effect) -> bool:
 
 
 def _sort_elements(best: Solution, prepared: Prepared) -> Solution:
-    """The same solution with the parts of its effects in order.
+    """The solution with the parts of its effects in order, if this leaves no more.
 
     The order decides which parts must be determined, and which may be open.
     """
     model = best.model.in_order()
-    return best if model is best.model else follow_start(model, prepared, EFFORTS.stay)
+    if model is best.model:
+        return best
+    there = follow_start(model, prepared, EFFORTS.rough)
+    return there if squares_of(there) <= (1.0 + PLAN.elsewhere) * squares_of(best) else best
 
 
 def with_parameters_of(model: Model, other: Model) -> Model:
