@@ -67,7 +67,7 @@ parameters = { gain = 1.5 }
 
 DIAGRAM = '''"""Throw-away: a haptic interface in free space."""
 
-from ..haptic_interface import haptic_interface
+from .haptic_interface import haptic_interface
 from ..wiring import Diagram
 
 
