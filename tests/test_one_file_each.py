@@ -1,5 +1,7 @@
-"""An effect, control law, diagram, command, check, theorem or shape of logs is one added file; a
-column of the table of candidates is one line."""
+"""An effect, control law, diagram, command, check, theorem or shape of logs is one added file.
+
+A column of the table of candidates is one line.
+"""
 
 import os
 import shutil

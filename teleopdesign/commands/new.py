@@ -106,10 +106,10 @@ def _add_spans(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Survey the logs, ask, write the folder and a picture of what was understood."""
-    from threadpoolctl import threadpool_limits
+    from ..base.machine import one_thread
 
     import_module("numpy")  # a library is limited when it is there
-    with threadpool_limits(1, user_api="blas"):  # threads that wait take a third more time
+    with one_thread():  # threads that wait take a third more time
         return _run(options)
 
 

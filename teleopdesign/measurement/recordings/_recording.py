@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+#: values (n,) of a column, and their digits after the point
 _Column = tuple[NDArray[np.float64], int]
-"""Values (n,), and their digits after the point."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def _emps(raw: list[Path], folder: Path) -> None:
 
 
 def _hsm150(raw: list[Path], folder: Path) -> None:
-    """_Column 1 is not used; column 4 is the commanded torque, column 5 a noisy measured one."""
+    """Column 1 is not used; column 4 is the commanded torque, column 5 a noisy measured one."""
     from scipy.io import loadmat
 
     for path in raw:
