@@ -37,10 +37,10 @@ def find_missing(
     *,
     progress: Callable[[str], None] | None = None,
     seed: int = 0,
-    plan: SearchPlan = PLAN,
+    plan: SearchPlan | None = None,
     among: Collection[str] | None = None,
     at: Collection[str] | None = None,
-    known: Mapping[str, Effect] = EFFECTS,
+    known: Mapping[str, Effect] | None = None,
 ) -> Diagnosis | BlockDiagnosis:
     """Find the effects that a model of bodies, or a whole diagram, lacks.
 
@@ -48,9 +48,15 @@ def find_missing(
     model: of bodies only; a diagram's values stand in its file
     among: names of candidate effects of bodies; all effects of controller blocks are tried
     at: names of the cuts of a diagram that are compared, such as ("R_A",); None: all
-    known: effects of bodies by name, with those of the user; of a diagram only
+    plan: how wide and how long the search is; None: as is usual
+    known: effects of bodies by name, with those of the user; of a diagram only; None: EFFECTS
     raises ExperimentError, ModelError: the records lack what the comparison needs
+
+        >>> experiment = td.load_experiment(td.example("rod"))
+        >>> td.find_missing(experiment, among=["stribeck", "bias"]).verdict
+        'effects_missing'
     """
+    plan, known = plan or PLAN, EFFECTS if known is None else known
     if isinstance(experiment, Experiment):
         return find_missing_in_bodies(
             experiment, model, progress=progress, seed=seed, plan=plan, among=among

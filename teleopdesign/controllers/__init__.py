@@ -115,6 +115,9 @@ def controller(name: str | ControlLaw, values: Mapping[str, float]) -> Controlle
     name: of a law of the catalogue, "cancel" with parameters of effects such as
         "cogging.amplitude" (as `cancel`), or a user's law (`load_controller`)
     raises ModelError: no such law, or a value that is missing, unknown or out of bounds
+
+        >>> td.controller("dahl", {"level": 1.0, "stiffness": 1e4})
+        Controller dahl(level = 1, stiffness = 10000)
     """
     if isinstance(name, ControlLaw):
         return Controller((Stage(name, values),))

@@ -147,6 +147,14 @@ def all_transfers(diagram: Diagram, *, seconds: float = SECONDS) -> Transfers:
     `two_port_functions`). A device with a linear transmission is two bodies, and the motion of its
     tip is measured. Blocks need not commute. Functions that take longer than `seconds`, or have no
     solution, are listed in `undone`.
+
+        >>> td.derive_transfers(td.haptic_interface(cancellation=td.ANY))
+        Zhat_M = Z_M - C    (L to R_D - R_M: apparent mechanism impedance)
+        L/R_V = (Z_M - C)^-1    (R_V to L)
+        L/R_D = (Z_M - C)^-1    (R_D to L)
+        R_M/R_V = -1    (R_V to R_M)
+        R_M/R_D = 0    (R_D to R_M)
+        R_V/L = Z_M - C    (impedance at R_V, with all other inputs zero)
     """
     transfers: dict[str, Transfer] = {}
     undone: dict[str, str] = {}

@@ -90,6 +90,10 @@ def design(
     Of the laws for C that are certain to be passive, the design has the one with the smaller force
     error.
     raises ModelError: no such body, an assumption that cannot hold, a motion beyond the records
+
+        >>> diagnosis = td.find_missing(td.load_experiment(td.example("rod")), among=["stribeck"])
+        >>> td.design_compensation(diagnosis).cancellation.controller.names()
+        {'dahl.level': 0.491, 'dahl.stiffness': 6810.0}
     """
     if isinstance(diagnosis, BlockDiagnosis):
         diagnosis, place, assumptions = device_of_diagram(diagnosis, place, assumptions)
@@ -286,16 +290,10 @@ def _claims(
     if (of_place := late_force_claim(body, reach, assumptions, late=held)) is not None:
         by_case["MBC"].append(of_place)
     by_case["FF"] = [feedback_claim(body, best.force_feedback.controller)]
+    sampling = sampling_of(assumptions, reach)
     for case, diagram in four_cases(best.prediction.hybrid, every=True).items():
-        by_case[case].append(
-            energy_claim(
-                diagram,
-                best.prediction.motion,
-                reach,
-                sampling_of(assumptions, reach),
-                axis=body.axis,
-            )
-        )
+        claim = energy_claim(diagram, best.prediction.motion, reach, sampling, axis=body.axis)
+        by_case[case].append(claim)
     return {
         case: tuple(use_units_of(body.axis, c) for c in claims) for case, claims in by_case.items()
     }

@@ -81,6 +81,12 @@ def diagram_claims(
     rng: draws the motions of the search, or the seed of the generator that draws them
     search: its settings
     raises ModelError: a block without values, or no port
+
+        >>> device = td.hand(mass=0.2, damping=2.0, stiffness=0.0)
+        >>> loop = td.controller("gain", {"gain": 4.0})
+        >>> claims = td.diagram_claims(td.haptic_interface(device, force_feedback=loop))
+        >>> claims.claims[0].claim.status
+        'proved'
     """
     search, rng = search or Search(), np.random.default_rng(rng)
     whole = drop_absent_effects(diagram)

@@ -70,6 +70,10 @@ def to_iosystem(
         commands ("u_held"), the last position readings ("L_read") and the samples of delay blocks.
     raises ModelError: a block has no laws, a delay block has no `delay_order` (with dt: an analog
         one), an actuator has a dead time, or, with dt, a motion is prescribed, which cannot be held
+
+        >>> device = td.hand(mass=0.2, damping=2.0, stiffness=0.0)
+        >>> td.to_iosystem(td.haptic_interface(device)).input_labels
+        ['R_V', 'R_D']
     """
     diagram = prepare_for_simulation(diagram, give, prescribed)
     if dt is not None:
