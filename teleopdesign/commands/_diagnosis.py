@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError, ModelError, unknown
 from ._arms import inertia_line, joint_of, place_at_pose
-from ._progress import Reporter
-from ._terminal import print_styled
+from ._terminal import Reporter, print_styled
 
 if TYPE_CHECKING:
     from ..block_cuts import DiagramExperiment
