@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ...base.sentences import unit_at_axis, with_standard_error
 from ...base.units import unit_of
 from ..figures.style import CASES, TWO_COLUMNS
-from ..frequency.panels import draw_interval, keep_scale
+from ..frequency.impedance import draw_interval, keep_scale
 from ..registry import shows
 from .headline import headline
 

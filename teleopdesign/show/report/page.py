@@ -24,7 +24,10 @@ from .candidate_table import (
     LadderLine,
     candidate_rows,
     candidate_steps,
+    describe_judgement,
     ladder_lines,
+    sentence_of,
+    verdict,
 )
 from .cannot_tell import cannot_tell
 from .motion import ImpedanceView, MotionOverlay, impedance_views, simulated_motions
@@ -38,7 +41,6 @@ from .parameter_table import (
 )
 from .provenance import ChannelRow, RecordRow, channel_rows, record_rows
 from .residuals import BodyView, body_views
-from .words import describe_judgement, sentence_of, verdict
 
 #: most points of one series of a finding's graph, drawn and in the page's data
 POINTS = 400
