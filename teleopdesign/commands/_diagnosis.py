@@ -208,7 +208,7 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
     returns: the body, the range that its records reached (None without records), and what limits
         of its friction rest on
     """
-    from ..design.stated_motion import reach_of
+    from ..design.assumptions import reach_of
     from ..diagnose import load_answer
 
     if source.suffix == ".json" and not source.is_dir():

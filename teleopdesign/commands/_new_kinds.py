@@ -77,7 +77,7 @@ def make_diagram(
     raises ExperimentError: an option of one body; no such signal or column
     """
     from ..block_cuts import load_experiment, propose_channels
-    from ..block_cuts.new_diagram import make_diagram_folder
+    from ..block_cuts.channel_proposal import make_diagram_folder
     from ..diagrams import read_diagram
 
     if options.diagram is None:

@@ -89,7 +89,7 @@ def _run_diagram(
     diagnosis: BlockDiagnosis, assumptions: Assumptions, options: argparse.Namespace
 ) -> int:
     """Design for a device of a whole diagram, with its computer and its hand."""
-    from ..design.of_diagram import device_of_diagram
+    from ..design.assumptions import device_of_diagram
 
     if options.answer is None:
         print_diagnosis(str(diagnosis))

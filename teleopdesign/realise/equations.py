@@ -27,21 +27,19 @@ from .computer import (
     write_computer,
 )
 from .signal_symbols import (
+    NO_VELOCITY,
     TIME,
     LateSignals,
     acceleration,
+    check_inputs,
     motion_of,
     parameter_names,
-    replace_delays,
-    signal,
-    velocity,
-)
-from .wired_parts import (
-    NO_VELOCITY,
-    check_inputs,
     place_controller,
     refuse_unsimulated,
+    replace_delays,
+    signal,
     sum_inputs,
+    velocity,
 )
 
 _NO_COMMAND = sp.Symbol("no_command", real=True)

@@ -14,8 +14,8 @@ from sympy.polys.polyerrors import PolynomialError
 from ...base.errors import ModelError
 from ...derive.all_states import AllStates, all_states, is_well_posed
 from ...derive.effort import TooMuchEffort, try_within_effort
+from ...derive.linear_rows import Responses
 from ...derive.polynomials import is_hurwitz
-from ...derive.responses import Responses
 from ...diagrams import Diagram
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ...design import Design, ProposedController, TunedControllers
-    from ...design.felt_impedance import FeltImpedance
+    from ...design.prediction import FeltImpedance
 
 
 WIDTH = 100

@@ -20,8 +20,7 @@ from ....controllers import Controller
 from ....derive import has_actuation
 from ....diagrams import Attached, Block, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ....diagrams.junctions import Weight
-from .network import MINUS, Net, Network, Node, join_names
-from .shapes import Run, symbol
+from .shapes import MINUS, Net, Network, Node, Run, join_names, symbol
 
 #: characters of a line, and lines of a box; what is longer is not shown
 LONGEST, MOST = 34, 4
