@@ -16,7 +16,7 @@ from ..controllers import Controller
 from ..diagrams import Control, Diagram, Junction, Moving
 from ..effects.of_blocks.controllers import CONTROL_EFFECTS, ORDER, ControlEffect
 from ..measurement.filtering import Array
-from ..realise.computer import controller_along
+from ..realise.controller_along import controller_along
 from ..realise.kernel import velocity_smoothing
 from .cuts import COMPUTER, Cut
 from .diagram_experiment import DiagramExperiment, RecordedLog, StatedComputer

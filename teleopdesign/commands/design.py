@@ -11,14 +11,7 @@ from ..base.errors import ExperimentError, unknown
 from ..base.files import write_json, write_text
 from ._arms import add_body, inertia_line, joint_of, place_at_pose
 from ._diagnosis import diagnosis_of, experiment_and_answer, print_diagnosis
-from ._options import (
-    add_experiment,
-    add_output,
-    check_output,
-    make_folder,
-    say_written,
-    shell_word,
-)
+from ._options import add_experiment, add_output, check_output, make_folder, say_written, shell_word
 from ._terminal import replace_line
 from ._whole_diagram import diagnosed_diagram
 

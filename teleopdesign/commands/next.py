@@ -11,12 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ..base.errors import ExperimentError, unknown
 from ..base.files import write_beside, write_json
 from ._arms import add_body
-from ._diagnosis import (
-    diagnosis_of,
-    diagnosis_of_part,
-    experiment_and_answer,
-    print_diagnosis,
-)
+from ._diagnosis import diagnosis_of, diagnosis_of_part, experiment_and_answer, print_diagnosis
 from ._options import add_experiment, add_output, value_from
 from ._terminal import replace_line
 from ._whole_diagram import diagnosed_diagram, is_diagram, print_next, print_what_to_log

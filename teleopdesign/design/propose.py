@@ -45,12 +45,7 @@ from .other_effects import (
 from .outcome import Design
 from .prediction import Prediction, felt_impedance, predict
 from .quasi_static import SHARES, residual_friction
-from .verdict import (
-    cancellation_claims,
-    compliant_claim,
-    energy_claim,
-    feedback_claim,
-)
+from .verdict import cancellation_claims, compliant_claim, energy_claim, feedback_claim
 
 #: load of a hand over the inertia of the device, if no load is stated
 LOAD = 3.0

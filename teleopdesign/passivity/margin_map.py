@@ -20,7 +20,7 @@ from ..base.errors import ModelError
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
 from ..derive.all_states import AllStates, all_states
-from ..derive.linear_rows import Responses
+from ..derive.responses import Responses
 from ..diagrams import Diagram
 from ..diagrams.units import unit_of_value
 from ..realise.lti import linear_blocks

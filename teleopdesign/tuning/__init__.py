@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
-    from .limits import CheckedLimit as CheckedLimit
     from .limits import TuningLimit as TuningLimit
     from .limits import limit as limit
+    from .recheck import CheckedLimit as CheckedLimit
     from .simulation_fit import SimulationFit as SimulationFit
     from .simulation_fit import fit_simulation as fit_simulation
     from .trade_off import ParetoFront as ParetoFront

@@ -21,8 +21,8 @@ from ..diagrams import Diagram
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from ..studies.case import SimulatedCase, case_of
-from .limits import recheck
 from .problem import Problem, TrialPoint
+from .recheck import recheck
 from .tune import Tuned, make_tuned, problem_of, search
 
 if TYPE_CHECKING:

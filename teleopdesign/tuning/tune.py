@@ -32,8 +32,9 @@ from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from ..studies.case import SimulatedCase, case_of
 from ..studies.chosen_measures import measures_of
-from .limits import CheckedLimit, limit_of, recheck
+from .limits import limit_of
 from .problem import AT_END, Problem, TrialPoint, box_of_parameters, shares_of, unit_box, values_at
+from .recheck import CheckedLimit, recheck
 
 #: most rounds: after each, the worst point of an interval that the search had not evaluated is
 #: added

@@ -6,7 +6,7 @@ from devices import body
 
 from teleopdesign.controllers import CONTROLLERS, Controller, Stage, controller
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.realise.computer import controller_along
+from teleopdesign.realise.controller_along import controller_along
 from teleopdesign.simulate import Sampling, Trajectory, simulate
 
 PERIOD, W = 1e-3, 30.0

@@ -9,7 +9,7 @@ A passive two-port is absolutely stable. Dead times are exact: e^(-s T) is evalu
 approximated.
 
 Llewellyn, Proc. IRE 40 (1952) 271. His inequality on the axis is one of several conditions;
-`checker/absolute_stability.py` lists all of them.
+`checker/matrices.py` lists all of them.
 """
 
 from __future__ import annotations
@@ -182,7 +182,7 @@ def passive(system: TwoPort) -> Claim:
 def absolutely_stable(system: TwoPort) -> Claim:
     """Is the two-port stable between any passive terminations (Llewellyn, residues on the axis)?
 
-    `checker/absolute_stability.py` contains the statement and its proof.
+    `checker/matrices.py` contains the statement and its proof.
 
     returns: proved; or refuted by a motion that grows by itself between the two passive
         terminations that the verdict names. With dead times: evidence over frequency, or refuted by
