@@ -14,7 +14,7 @@ from __future__ import annotations
 from ...realise.lti import S
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
-from ..two_port.two_port import absolutely_stable, teleoperator_two_port
+from ..two_port import absolutely_stable, teleoperator_two_port
 from ._hypotheses import NonNegative, Real, certificate, require_hypotheses
 from ._theorem import Theorem
 

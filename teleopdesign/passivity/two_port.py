@@ -22,18 +22,18 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...base.arguments import describe_value
-from ...base.errors import ModelError
-from ...base.finding import Graph, Series
-from ...base.frozen import ByValue
-from ...diagrams.control_parts import entry_of
-from ...realise.lti import S
-from ..claims.claim import Claim
-from ..linear.family import Family, family_of_matrix
-from ..linear.impedance import Impedance, exact, impedance, read_expression
-from ..linear.judge import passive_claim, stable_claim
-from ..linear.sweep import passive_margin, stable_margin
-from ..linear.unseen import unseen_modes
+from ..base.arguments import describe_value
+from ..base.errors import ModelError
+from ..base.finding import Graph, Series
+from ..base.frozen import ByValue
+from ..diagrams.control_parts import entry_of
+from ..realise.lti import S
+from .claims.claim import Claim
+from .linear.family import Family, family_of_matrix
+from .linear.impedance import Impedance, exact, impedance, read_expression
+from .linear.judge import passive_claim, stable_claim
+from .linear.sweep import passive_margin, stable_margin
+from .linear.unseen import unseen_modes
 
 
 @dataclass(frozen=True)

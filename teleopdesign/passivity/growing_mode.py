@@ -19,11 +19,11 @@ from fractions import Fraction
 import numpy as np
 import sympy as sp
 
-from ...derive.polynomials import as_poly, is_free_of_growth, roots_of
-from ...realise.lti import S
-from ..linear.conditions import where_it_fails
-from ..linear.family import Family, family_of_matrix
-from ..linear.matrices import (
+from ..derive.polynomials import as_poly, is_free_of_growth, roots_of
+from ..realise.lti import S
+from .linear.conditions import where_it_fails
+from .linear.family import Family, family_of_matrix
+from .linear.matrices import (
     Gaussian,
     close,
     exact_complex,
@@ -33,9 +33,9 @@ from ..linear.matrices import (
     short,
     value_at,
 )
-from ..rate_independent import AbstractRecord
-from ..search.growing_wave import last_part
-from ..search.points import candidates, near_axis, near_poles
+from .rate_independent import AbstractRecord
+from .search.growing_wave import last_part
+from .search.points import candidates, near_axis, near_poles
 
 
 @dataclass(frozen=True)
