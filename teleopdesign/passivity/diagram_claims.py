@@ -275,8 +275,7 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
 
 
 def _acts_alone(control: Control, part: Moving, diagram: Diagram) -> bool:
-    law = control.controller
-    if not isinstance(law, Controller) or len(law.stages) != 1:
+    if len(control.stages) != 1:
         return False
     acts = not any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
     return acts and drives_alone(diagram, control.output, part)

@@ -175,10 +175,9 @@ def check_inputs(diagram: Diagram, motions: list[str]) -> None:
     raises ModelError: with the law and the motion
     """
     for part in diagram.controls:
-        stages = part.controller.stages[:1] if isinstance(part.controller, Controller) else ()
-        if part.input in motions and any(g.law.takes == "force" for g in stages):
+        if part.input in motions and any(g.law.takes == "force" for g in part.stages[:1]):
             raise ModelError(
-                f"{diagram.name}: {part.name}: {stages[0].law.name} takes a force, found the "
+                f"{diagram.name}: {part.name}: {part.stages[0].law.name} takes a force, found the "
                 f'motion "{part.input}": wire its input to the force that is commanded'
             )
 

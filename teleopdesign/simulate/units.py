@@ -34,7 +34,7 @@ def _states(diagram: Diagram) -> dict[str, tuple[str, str]]:
     by_state = {}
     for block in diagram.blocks:
         laws = [(e.name, e.states) for e in getattr(getattr(block, "body", None), "effects", ())]
-        stages = getattr(getattr(block, "controller", None), "stages", ())
+        stages = getattr(block, "stages", ())
         for law, states in (*laws, *((g.name, g.law.states) for g in stages)):
             for state, declared in states.items():
                 name = f"{block.name}_{law}_{state}"

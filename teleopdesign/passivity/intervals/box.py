@@ -42,10 +42,21 @@ class ValueBox:
     low: tuple[float, ...]
     high: tuple[float, ...]
 
+    @staticmethod
+    def of(intervals: Mapping[str, tuple[float, float]]) -> ValueBox:
+        """The box of these intervals: value -> (low, high)."""
+        low, high = (tuple(float(ends[k]) for ends in intervals.values()) for k in (0, 1))
+        return ValueBox(tuple(intervals), low, high)
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Value -> (low, high)."""
+        return dict(zip(self.names, zip(self.low, self.high, strict=True), strict=True))
+
     @property
     def exact(self) -> tuple[tuple[Fraction, Fraction], ...]:
         """The intervals as rational numbers."""
-        ends = zip(self.low, self.high, strict=True)
+        ends = self.intervals.values()
         return tuple(
             (Fraction(str(exact_decimal(a))), Fraction(str(exact_decimal(b)))) for a, b in ends
         )
@@ -57,7 +68,7 @@ class ValueBox:
 
     def vertices(self) -> np.ndarray:
         """Vertices of the box, (m, n): all of them, or the first MOST_VERTICES."""
-        ends = zip(self.low, self.high, strict=True)
+        ends = self.intervals.values()
         listed = [v for v, _ in zip(product(*ends), range(MOST_VERTICES), strict=False)]
         return np.array(listed, dtype=float).reshape(len(listed), len(self.names))
 
@@ -78,9 +89,7 @@ class ValueBox:
 
     def select(self, names: tuple[str, ...]) -> ValueBox:
         """The box of these values alone."""
-        kept = [k for k, n in enumerate(self.names) if n in names]
-        pick = [tuple(x[k] for k in kept) for x in (self.names, self.low, self.high)]
-        return ValueBox(*pick)  # type: ignore[arg-type]
+        return ValueBox.of({n: ends for n, ends in self.intervals.items() if n in names})
 
 
 Status = Literal["proved", "refuted", "evidence", "unknown"]
@@ -157,11 +166,8 @@ def box_of(
         if not all(math.isfinite(x) for x in ends) or ends[0] > ends[1]:
             low, high = map(float, ends)
             raise ModelError(f"{name}: found {low:g} to {high:g}, expected finite low <= high")
-    wide = {n: (float(a), float(b)) for n, (a, b) in intervals.items() if a < b}
+    box = ValueBox.of({n: ends for n, ends in intervals.items() if ends[0] < ends[1]})
     fixed = {n: float(a) for n, (a, b) in intervals.items() if a == b}
-    box = ValueBox(
-        tuple(wide), tuple(a for a, _ in wide.values()), tuple(b for _, b in wide.values())
-    )
     for vertex in box.vertices():  # values that a block refuses are refused here
         diagram.with_values({**fixed, **box.named(vertex)})
     return diagram.with_values({**fixed, **box.named(box.centre)}), box
@@ -291,7 +297,7 @@ def interval_claim(
     statement: str, status: Status, worst: Worst, box: ValueBox, unit: str, how: str, **more: Any
 ) -> IntervalClaim:
     """The claim from its status, its worst point and its words; more: further fields."""
-    ends = {n: (a, b) for n, a, b in zip(box.names, box.low, box.high, strict=True)}
+    ends = box.intervals
     at, nothing = box.named(worst.point), float("nan")
     made = IntervalClaim(
         statement, status, ends, at, worst.margin, unit, nothing, worst.points, how

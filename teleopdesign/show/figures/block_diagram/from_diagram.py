@@ -16,7 +16,6 @@ import sympy as sp
 from sympy.printing.str import StrPrinter
 
 from ....blocks import Body
-from ....controllers import Controller
 from ....derive import has_actuation
 from ....diagrams import Attached, Block, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ....diagrams.junctions import Weight
@@ -272,9 +271,8 @@ def _is_delay(block: Block) -> bool:
 
 def _notes(block: Block) -> tuple[str, ...]:
     if isinstance(block, Control):
-        if not isinstance(block.controller, Controller) or _is_delay(block):
-            return ()
-        return _shorten_names(tuple(stage.law.name for stage in block.controller.stages))
+        laws = () if _is_delay(block) else (stage.law.name for stage in block.stages)
+        return _shorten_names(tuple(laws))
     if not isinstance(block.body, Body):
         return ()
     return _shorten_names(
