@@ -138,7 +138,7 @@ def _cut(diagram: Diagram, signal: str, made: _Traced, recorded: Collection[str]
     if not bodies:
         if not controls:
             return Cut(signal, signal, "wiring", (), inputs)
-        commands = {b.command for b in diagram.blocks if isinstance(b, Moving)}
+        commands = {b.command for b in diagram.moving}
         whole = (COMPUTER,) if signal in commands else ()
         return Cut(signal, signal, "computer", (*names, *whole), inputs, separating)
     moving = [b for b in bodies if isinstance(b, Moving)]

@@ -20,7 +20,7 @@ from ..base.units import unit_of
 from ..block_cuts import BlockDiagnosis
 from ..blocks import NINETY_FIVE
 from ..diagnose import Diagnosis
-from ..diagrams import Attached, Moving
+from ..diagrams import Attached
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..measurement.motion import RARE, TRAVEL
@@ -105,7 +105,7 @@ def device_of_diagram(
     raises ModelError: no such device, or the records do not test it
     """
     experiment, diagram = diagnosis.experiment, diagnosis.experiment.diagram
-    devices = [b for b in diagram.blocks if isinstance(b, Moving) and b.name in diagnosis.bodies]
+    devices = [b for b in diagram.moving if b.name in diagnosis.bodies]
     names = [b.name for b in devices]
     if place is None and len(devices) != 1:
         raise ModelError(f"design: place: expected one of {', '.join(names) or 'none'}")

@@ -118,7 +118,7 @@ def held_signals(
 
 def _command_signals(diagram: Diagram) -> list[str]:
     plants = (c for c in diagram.controls if _is_plant(c, diagram))
-    commands = [part.command for part in diagram.blocks if isinstance(part, Moving)]
+    commands = [part.command for part in diagram.moving]
     return [*commands, *(s for c in plants for s in (c.input, *c.others))]
 
 

@@ -104,7 +104,7 @@ def affine_slopes(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
 class _Builder:
     def __init__(self, diagram: Diagram, prescribed: tuple[str, ...], sampled: bool) -> None:
         self.diagram, self.prescribed, self.sampled = diagram, prescribed, sampled
-        self.moving = [b for b in diagram.blocks if isinstance(b, Moving)]
+        self.moving = diagram.moving
         motions = [b.motion for b in self.moving]
         for motion in prescribed:
             if motion not in motions:

@@ -92,7 +92,7 @@ def _axes(diagram: Diagram) -> dict[str, str]:
         else:
             axis_of |= dict.fromkeys((block.motion, block.force, f"{block.name}_friction"), axis)
     groups: list[tuple[str, ...]]
-    groups = [(b.input, b.output) for b in diagram.blocks if isinstance(b, Control)]
+    groups = [(b.input, b.output) for b in diagram.controls]
     groups += [(b.motion, b.force) for b in diagram.blocks if isinstance(b, Attached)]
     for linked in (b for b in diagram.blocks if isinstance(b, Linked)):
         groups += zip(linked.motions, linked.forces, strict=True)

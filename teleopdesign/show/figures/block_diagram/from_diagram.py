@@ -108,7 +108,7 @@ class _Making:
         return [signal, *(s for s in self.diagram.signals if self.same.get(s) == signal)]
 
     def sources(self) -> None:
-        drivers = {b.driver for b in self.diagram.blocks if isinstance(b, Moving)}
+        drivers = {b.driver for b in self.diagram.moving}
         for signal in self.diagram.outside:
             name, title = f"from {signal}", join_names(self.names(signal))
             self.made.nodes[name] = Node(name, "source", title, driver=signal in drivers)
