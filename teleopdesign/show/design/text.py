@@ -1,7 +1,4 @@
-"""A design as text: proposals with their reasons, predictions, claims, notes.
-
-The figure computes nothing.
-"""
+"""A design as text, proposals with their reasons, predictions, claims, notes; and as a figure."""
 
 from __future__ import annotations
 
