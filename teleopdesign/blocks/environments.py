@@ -23,7 +23,7 @@ from collections.abc import Mapping
 
 from ..effects import BLOCK_EFFECTS, CONTACT_ROLES, EFFECTS
 from .body import Body
-from .environment import CONTACT
+from .body_equation import CONTACT
 from .value import Value
 
 

@@ -26,13 +26,7 @@ from ._controller import (
     Stage,
     parameter_symbol,
 )
-from ._declarations import (
-    broken_declarations,
-    equation_of,
-    has_shape,
-    symbols_of,
-    unknown_symbols,
-)
+from ._declarations import broken_declarations, equation_of, has_shape, symbols_of, unknown_symbols
 from ._exact import exact_decimal, make_exact, resolvent
 from ._from_control import (
     from_control,

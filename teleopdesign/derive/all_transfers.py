@@ -10,7 +10,7 @@ import sympy as sp
 
 from ..base.errors import ModelError, did_you_mean
 from ..base.frozen import ByName, Frozen
-from ..diagrams import AnyBlock, Attached, Control, Diagram, Moving
+from ..diagrams import AnyBlock, Attached, Control, Diagram
 from ..diagrams.short_form import kind_of
 from ..realise.tips import linear_tips
 from .printing import as_latex, as_text, block_symbol, name_as_latex, with_gamma
@@ -172,8 +172,8 @@ def all_transfers(diagram: Diagram, *, seconds: float = SECONDS) -> Transfers:
         for signal, case in _from_outside(diagram, output).items():
             if f"{output}/{signal}" not in transfers:
                 _derive(f"{output}/{signal}", case, transfers, undone, seconds)
-    for block in diagram.blocks:
-        if isinstance(block, Moving) and block.driver in diagram.outside:
+    for block in diagram.moving:
+        if block.driver in diagram.outside:
             text = f"impedance at {block.driver}, with all other inputs zero"
             case = Case(diagram, block.driver, block.motion, block.motion, text)
             _derive(f"{block.driver}/{block.motion}", case, transfers, undone, seconds)

@@ -1,8 +1,4 @@
-"""Frequency response between signals: the symbolic transfer function with values inserted.
-
-From several inputs to several outputs the same equations are solved at each frequency instead: the
-symbolic forms of a diagram of many axes would fill pages.
-"""
+"""Frequency response between signals: the symbolic transfer function with values inserted."""
 
 from __future__ import annotations
 

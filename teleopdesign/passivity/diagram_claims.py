@@ -260,10 +260,8 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
     unchanged on this body and on nothing else. A body whose friction level may be zero has no pair.
     """
     pairs = []
-    for part in diagram.blocks:
-        if not isinstance(part, Moving) or not isinstance(part.body, Body):
-            continue
-        if part.body.level() == 0:
+    for part in diagram.moving:
+        if not isinstance(part.body, Body) or part.body.level() == 0:
             continue
         along = [c for c in diagram.controls if c.input == c.motion == part.motion]
         if len(along) > 1 or not all(_acts_alone(c, part, diagram) for c in along):
@@ -281,8 +279,7 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
 
 
 def _acts_alone(control: Control, part: Moving, diagram: Diagram) -> bool:
-    law = control.controller
-    if not isinstance(law, Controller) or len(law.stages) != 1:
+    if len(control.stages) != 1:
         return False
     acts = not any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
     return acts and drives_alone(diagram, control.output, part)

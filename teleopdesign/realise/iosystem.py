@@ -21,12 +21,10 @@ from ..base.errors import ModelError
 from ..controllers import Controller, Stage, from_control
 from ..diagrams import Control, Diagram, Junction, Kinematics, with_shared_states
 from .equations import Equations, build_equations
-from .laws import needed_steps
-from .private_names import PrivateNames, private_names
+from .laws import PrivateNames, needed_steps, private_names
 from .sampled_iosystem import sampled_iosystem
-from .signal_symbols import TIME, motion_of, signal, velocity
+from .signal_symbols import TIME, motion_of, signal, sum_inputs, velocity
 from .simulated import prepare_for_simulation
-from .wired_parts import sum_inputs
 
 if TYPE_CHECKING:
     import control

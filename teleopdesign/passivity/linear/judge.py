@@ -20,12 +20,10 @@ from ...derive.effort import TooMuchEffort, bounded_effort
 from ...derive.polynomials import X, as_poly, element, where_negative
 from ..claims.certificate import matrix_certificate
 from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown, Verdict
+from ..growing_mode import far_termination, growing_mode
 from ..search.growing_wave import GrowingWave, wave_of
 from ..search.points import candidates, near_axis, near_poles, wave_out_of
-from ..two_port.growing_mode import growing_mode
-from ..two_port.termination import far_termination
-from .box_certificates import KINDS, stability_certificate
-from .conditions import axis_conditions, is_shown
+from .conditions import KINDS, axis_conditions, is_shown, stability_certificate
 from .excess import damping_excess, describe_equality
 from .family import Family, family_of_impedance
 from .impedance import Impedance, MotionKind, impedance, readable
