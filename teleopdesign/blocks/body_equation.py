@@ -27,7 +27,15 @@ import sympy as sp
 
 from ..base.errors import ModelError
 from ..base.frozen import Frozen
-from ..effects import BLOCK_EFFECTS, CONTACT_ROLES, INERTIA, SIGNALS, Effect, sort_by_action
+from ..effects import (
+    BLOCK_EFFECTS,
+    CONTACT_ROLES,
+    INERTIA,
+    SIGNALS,
+    Effect,
+    require_distinct,
+    sort_by_action,
+)
 
 CONTACT = BLOCK_EFFECTS["environment"]
 
@@ -133,7 +141,11 @@ def actuation_of(effects: tuple[Effect, ...], s: sp.Symbol) -> tuple[sp.Expr, tu
 
 @lru_cache(maxsize=256)
 def body_symbols(effects: tuple[Effect, ...]) -> dict[str, sp.Symbol]:
-    """Parameter name -> sympy symbol: "coulomb.level" -> coulomb_level; "inertia" as well."""
+    """Parameter name -> sympy symbol: "coulomb.level" -> coulomb_level; "inertia" as well.
+
+    raises ModelError: two names have one symbol
+    """
+    require_distinct((f"{e.name}.{n}" for e in effects for n in (*e.parameters, *e.states)), "body")
     of_effects = {f"{e.name}.{n}": s for e in effects for n, s in e.symbols().items()}
     return {"inertia": INERTIA, **of_effects}
 

@@ -17,11 +17,12 @@ import numpy as np
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..base.sentences import round_down, round_near, round_up
+from ..base.sentences import join_names, round_down, round_near, round_up
 from ..base.units import unit_of
 from ..blocks import Body, Value
 from ..controllers import Controller
 from ..diagrams import Diagram, haptic_interface
+from ..effects import delayed
 from ..frequency.frozen_friction import without_friction
 from ..passivity import (
     Claim,
@@ -171,18 +172,22 @@ def _friction_claims(
 def feedback_claim(body: Body, force_feedback: Controller) -> Claim:
     """Claim on passivity of the device's linear part under continuous, undelayed feedback.
 
-    The coefficients of its impedance have six digits, as they are printed.
+    It names what it leaves out. The coefficients of its impedance have six digits, as they are
+    printed.
     """
     plain = without_friction(body)
-    for effect in [e for e in plain.effects if e.role in ("actuation", "structure", "contact")]:
-        plain = plain.without_effect(effect.name)
+    beside = [e for e in plain.effects if e.role in ("actuation", "structure", "contact")]
+    gone = [e.name for e in beside if not e.linear or e.expression().atoms(delayed)]
+    for name in gone:
+        plain = plain.without_effect(name)
     port, _ = hand_port(haptic_interface(plain, force_feedback=force_feedback))
     above, below = (
         sp.Poly([exact(round_near(float(c), digits=6)) for c in poly.all_coeffs()], S)
         for poly in (port.p, port.q)
     )
     claim = positive_real(above.as_expr() / below.as_expr())
-    return replace(claim, statement=f"without friction, sampling and delay {claim.statement}")
+    without = join_names(["friction", "sampling", "delay", *gone])
+    return replace(claim, statement=f"without {without} {claim.statement}")
 
 
 def _decimal(value: float) -> str:

@@ -5,14 +5,14 @@ What shares one motion is on one axis: a radian is no metre.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import inf
 from typing import TYPE_CHECKING
 
 from ..base.errors import ModelError
 from ..base.units import unit_of
 from ..blocks import Body
-from ..effects import Parameter
+from ..effects import Parameter, require_distinct
 from .junctions import Junction, Kinematics
 from .parts import AnyBlock, Attached, Block, Control, Moving
 
@@ -51,6 +51,27 @@ def bounds_of_value(diagram: Diagram, name: str) -> tuple[float, float]:
     """Least and largest value of a parameter; infinite where its block states none."""
     declared = declaration_of(diagram, name)
     return (-inf, inf) if declared is None else (declared.lower, declared.upper)
+
+
+def require_distinct_names(name: str, blocks: Sequence[Block]) -> None:
+    """Refuse parameters and states of blocks that have one symbol.
+
+    name: of the diagram;  raises ModelError: with the two
+    """
+    require_distinct((n for block in blocks for n in _values_and_states(block)), name)
+
+
+def _values_and_states(block: Block) -> Iterator[str]:
+    """Full names of the parameters and hidden states of a block, "Z_M.presliding.bristle"."""
+    if isinstance(block, Control):
+        if not isinstance(block.controller, AnyBlock):
+            yield from (f"{block.name}.{n}" for n in block.controller.names())
+            for stage in block.controller.stages:
+                yield from (f"{block.name}.{stage.name}.{s}" for s in stage.law.states)
+    elif isinstance(block.body, Body):
+        yield from (f"{block.name}.{n}" for n in block.body.parameters)
+        for effect in block.body.effects:
+            yield from (f"{block.name}.{effect.name}.{s}" for s in effect.states)
 
 
 def require_one_axis(

@@ -30,7 +30,7 @@ from .parts import (
     list_laws,
     write_equation,
 )
-from .units import require_one_axis
+from .units import require_distinct_names, require_one_axis
 
 
 @check_types
@@ -88,6 +88,7 @@ class Diagram:
                     f"{did_you_mean(signal, made)}"
                 )
         require_one_axis(self.name, self.blocks, self.kinematics, self.junctions)
+        require_distinct_names(self.name, self.blocks)
         for name in ("outside", "texts", "pose"):
             object.__setattr__(self, name, Frozen(getattr(self, name)))
 
@@ -273,11 +274,9 @@ class Diagram:
         return html_table(f"Diagram {self.name}", ("part", "equation", "content"), rows, note=note)
 
     def __repr__(self) -> str:
-        lines = [f"Diagram {self.name}"]
-        for part in self.parts:
-            lines.append(f"  {write_equation(part)}")
-        lines.append(f"  from outside: {', '.join(self.outside)}")
-        return "\n".join(lines)
+        lines = (f"  {write_equation(part)}" for part in self.parts)
+        outside = f"  from outside: {', '.join(self.outside)}"
+        return "\n".join((f"Diagram {self.name}", *lines, outside))
 
 
 def _prune(diagram: Diagram) -> Diagram:

@@ -40,6 +40,7 @@ from ._effect import (
 from ._facts import RecordFacts, repeats_within_travel
 from ._linear import acts_linearly, is_linear
 from ._position import depends_on_position, depends_on_time, period
+from ._signals import require_distinct
 from ._structure import make_rubbing_structure, make_structure, make_touching_structure
 
 __all__ = [
@@ -70,6 +71,7 @@ __all__ = [
     "parameter_symbol",
     "period",
     "repeats_within_travel",
+    "require_distinct",
     "make_rubbing_structure",
     "make_touching_structure",
     "with_block_effects",

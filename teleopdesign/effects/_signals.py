@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache
 
 import sympy as sp
+
+from ..base.errors import ModelError
 
 
 @cache
@@ -14,6 +17,18 @@ def parameter_symbol(effect: str, parameter: str) -> sp.Symbol:
     One object for each pair of names: dictionaries find the same object without a comparison.
     """
     return sp.Symbol(f"{effect}_{parameter}", real=True)
+
+
+def require_distinct(names: Iterable[str], where: str) -> None:
+    """Refuse names that make one symbol, such as "my.load_size" and "my_load.size".
+
+    raises ModelError: with the two
+    """
+    known: dict[str, str] = {}
+    for name in names:
+        other = known.setdefault(name.replace(".", "_"), name)
+        if other != name:
+            raise ModelError(f"{where}: {other} and {name} have one symbol: give one another name")
 
 
 #: symbols that a law may use; `direction` is sgn(velocity), `command` the input of an actuation

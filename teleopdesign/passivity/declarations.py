@@ -9,7 +9,7 @@ as `law_facts` says. What could not be derived leaves a claim open, and the clai
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -126,7 +126,8 @@ def _missing_step(effect: Effect, body: Body, reach: Reach | None, errors: float
             for now in at_rest
         )
 
-    missing = [_missing_of_storage(inertia, *way, least=least) for way in ways]
+    signals = {*SIGNALS.values(), *moving, _DEFLECTION}
+    missing = [_missing_of_storage(inertia, *way, signals=signals, least=least) for way in ways]
     return "" if "" in missing else missing[0]
 
 
@@ -135,6 +136,7 @@ def _missing_of_storage(
     force: sp.Expr,
     rates: Mapping[sp.Symbol, sp.Expr],
     *,
+    signals: Collection[sp.Symbol],
     least: Callable[[sp.Expr], float],
 ) -> str:
     """What is missing of a storage function V = m v^2/2 + U(x) + sum of V_i(z_i), in words.
@@ -144,12 +146,13 @@ def _missing_of_storage(
 
         F v - dV/dt = (F - m a - U' - sum V_i') v + sum V_i' (v - r_i) >= 0
 
+    signals: all that moves; the rest are parameters
     least: a bound that an expression is never below
     """
     by_state: dict[sp.Symbol, sp.Expr] = dict.fromkeys(rates, sp.S(0))
-    by_place, signals = sp.S(0), {*SIGNALS.values(), *rates}
+    by_place = sp.S(0)
     for term in sp.Add.make_args(sp.expand(force)):
-        used = term.free_symbols & signals
+        used = term.free_symbols & set(signals)
         if used <= {_X}:
             by_place += term
         elif len(used) == 1 and used <= by_state.keys():

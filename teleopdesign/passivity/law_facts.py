@@ -178,8 +178,11 @@ def _size(z: sp.Symbol, cases: set[sp.Expr], bound: float, *, steps: bool) -> sp
 
     def keeps(case: sp.Expr, size: sp.Expr) -> bool:
         """Whether the next value is within a size, or the rate leads inward at both its ends."""
+        if steps and size != 0:
+            return _stays_within_one(_scale(case.subs(z, size * share), 1 / size))
         if steps:
-            return _stays_within_one(_scale(case.subs(z, size * share), 1 / (size or sp.S(1))))
+            after = case.subs(z, 0)
+            return all(is_never_negative(way * after, _ranges(after)) for way in (1, -1))
         ends = (-way * case.subs(z, way * size) for way in (1, -1))
         return all(is_never_negative(end, _ranges(end)) for end in ends)
 

@@ -15,6 +15,7 @@ import sympy as sp
 from ..base.errors import ModelError
 from ..blocks import Body
 from ..effects import SIGNALS, Effect, delayed, sort_by_action
+from .extremes import Ranges
 from .friction_interval import DIRECTION, SPEED, Interval, lowest_of, parameter_box, stays_within
 from .reach import Reach, signal_ranges
 from .simulated import without_absent
@@ -90,18 +91,25 @@ def largest_acting_force(
     box = signal_ranges(reach) | parameter_box(body, errors=errors)
     largest = command
     for effect in sort_by_action(body.effects, "actuation"):
-        # delayed signals and states of a stage lie in the same range
-        law = effect.expression().replace(delayed, lambda signal, _: signal)
-        states = effect.state_symbols().values()
+        law, states = effect.expression(), effect.state_symbols().values()
+        # states of a stage lie in the range of the command
         within = dict.fromkeys((SIGNALS["command"], *states), (-largest, largest))
+
+        def largest_of(signal: sp.Expr, within: Ranges = within) -> float:
+            ends = (
+                lowest_of(body, way * signal, reach, errors=errors, ranges=within)[0].low
+                for way in (1, -1)
+            )
+            return max(map(abs, ends))
+
         try:
             if not all(stays_within(effect, s, box | within) for s in states):
                 return math.inf
-            ends = [
-                lowest_of(body, way * law, reach, errors=errors, ranges=within)[0].low
-                for way in (1, -1)
-            ]
+            # a delayed signal is another value of its range
+            for one in sorted(law.atoms(delayed), key=sp.count_ops):
+                size, late = largest_of(one.args[0]), sp.Dummy(real=True)
+                law, within = law.subs(one, late), {**within, late: (-size, size)}
+            largest = largest_of(law, within)
         except ModelError:
             return math.inf
-        largest = max(abs(x) for x in ends)
     return largest

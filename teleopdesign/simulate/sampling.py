@@ -59,5 +59,10 @@ class Sampling:
         """Order of the velocity observer; 0: no observer."""
         return self.observer_order if self.velocity == "observer" else 0
 
+    @property
+    def takes_differences(self) -> bool:
+        """Whether the velocity is the difference of two readings over the period."""
+        return self.velocity != "observer" and self.velocity_bandwidth == float("inf")
+
 
 SAMPLED = Sampling()

@@ -178,7 +178,9 @@ def _passivity(point: Point, *, stroke: float, speed: float, tries: int) -> Any:
     whole = [s for s in claims if s.topic in WHOLE]
     order = ("refuted", "unknown", "evidence", "proved")
     settling = [*whole, *searched] if whole else claims
-    chosen = min((s.claim for s in settling), key=lambda claim: order.index(claim.status))
+    # what refutes any law of a bound need not refute this one
+    own = (s.claim for s in settling if s.refutes or s.claim.status != "refuted")
+    chosen = min(own, key=lambda claim: order.index(claim.status))
     return _amounts_of_claim(chosen, "passivity")
 
 

@@ -91,6 +91,8 @@ def judge_late(
 _STEPS, _NEWTON = 20, 3
 #: of the distance of a zero from the axis: no other zero is nearer than this
 _SHARE = 0.999
+#: over the shortest dead time: no first zero is searched further from the axis
+_REACH = 1e3
 #: most minima of abs(f) along the axis from which a search for zeros starts
 _LOWEST = 12
 
@@ -127,17 +129,33 @@ def slowest_decay(terms: Terms) -> float:
     zeros to the right of it then confirms it, or finds by halving how far zeros come.
     """
     rate = -max(rightmost_root(terms).real, chain_rate(terms))
-    if rate <= 0 or np.isinf(rate):
-        return rate if rate <= 0 or not count_growing(terms) else -np.inf
-    if not count_growing(_move_axis(terms, _SHARE * rate)):
+    if rate <= 0:
         return rate
-    low, high = 0.0, rate
+    if not np.isinf(rate) and not count_growing(_move_axis(terms, _SHARE * rate)):
+        return rate
     if count_growing(terms):
         return -np.inf
-    while high - low > (1 - _SHARE) * rate:
+    if np.isinf(rate):  # the search reached no zero: how far from the axis is the first?
+        rate = _first_zero_within(terms)
+    low, high = 0.0, rate
+    while np.isfinite(high) and high - low > (1 - _SHARE) * high:
         middle = (low + high) / 2
         low, high = (low, middle) if count_growing(_move_axis(terms, middle)) else (middle, high)
     return low
+
+
+def _first_zero_within(terms: Terms) -> float:
+    """A distance from the axis within which there is a zero, 1/s; inf: within _REACH there is none.
+
+    Only a polynomial of degree 0 without dead times has no zero at all.
+    """
+    if max(map(len, terms.values())) == 1 and not any(terms):
+        return np.inf
+    shortest = min((t for t in terms if t > 0), default=1.0)
+    for rate in np.geomspace(1e-6, _REACH, 60) / shortest:
+        if count_growing(_move_axis(terms, float(rate))):
+            return float(rate)
+    return np.inf
 
 
 def _move_axis(terms: Terms, right: float) -> Terms:

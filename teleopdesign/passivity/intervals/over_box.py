@@ -12,7 +12,7 @@ middle.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -25,6 +25,7 @@ from ...derive.effort import TooMuchEffort, bounded_effort
 from ...diagrams import Diagram
 from ...diagrams.units import first_axis, unit_of_value
 from ..claims.claim import use_rotary_units
+from ..declarations import is_shipped
 from ..diagram_claims import FrictionPair, composed_claim, friction_pairs, pair_claims
 from ..linear.conditions import is_shown
 from ..linear.family import family_of_states
@@ -129,13 +130,14 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> IntervalClaim:
         here = drop_absent_effects(middle.with_values(box.named(point)))
         pairs = friction_pairs(here)
         composed = composed_claim(here, ports(here), pairs)
-        others = [one.claim for pair in pairs for one in pair_claims(pair, simulated=False)]
+        others = [one for pair in pairs for one in pair_claims(pair, simulated=False)]
+        others = others if _is_all_friction(here, pairs) else []
         answers.append((point, composed.claim if composed else None, others))
     worst = Worst(box.centre, float("nan"), len(points))
     statement = f"its ports are {'together ' * (claim == 'passive')}{claim}"
     for point, whole, others in answers:
         # what takes energy out of friction at one port need not make any termination unstable
-        against = [c for c in others if c.status == "refuted" and claim == "passive"]
+        against = [one.claim for one in others if one.refutes and claim == "passive"]
         if whole is None and against:
             how = f"{against[0].statement}: {against[0].verdict}"
             there = replace(worst, point=point)
@@ -153,13 +155,23 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> IntervalClaim:
     return interval_claim(statement, "evidence", worst, box, "", how, at_worst=answers[-1][1])
 
 
+def _is_all_friction(diagram: Diagram, pairs: Sequence[FrictionPair]) -> bool:
+    """Whether a slow motion of one port loses energy in one pair of friction alone."""
+    if len(pairs) != 1 or all(p.motion != pairs[0].body.motion for p in ports(diagram)):
+        return False
+    gone = [c.name for c in (pairs[0].cancellation,) if c is not None]
+    return not nonlinear_parts(without_friction(diagram, pairs[0].body.motion, *gone))
+
+
 def _vertices_decide(middle: Diagram, box: ValueBox) -> bool:
     """Whether the two conditions, and so the vertices, decide for all values of friction."""
     for pair in friction_pairs(drop_absent_effects(middle)):
         body, law = pair.body.body, pair.cancellation
         assert isinstance(body, Body)
-        effects = {e.name for e in body.effects if e.role.startswith("friction")}
-        if not effects <= set(_FRICTION) or body.parameters.get("presliding.bristle_damping"):
+        effects = [e for e in body.effects if e.role.startswith("friction")]
+        if not all(e.name in _FRICTION and is_shipped(e) for e in effects):
+            return False
+        if body.parameters.get("presliding.bristle_damping"):
             return False
         if law is None:
             continue

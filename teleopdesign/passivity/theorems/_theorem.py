@@ -103,6 +103,8 @@ class TopicClaim(ByValue):
     spends_damping: whether the proof uses the viscous damping of the device; no second proof of the
         same sum of parts may then use it
     time: of the controllers: "sampled", "continuous", or "any" where the claim holds for both
+    of_any_law: whether it is about any law within a bound: another law than that of the question
+        may then be the one that refutes it
     """
 
     topic: str
@@ -111,6 +113,12 @@ class TopicClaim(ByValue):
     motion: SimulatedMotion | None = None
     spends_damping: bool = False
     time: Time = "continuous"
+    of_any_law: bool = False
+
+    @property
+    def refutes(self) -> bool:
+        """Whether what refutes the claim is the law of its question, whatever else damps."""
+        return self.claim.status == "refuted" and not (self.of_any_law or self.spends_damping)
 
     @classmethod
     def from_search(

@@ -85,8 +85,8 @@ def _claims(question: Question) -> list[TopicClaim]:
         claim = Claim("no law within the friction level drives a motion", Unknown(why))
     else:
         claim = bounded_compensation(coulomb_level=device.lowest.low, bound=acting)
-    claims = [TopicClaim("any law within the level", claim, time=time)]
-    if not question.estimates:
+    claims = [TopicClaim("any law within the level", claim, time=time, of_any_law=True)]
+    if not question.estimates or math.isinf(acting):
         return claims
     least, unit = device.least_resistance.low, device.force_unit.replace("*", " ")
     statement = (
@@ -97,7 +97,8 @@ def _claims(question: Question) -> list[TopicClaim]:
         f"interval arithmetic: the resistance is at least {least:.4g} {unit} in the 95 % interval"
     )
     verdict = Evidence(least >= acting, searched, least - acting, unit)
-    return [*claims, TopicClaim("the same, with damping", Claim(statement, verdict))]
+    damped = Claim(statement, verdict)
+    return [*claims, TopicClaim("the same, with damping", damped, of_any_law=True)]
 
 
 def _covers(question: Question) -> Sequence[str]:

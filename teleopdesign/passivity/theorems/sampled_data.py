@@ -27,7 +27,7 @@ import sympy as sp
 from ...base.errors import ModelError
 from ...controllers import from_control
 from ...realise.lti import S
-from ..claims.claim import Claim, Proof
+from ..claims.claim import Claim, Proof, Unknown
 from ..linear.excess import damping_excess
 from ..linear.family import family_of_impedance
 from ..linear.impedance import Impedance, decimal, exact, impedance, read_expression, readable
@@ -187,6 +187,9 @@ def _claims(question: Question) -> list[TopicClaim]:
         law = sp.Float(wall.stiffness) + sp.Float(wall.damping) * (Z - 1) / (period * Z)
         law = law * Z**-question.late
         claim = sampled_passivity(law, damping=device.damping.low, sample_time=period)
+        if wall.damping and not computer.takes_differences:
+            why = "the theorem takes the velocity of the wall from the difference of two readings"
+            claim = Claim(claim.statement, Unknown(why))
         claims.append(TopicClaim("virtual wall, damping alone", claim, time="sampled"))
     if question.bristle is not None and device.presliding is not None:
         claim = sampled_passivity(

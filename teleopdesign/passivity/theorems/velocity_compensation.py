@@ -219,11 +219,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     device, law, computer = question.device, question.law, question.computer
     if law.smoothing is None or question.late is None:
         return []
-    if computer is not None and (
-        computer.velocity == "observer"
-        or math.isfinite(computer.velocity_bandwidth)
-        or computer.encoder_step
-    ):
+    if computer is not None and (computer.encoder_step or not computer.takes_differences):
         return []
     topic = "law of velocity, with damping"
     if device.bristle_damping.high > 0:
