@@ -96,6 +96,16 @@ def compensation_claims(
     return [*settle(Question(device, compensator.stage, computer=computer)), by_search]
 
 
+def _largest_command(device: IdentifiedDevice, force: float) -> float:
+    """The largest command whose acting force is known to stay within a force, N."""
+    command = force
+    for _ in range(10):  # one is enough where the actuation is linear
+        if (acting := device.acting_force(command)) <= force:
+            return command
+        command *= force / acting
+    return 0.0
+
+
 def margins(device: IdentifiedDevice, compensator: Compensator | None = None) -> Sequence[Margin]:
     """Limits of design values within which the pair is passive.
 
@@ -105,14 +115,18 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     if device.basis is not None and device.basis.is_open:
         return []  # friction may be less than any model of the records says
     force, stiff = device.force_unit, device.stiffness_unit
-    alone = f", for friction without {', '.join(device.set_aside)}" if device.set_aside else ""
+    lowest, presliding = device.lowest, device.presliding
+    # what the actuation makes of a command is bounded, and beside ideal friction that is enough
+    acts = presliding is None and math.isfinite(device.acting_force(lowest.low))
+    left = [n for n in device.set_aside if not (acts and n in device.actuation)]
+    alone = f", for friction without {', '.join(left)}" if left else ""
 
     def level(text: str, limit: float) -> Margin:
         """An upper limit of the level, rounded down to the digits of claims."""
         text = f"largest compensator level f_D {text}{alone}"
+        limit = _largest_command(device, limit) if acts else limit
         return Margin(text, round_down(limit, digits=DIGITS), force)
 
-    lowest, presliding = device.lowest, device.presliding
     if device.basis is not None and not device.basis.is_adequate:
         # what is unexplained is in no estimate, nor in the damping
         return [level("for passivity in the covered cells", lowest.low)]

@@ -38,7 +38,7 @@ class ZWidth(ByValue):
     wall_damping: B, N s/m, (n,)
     stiffness: largest passive K >= 0, N/m, (n,); NaN where no K >= 0 is passive
     damping: b of the device, N s/m;  inertia: of the device, kg;  sample_time: T, s
-    verified: whether the exact test confirms each limit, just inside and just outside
+    verified: whether there are limits, and the exact test confirms each, just inside and outside
     """
 
     wall_damping: np.ndarray
@@ -50,7 +50,9 @@ class ZWidth(ByValue):
 
     @property
     def stiffest(self) -> tuple[float, float]:
-        """(K, B) of the stiffest passive wall, N/m and N s/m."""
+        """(K, B) of the stiffest passive wall, N/m and N s/m; NaN where no wall is passive."""
+        if np.isnan(self.stiffness).all():
+            return float("nan"), float("nan")
         k = int(np.nanargmax(self.stiffness))
         return float(self.stiffness[k]), float(self.wall_damping[k])
 
@@ -97,7 +99,7 @@ def z_width(
     grid = np.linspace(0, float(b), 21) if wall_damping is None else np.asarray(wall_damping, float)
     per_stiffness, per_damping = _shares(law, late)
     largest = np.array([_largest(per_stiffness, per_damping * x, float(b)) for x in grid])
-    verified = all(
+    verified = bool(np.isfinite(largest).any()) and all(
         _agrees(law, b, late, exact(float(x)), float(k))
         for x, k in zip(grid, largest, strict=True)
         if np.isfinite(k)
