@@ -114,7 +114,7 @@ def plot_margin_map(margins: MarginMap) -> matplotlib.figure.Figure:
     first, second = map(str, margin.dims)
     x, y = (margins.data[n].values for n in (second, first))
     shown = np.clip(margin.values, -_LARGEST, _LARGEST)
-    figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN), layout="constrained")
+    figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN))
     colours = axes.pcolormesh(x, y, shown, cmap="RdBu", vmin=-_LARGEST, vmax=_LARGEST)
     if shown.min() < 0 < shown.max():
         axes.contour(x, y, shown, levels=[0.0], colors="black")

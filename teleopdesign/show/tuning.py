@@ -101,7 +101,7 @@ def plot_pareto(front: ParetoFront) -> matplotlib.figure.Figure:
     import matplotlib.pyplot as plt
 
     x, y = front.objectives.T
-    figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN), layout="constrained")
+    figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN))
     axes.plot(*front.evaluated.T, ".", color=GREY, markersize=2.5, label="keeps the limits")
     axes.step(*front.evaluated_best.T, where="post", color=BEST, label="best found")
     axes.plot(x, y, "o", color=BEST, markersize=4, zorder=3, label="limits checked again")
@@ -185,7 +185,6 @@ def plot_simulation_fit(fitted: SimulationFit) -> matplotlib.figure.Figure:
         squeeze=False,
         figsize=(ONE_COLUMN, 0.6 + 2.1 * len(names)),
         height_ratios=[2, 1] * len(names),
-        layout="constrained",
     )
     for k, name in enumerate(names):
         above, below = axes[2 * k, 0], axes[2 * k + 1, 0]

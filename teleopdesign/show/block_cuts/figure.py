@@ -158,7 +158,6 @@ def plot_residuals(diagnosis: BlockDiagnosis) -> Figure:
         sharey="row",
         figsize=(TWO_COLUMNS, 1.9 * max(len(cuts), 1)),
         squeeze=False,
-        layout="constrained",
     )
     if data is None or ladder is None:
         return page

@@ -22,7 +22,7 @@ from ..figures.diagnosis import (
     label_of,
 )
 from ..figures.friction_curve import draw_friction_curve
-from ..figures.style import AFTER, BEFORE, MEASURED, TWO_COLUMNS, house_style
+from ..figures.style import AFTER, BEFORE, MEASURED, TWO_COLUMNS
 from ..registry import shows
 
 if TYPE_CHECKING:
@@ -41,25 +41,23 @@ def plot_comparison(comparison: Comparison, *, before: Comparison | None = None)
     if before is not None and not comparison.prepared.is_curve:
         return _plot_change(before, comparison)
     if comparison.prepared.is_curve:
-        with plt.style.context(house_style()):
-            figure, axes = plt.subplots(1, 2, figsize=(7.16, 2.9))
-            recording = DiagnosedRecording(stated=comparison.prepared.experiment)
-            fit = recording.evaluate(comparison.model)
-            draw_friction_curve(axes[0], comparison.prepared, {"model": (fit, AFTER)})
-            draw_by_direction(axes[1], comparison.data, "velocity")
-            direction_legend(axes[1])
+        figure, axes = plt.subplots(1, 2, figsize=(7.16, 2.9))
+        recording = DiagnosedRecording(stated=comparison.prepared.experiment)
+        fit = recording.evaluate(comparison.model)
+        draw_friction_curve(axes[0], comparison.prepared, {"model": (fit, AFTER)})
+        draw_by_direction(axes[1], comparison.data, "velocity")
+        direction_legend(axes[1])
         return figure
     data = check_rows(comparison.data)
-    with plt.style.context(house_style()):
-        figure, axes = plt.subplots(2, 2, figsize=(7.16, 4.6))
-        draw_over_time(axes[0, 0], data, "measured", MEASURED, "measured", 1.4)
-        draw_over_time(axes[0, 0], data, "model", AFTER, "model", 0.7)
-        force_axes(axes[0, 0], data)
-        draw_over_time(axes[0, 1], data, "residual", AFTER, "residual", 0.7)
-        axes[0, 1].set(xlabel=label_of(data, "time"), ylabel=label_of(data, "residual"))
-        draw_by_direction(axes[1, 0], data, "velocity")
-        draw_by_direction(axes[1, 1], data, "position")
-        direction_legend(axes[1, 0])
+    figure, axes = plt.subplots(2, 2, figsize=(7.16, 4.6))
+    draw_over_time(axes[0, 0], data, "measured", MEASURED, "measured", 1.4)
+    draw_over_time(axes[0, 0], data, "model", AFTER, "model", 0.7)
+    force_axes(axes[0, 0], data)
+    draw_over_time(axes[0, 1], data, "residual", AFTER, "residual", 0.7)
+    axes[0, 1].set(xlabel=label_of(data, "time"), ylabel=label_of(data, "residual"))
+    draw_by_direction(axes[1, 0], data, "velocity")
+    draw_by_direction(axes[1, 1], data, "position")
+    direction_legend(axes[1, 0])
     return figure
 
 
@@ -71,25 +69,24 @@ def _plot_change(before: Comparison, after: Comparison) -> Figure:
     bodies = [one.model.body(at) for one in (before, after)]
     carrier = carrier_of_change(*bodies)
     rows = [with_carrier(check_rows(one.data), carrier, bodies[1].axis) for one in (before, after)]
-    with plt.style.context(house_style()):
-        figure, axes = plt.subplot_mosaic("ft;ba", figsize=(7.16, 4.6))
-        draw_over_time(axes["f"], rows[0], "measured", MEASURED, "measured", 2.0)
-        for data, word, colour in zip(rows, ("before", "after"), (BEFORE, AFTER), strict=True):
-            draw_over_time(axes["f"], data, "model", colour, word, 0.6)
-            draw_over_time(axes["t"], data, "residual", colour, word, 0.7)
-            panel = axes[word[0]]
-            draw_by_direction(panel, data, "carrier")
-            panel.set_ylabel(label_of(data, "residual").replace("residual", f"residual {word}"))
-        force_axes(axes["f"], rows[0])
-        axes["t"].set(xlabel=label_of(rows[0], "time"), ylabel=label_of(rows[0], "residual"))
-        axes["t"].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
-        ends = [axes[name].get_ylim() for name in "ba"]
-        direction_legend(axes["b"])
-        for one, name in ((before, "b"), (after, "a")):
-            errors = {"check error": one.check_error, "fit error": one.fit_error}
-            word, error = next((w, e) for w, e in errors.items() if e == e)
-            axes[name].set_ylim(min(e[0] for e in ends), max(e[1] for e in ends))
-            axes[name].set_title(f"{word} {100 * error:.2f} %", loc="left", fontsize=7, pad=3)
+    figure, axes = plt.subplot_mosaic("ft;ba", figsize=(7.16, 4.6))
+    draw_over_time(axes["f"], rows[0], "measured", MEASURED, "measured", 2.0)
+    for data, word, colour in zip(rows, ("before", "after"), (BEFORE, AFTER), strict=True):
+        draw_over_time(axes["f"], data, "model", colour, word, 0.6)
+        draw_over_time(axes["t"], data, "residual", colour, word, 0.7)
+        panel = axes[word[0]]
+        draw_by_direction(panel, data, "carrier")
+        panel.set_ylabel(label_of(data, "residual").replace("residual", f"residual {word}"))
+    force_axes(axes["f"], rows[0])
+    axes["t"].set(xlabel=label_of(rows[0], "time"), ylabel=label_of(rows[0], "residual"))
+    axes["t"].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
+    ends = [axes[name].get_ylim() for name in "ba"]
+    direction_legend(axes["b"])
+    for one, name in ((before, "b"), (after, "a")):
+        errors = {"check error": one.check_error, "fit error": one.fit_error}
+        word, error = next((w, e) for w, e in errors.items() if e == e)
+        axes[name].set_ylim(min(e[0] for e in ends), max(e[1] for e in ends))
+        axes[name].set_title(f"{word} {100 * error:.2f} %", loc="left", fontsize=7, pad=3)
     return figure
 
 
@@ -106,15 +103,14 @@ def plot_simulation(comparison: SimulationComparison) -> Figure:
     at = next(e.at for e in comparison.errors if e.use == use)
     axis = comparison.model.body(at).axis
     alone = not comparison.prepared.joints
-    with plt.style.context(house_style()):
-        layout = "mm;oc" if alone else "mm"
-        figure, axes = plt.subplot_mosaic(layout, figsize=(TWO_COLUMNS, 4.2 if alone else 2.3))
-        _overlay(axes["m"], comparison, use, at)
-        axes["m"].set_xlabel("time (s)")
-        axes["m"].set_ylabel(f"position ({unit_at_axis(unit_of('position', axis))})")
-        if alone:
-            (prepared,) = comparison.prepared.parts.values()
-            _correlations(axes, residual_correlations(comparison.model, prepared, at))
+    layout = "mm;oc" if alone else "mm"
+    figure, axes = plt.subplot_mosaic(layout, figsize=(TWO_COLUMNS, 4.2 if alone else 2.3))
+    _overlay(axes["m"], comparison, use, at)
+    axes["m"].set_xlabel("time (s)")
+    axes["m"].set_ylabel(f"position ({unit_at_axis(unit_of('position', axis))})")
+    if alone:
+        (prepared,) = comparison.prepared.parts.values()
+        _correlations(axes, residual_correlations(comparison.model, prepared, at))
     return figure
 
 

@@ -12,7 +12,7 @@ from ..diagnose.text import name_of_error
 from ..registry import shows
 from .carrier import CarryingVariable, carrier_of, with_carrier
 from .friction_curve import draw_friction_curve
-from .style import AFTER, BEFORE, MEASURED, house_style
+from .style import AFTER, BEFORE, MEASURED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -131,34 +131,33 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
         for model in (diagnosis.before.model, diagnosis.model)
     )
     changed = len(diagnosis.rungs) > 1
-    with plt.style.context(house_style()):
-        figure, axes = plt.subplot_mosaic(
-            [
-                ["force", "force"],
-                ["time", "time"],
-                ["v0", "x0"],
-                ["v1", "x1"],
-                ["ladder", "ladder"],
-            ],
-            figsize=(7.16, 8.6),
-            height_ratios=[1.1, 1.0, 1.1, 1.1, 0.35 + 0.22 * len(diagnosis.rungs)],
-        )
-        ax = axes["force"]
-        draw_over_time(ax, before, "measured", MEASURED, "measured", 1.6)
-        draw_over_time(ax, before, "model", BEFORE, "your model", 0.6)
-        if changed:
-            draw_over_time(ax, after, "model", AFTER, "with what was missing", 0.6)
-        force_axes(ax, before)
-        # anybody's text: no formula in it
-        figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
-        ax = axes["time"]
-        draw_over_time(ax, before, "residual", BEFORE, "before", 0.7)
-        if changed:
-            draw_over_time(ax, after, "residual", AFTER, "after", 0.7)
-        ax.set(xlabel=label_of(before, "time"), ylabel=label_of(before, "residual"))
-        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
-        _residual_maps(axes, before, after, changed=changed)
-        draw_ladder(axes["ladder"], diagnosis, of="the measured force")
+    figure, axes = plt.subplot_mosaic(
+        [
+            ["force", "force"],
+            ["time", "time"],
+            ["v0", "x0"],
+            ["v1", "x1"],
+            ["ladder", "ladder"],
+        ],
+        figsize=(7.16, 8.6),
+        height_ratios=[1.1, 1.0, 1.1, 1.1, 0.35 + 0.22 * len(diagnosis.rungs)],
+    )
+    ax = axes["force"]
+    draw_over_time(ax, before, "measured", MEASURED, "measured", 1.6)
+    draw_over_time(ax, before, "model", BEFORE, "your model", 0.6)
+    if changed:
+        draw_over_time(ax, after, "model", AFTER, "with what was missing", 0.6)
+    force_axes(ax, before)
+    # anybody's text: no formula in it
+    figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
+    ax = axes["time"]
+    draw_over_time(ax, before, "residual", BEFORE, "before", 0.7)
+    if changed:
+        draw_over_time(ax, after, "residual", AFTER, "after", 0.7)
+    ax.set(xlabel=label_of(before, "time"), ylabel=label_of(before, "residual"))
+    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
+    _residual_maps(axes, before, after, changed=changed)
+    draw_ladder(axes["ladder"], diagnosis, of="the measured force")
     return figure
 
 
@@ -171,21 +170,20 @@ def _plot_friction_curve(diagnosis: Diagnosis) -> Figure:
     curves = {"your model": (diagnosis.fit(diagnosis.before.model), BEFORE)}
     if changed:
         curves["with what was missing"] = (diagnosis.last_fit, AFTER)
-    with plt.style.context(house_style()):
-        figure, axes = plt.subplot_mosaic(
-            [["curve", "curve"], ["v0", "v1"], ["ladder", "ladder"]],
-            figsize=(7.16, 6.4),
-            height_ratios=[1.7, 1.0, 0.35 + 0.22 * len(diagnosis.rungs)],
-        )
-        draw_friction_curve(axes["curve"], diagnosis.prepared, curves)
-        figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
-        for ax, data, word in zip((axes["v0"], axes["v1"]), rows, ("before", "after"), strict=True):
-            draw_by_direction(ax, data, "velocity")
-            ax.set_ylabel(label_of(data, "residual").replace("residual", f"residual {word}"))
-            for points in ax.lines:
-                points.set_markersize(3.0)
-        axes["v1"].set_ylim(axes["v0"].get_ylim())
-        draw_ladder(axes["ladder"], diagnosis, of="the measured force")
+    figure, axes = plt.subplot_mosaic(
+        [["curve", "curve"], ["v0", "v1"], ["ladder", "ladder"]],
+        figsize=(7.16, 6.4),
+        height_ratios=[1.7, 1.0, 0.35 + 0.22 * len(diagnosis.rungs)],
+    )
+    draw_friction_curve(axes["curve"], diagnosis.prepared, curves)
+    figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
+    for ax, data, word in zip((axes["v0"], axes["v1"]), rows, ("before", "after"), strict=True):
+        draw_by_direction(ax, data, "velocity")
+        ax.set_ylabel(label_of(data, "residual").replace("residual", f"residual {word}"))
+        for points in ax.lines:
+            points.set_markersize(3.0)
+    axes["v1"].set_ylim(axes["v0"].get_ylim())
+    draw_ladder(axes["ladder"], diagnosis, of="the measured force")
     return figure
 
 
@@ -200,23 +198,22 @@ def _plot_joints(diagnosis: Diagnosis) -> Figure:
     joints = list(diagnosis.joints)
     ends = [dict(zip(joints, diagnosis.parts(row), strict=True)) for row in (0, -1)]
     height, below = ROW * len(joints) + AROUND, LADDER + RUNG * len(diagnosis.rungs)
-    with plt.style.context(house_style()):
-        figure = plt.figure(figsize=(7.16, height + below), layout="constrained")
-        # names of effects are long: they take no room from the joints
-        parts: Any = figure.subfigures(2, 1, height_ratios=[height, below])
-        upper, lower = parts
-        axes = upper.subplots(len(joints), 3, squeeze=False, width_ratios=[1.25, 1.25, 1.0])
-        for joint, row in zip(joints, axes, strict=True):
-            _plot_joint(list(row), diagnosis, joint, [parts[joint] for parts in ends])
-        for ax in axes[0, :2]:
-            ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.1), borderaxespad=0.1, ncols=3)
-        direction_legend(axes[0, 2])
-        for ax in axes[-1, :2]:
-            ax.set_xlabel("time (s)")
-        # anybody's text: no formula in it
-        upper.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
-        of = "the measured force, root of the mean square over joints"
-        draw_ladder(lower.subplots(), diagnosis, of=of)
+    figure = plt.figure(figsize=(7.16, height + below))
+    # names of effects are long: they take no room from the joints
+    parts: Any = figure.subfigures(2, 1, height_ratios=[height, below])
+    upper, lower = parts
+    axes = upper.subplots(len(joints), 3, squeeze=False, width_ratios=[1.25, 1.25, 1.0])
+    for joint, row in zip(joints, axes, strict=True):
+        _plot_joint(list(row), diagnosis, joint, [parts[joint] for parts in ends])
+    for ax in axes[0, :2]:
+        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.1), borderaxespad=0.1, ncols=3)
+    direction_legend(axes[0, 2])
+    for ax in axes[-1, :2]:
+        ax.set_xlabel("time (s)")
+    # anybody's text: no formula in it
+    upper.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
+    of = "the measured force, root of the mean square over joints"
+    draw_ladder(lower.subplots(), diagnosis, of=of)
     return figure
 
 

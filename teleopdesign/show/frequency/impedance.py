@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...base.sentences import unit_at_axis
-from ..figures.style import CASES, ONE_COLUMN, TWO_COLUMNS, house_style
+from ..figures.style import CASES, ONE_COLUMN, TWO_COLUMNS, in_house_style
 from ..registry import shows
 
 if TYPE_CHECKING:
@@ -224,6 +224,7 @@ def _impedance_lines(
                     draw_interval(axes[j], x, (y - half, y + half), line.get_color())
 
 
+@in_house_style
 def plot_spread(
     result: ImpedanceMap, *, model: ImpedanceMap | None = None, columns: PageColumns = 1
 ) -> matplotlib.figure.Figure:
@@ -231,27 +232,25 @@ def plot_spread(
 
     model: drawn as lines; `result` is then drawn as points
     """
-    import matplotlib.pyplot as plt
 
-    with plt.style.context(house_style()):
-        figure, axes = panels(columns)
-        for one in (result, model):
-            if one is None:
-                continue
-            spread, dotted = one.spread(), one is result and model is not None
-            for case in map(str, one.data["case"].values):
-                style = points(case, alone=False) if dotted else look(case)
-                for axis, name in zip(axes, ("size", "phase"), strict=True):
-                    axis.plot(spread["frequency"], spread[name].sel(case=case), **style)
-        axes[0].set_ylabel(r"spread of $|\hat Z_M|$ (dB)")
-        axes[1].set_ylabel(r"spread of phase (deg)")
-        for axis in axes:
-            axis.set_ylim(bottom=0.0)
-        f = result.data["frequency"].values
-        share_abscissa(axes, "frequency (Hz)", (float(f.min()), float(f.max())), columns)
-        if len(result.data["case"]) > 1:
-            legend_below(figure, axes[0])
-        axes[0].set_title(_WHICH if model else "", loc="left", pad=3)
+    figure, axes = panels(columns)
+    for one in (result, model):
+        if one is None:
+            continue
+        spread, dotted = one.spread(), one is result and model is not None
+        for case in map(str, one.data["case"].values):
+            style = points(case, alone=False) if dotted else look(case)
+            for axis, name in zip(axes, ("size", "phase"), strict=True):
+                axis.plot(spread["frequency"], spread[name].sel(case=case), **style)
+    axes[0].set_ylabel(r"spread of $|\hat Z_M|$ (dB)")
+    axes[1].set_ylabel(r"spread of phase (deg)")
+    for axis in axes:
+        axis.set_ylim(bottom=0.0)
+    f = result.data["frequency"].values
+    share_abscissa(axes, "frequency (Hz)", (float(f.min()), float(f.max())), columns)
+    if len(result.data["case"]) > 1:
+        legend_below(figure, axes[0])
+    axes[0].set_title(_WHICH if model else "", loc="left", pad=3)
     return figure
 
 
