@@ -21,10 +21,6 @@ from .resample import (
 from .spikes import filled_spikes
 from .tables import LogColumns
 
-#: part of the steps between stamps that are usual, and times the longest of these that a pause
-#: lasts: stamps of a bus come in bursts, and some are lost
-USUAL, PAUSE = 0.9, 10.0
-
 
 def signals_of_log(
     columns: LogColumns,
@@ -170,7 +166,7 @@ def _resample_by_stamps(
     values, spikes = _fill_spikes(values, key, channel, [slice(None)], None, file)
     h = clock.sample_time
     rule, step = rule_of(channel), encoder_step(channel, values)
-    rate = _rate_without_pauses(at)
+    rate = _rate_within(at, clock)
     if channel.quantity == "interaction_force" and rate * h < SLOWER:
         rule = "position"  # a line between slow readings would weaken what changes fast
     out = np.concatenate(
@@ -200,13 +196,12 @@ def _resample_by_stamps(
     return _restore_steps(out, values, channel, step), [*spikes, done]
 
 
-def _rate_without_pauses(stamps: Array) -> float:
-    """Stamps a second (Hz) but for the pauses of a log, which are no slow readings."""
-    steps = np.diff(stamps)
-    if len(steps) == 0:
-        return 0.0
-    steps = steps[steps <= PAUSE * np.quantile(steps, USUAL)]
-    return len(steps) / max(float(np.sum(steps)), 1e-300)
+def _rate_within(stamps: Array, clock: RecordClock) -> float:
+    """Stamps a second (Hz) within the segments of a record."""
+    ends = [clock.time[[s.start, s.stop - 1]] for s in clock.segments]
+    inside = [stamps[(stamps >= first) & (stamps <= last)] for first, last in ends]
+    lasting = sum(float(np.ptp(part)) for part in inside if len(part))
+    return sum(len(part) - 1 for part in inside if len(part)) / max(lasting, 1e-300)
 
 
 def _describe_lost_rows(

@@ -13,8 +13,7 @@ from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of
 from ..doors._log import Log
 from ..encoder import Array
 from ..limits import HALF, SEVERAL, SMALL
-from ..record_clock import FEWEST
-from ..row_places import are_out_of_order
+from ..record_clock import FEWEST, are_out_of_order
 from ..stamps import unit_of_steps, unwrap_stamps
 from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, is_unit_of, rises, unit_in_log
 from .derivative import DERIVATIVE, derivative_factor, has_both_signs, unwrap_column, wrap_of
