@@ -257,16 +257,16 @@ def _clock_of_stretches(
 
     goes_on: a clock that was set back continues where the stretch before it ended
     """
-    taken = [stamps[piece] for piece in pieces]
-    placed = places_of(taken)
+    of_each = [stamps[piece] for piece in pieces]
+    placed = places_of(of_each)
     if placed is not None:
-        places, period = placed, slope_of(taken, placed)
+        places, period = placed, slope_of(of_each, placed)
     else:  # no even clock: a grid of as many samples as there are rows
-        period = float(f"{np.mean(np.concatenate([np.diff(s) for s in taken])):.12g}")
-        places = [np.rint((s - s[0]) / period).astype(np.intp) for s in taken]
+        period = float(f"{np.mean(np.concatenate([np.diff(s) for s in of_each])):.12g}")
+        places = [np.rint((s - s[0]) / period).astype(np.intp) for s in of_each]
     time: list[Array] = []
     end = -math.inf
-    for s, place in zip(taken, places, strict=True):
+    for s, place in zip(of_each, places, strict=True):
         # the phase of an even clock is the mean of its stamps
         start = float(np.mean(s - period * place)) if placed is not None else float(s[0])
         start = max(start, end + period) if goes_on else start
