@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from .channel import Channel
-from .conversion import Conversion
 from .encoder import Array, is_on_grid, reading_step
 from .reading import ReadingStep, count_of
 from .record_clock import RecordClock
@@ -25,22 +24,21 @@ from .tables import LogColumns
 def signals_of_log(
     columns: LogColumns,
     channels: Mapping[str, Channel],
-    conversions: Mapping[str, Conversion],
     clock: RecordClock,
     file: str,
 ) -> tuple[dict[str, Array], list[ReadingStep]]:
     """The signals (n,) by channel, and the reading steps that made them."""
     signals: dict[str, Array] = {}
-    readings, steps = _readings_of_log(columns, channels, conversions, clock, file)
-    for key, conversion in conversions.items():
-        channel = channels[key]
-        if conversion.columns[0] in columns.stamps:
-            signals[key], more = _resample_by_stamps(columns, key, channel, conversion, clock, file)
+    of_bodies = {key: ch for key, ch in channels.items() if ch.body is not None}
+    readings, steps = _readings_of_log(columns, of_bodies, clock, file)
+    for key, channel in of_bodies.items():
+        if channel.columns[0] in columns.stamps:
+            signals[key], more = _resample_by_stamps(columns, key, channel, clock, file)
             steps += more
             continue
         values = readings[key]
         rule, step = rule_of(channel), encoder_step(channel, values)
-        out = resample_on_grid(values, clock, rule, step=step, delay=conversion.delay)
+        out = resample_on_grid(values, clock, rule, step=step, delay=channel.delay)
         signals[key] = _restore_steps(out, values, channel, step)
     if clock.lost:
         steps.append(_describe_lost_rows(readings, channels, clock, file))
@@ -50,14 +48,14 @@ def signals_of_log(
 def _readings_of_log(
     columns: LogColumns,
     channels: Mapping[str, Channel],
-    conversions: Mapping[str, Conversion],
     clock: RecordClock,
     file: str,
 ) -> tuple[dict[str, Array], list[ReadingStep]]:
     """Readings in SI at the clock's rows, of the channels on this clock, with spikes filled."""
     readings: dict[str, Array] = {}
     steps: list[ReadingStep] = []
-    for key, conversion in conversions.items():
+    for key, channel in channels.items():
+        conversion = channel.conversion
         conversion.refuse_other_counts(columns.values, f"{file}: channels.{key}")
         name = key.removeprefix("device.")
         if wraps := conversion.wraps(columns.values):
@@ -66,10 +64,9 @@ def _readings_of_log(
         if conversion.delay:
             text = f"{name} logged {1e3 * conversion.delay:.3g} ms late, as stated"
             steps.append(ReadingStep(file, text, "moved back", "none"))
-        if conversion.columns[0] not in columns.stamps:
-            rows = clock.rows
-            values = {c: columns.values[c][rows] for c in conversion.columns}
-            readings[key] = conversion.signal(values)
+        if channel.columns[0] not in columns.stamps:
+            values = {c: columns.values[c][clock.rows] for c in channel.columns}
+            readings[key] = channel.signal(values)
     for key in sorted(readings, key=lambda k: channels[k].quantity != "position"):
         position = readings.get(f"{channels[key].body}.position")
         readings[key], more = _fill_spikes(
@@ -151,13 +148,12 @@ def _resample_by_stamps(
     columns: LogColumns,
     key: str,
     channel: Channel,
-    conversion: Conversion,
     clock: RecordClock,
     file: str,
 ) -> tuple[Array, list[ReadingStep]]:
     """A channel with separate time stamps, as those of a bag's topic, and its reading steps."""
-    stamps = columns.stamps[conversion.columns[0]] - conversion.delay
-    values = conversion.signal({c: columns.values[c] for c in conversion.columns})
+    stamps = columns.stamps[channel.columns[0]] - channel.delay
+    values = channel.signal(columns.values)
     fine = np.isfinite(values) & np.isfinite(stamps)
     order = np.argsort(stamps[fine], kind="stable")
     at, values = stamps[fine][order], values[fine][order]
