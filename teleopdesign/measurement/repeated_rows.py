@@ -74,16 +74,9 @@ def repeated_rows(
     unlikely = _chance_of_repeats([*positions, *forces], same, first, past) <= BY_CHANCE
     unlikely &= np.count_nonzero(unlikely & short) > BY_CHANCE * len(same)
     inside = short & (unlikely | bool(noisy) | stopped[past])
-    lasting = np.flatnonzero(past - first >= LASTING)
-    stuck = np.zeros(count, dtype=bool)
-    if len(lasting):
-        for x, step in zip(positions, steps, strict=True):
-            for a, b in stuck_stretches(x, step, "position"):
-                stuck[a + 1 : b] = True
-    for k in lasting:
-        a, b = int(first[k]), int(past[k])
-        inside[k] = bool(stuck[a + 1 : b + 1].all())
-        inside[k] |= any(_leaps(x, a, b, s) for x, s in zip(positions, steps, strict=True))
+    for k in np.flatnonzero(past - first >= LASTING).tolist():
+        ends = int(first[k]), int(past[k])
+        inside[k] = any(_leaps(x, *ends, s) for x, s in zip(positions, steps, strict=True))
     for a, b in zip(first[inside].tolist(), past[inside].tolist(), strict=True):
         out[a + 1 : b + 1] = True
     return out

@@ -23,25 +23,38 @@ STEPS = 2.5
 
 
 def resample_on_grid(
-    values: Array, clock: RecordClock, rule: Rule, *, step: float, delay: float
+    values: Array,
+    clock: RecordClock,
+    rule: Rule,
+    *,
+    step: float,
+    delay: float,
+    stamps: Array | None = None,
 ) -> Array:
     """A signal (m,), one value per used row, on the record's grid (n,).
 
     step: of the encoder, 0 for none;  delay: s by which the log has the signal late
+    stamps: (m,) s, of a signal with a clock of its own;  default: those of the rows
     """
-    if clock.exact and not clock.stamped and delay == 0.0:
+    if stamps is None and clock.exact and not clock.stamped and delay == 0.0:
         return values
-    out = np.empty(len(clock.time))
+    out, h = np.empty(len(clock.time)), clock.sample_time
     for rows, samples in zip(clock.of_rows, clock.segments, strict=True):
-        place = clock.places[rows] - samples.start
-        grid = np.arange(samples.stop - samples.start, dtype=np.float64)
+        begin, place = clock.time[samples.start], clock.places[rows] - samples.start
         at = place.astype(np.float64)
-        if clock.stamped:
-            at = (clock.stamps[rows] - clock.time[samples.start]) / clock.sample_time
+        if stamps is not None:
+            at = (stamps - begin) / h
+        elif clock.stamped:
+            at = (clock.stamps[rows] - begin) / h
             if clock.set_back:
                 at += place[0] - at[0]
         out[samples] = interpolate_by_rule(
-            values[rows], at - delay / clock.sample_time, grid, rule, step=step
+            values if stamps is not None else values[rows],
+            at - delay / h,
+            np.arange(samples.stop - samples.start, dtype=np.float64),
+            rule,
+            step=step,
+            slower_clock=stamps is not None,
         )
     return out
 

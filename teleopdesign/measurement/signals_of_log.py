@@ -14,7 +14,6 @@ from .repeated_rows import SLOWER
 from .resample import (
     Rule,
     filling_error,
-    interpolate_by_rule,
     resample_on_grid,
 )
 from .spikes import filled_spikes
@@ -152,7 +151,7 @@ def _resample_by_stamps(
     file: str,
 ) -> tuple[Array, list[ReadingStep]]:
     """A channel with separate time stamps, as those of a bag's topic, and its reading steps."""
-    stamps = columns.stamps[channel.columns[0]] - channel.delay
+    stamps = columns.stamps[channel.columns[0]]
     values = channel.signal(columns.values)
     fine = np.isfinite(values) & np.isfinite(stamps)
     order = np.argsort(stamps[fine], kind="stable")
@@ -160,24 +159,11 @@ def _resample_by_stamps(
     once = np.r_[True, np.diff(at) > 0]
     at, values = at[once], values[once]
     values, spikes = _fill_spikes(values, key, channel, [slice(None)], None, file)
-    h = clock.sample_time
     rule, step = rule_of(channel), encoder_step(channel, values)
     rate = _rate_within(at, clock)
-    if channel.quantity == "interaction_force" and rate * h < SLOWER:
+    if channel.quantity == "interaction_force" and rate * clock.sample_time < SLOWER:
         rule = "position"  # a line between slow readings would weaken what changes fast
-    out = np.concatenate(
-        [
-            interpolate_by_rule(
-                values,
-                (at - clock.time[s.start]) / h,
-                np.arange(s.stop - s.start, dtype=np.float64),
-                rule,
-                step=step,
-                slower_clock=True,
-            )
-            for s in clock.segments
-        ]
-    )
+    out = resample_on_grid(values, clock, rule, step=step, delay=channel.delay, stamps=at)
     words = {"held": "held until its next", "position": "interpolated", "line": "interpolated"}
     text = f"{key.removeprefix('device.')} has stamps of its own, {rate:.4g} Hz"
     done = ReadingStep(

@@ -158,45 +158,38 @@ def read_at_stamps(
 
     positions: (m,) each, of the clock's rows
     """
-    h = clock.sample_time
+    h, rule = clock.sample_time, "positions interpolated, commands held"
     if clock.counted or clock.jitter <= EVEN * h:
         return False, []
-    rule = "positions interpolated, commands held"
+    numbers: dict[str, float] = {"rate": 1.0 / h}
     if math.isinf(clock.jitter):
         steps = np.diff(clock.stamps) / h
-        shortest, longest = float(steps.min()), float(steps.max())
-        text = f"uneven stamps, steps of {shortest:.2g} to {longest:.2g} times {h:.3g} s"
-        numbers = (("rate", 1.0 / h), ("shortest", shortest), ("longest", longest))
-        rule, effect = f"each row at its own stamp: {rule}", effect_of_even_stamps(clock, positions)
-        return True, [_step(file, text, rule, effect, numbers, stamped=True)]
-    slope, error = stamps_are_true(clock, positions)
-    off = float(f"{100 * clock.jitter / h:.2g}")
-    text = f"stamps {off:g} % of a row off an even clock"
-    share = f"{slope:.2f} +- {error:.1g} of what they say"
-    stamped, effect = slope > HALF and math.isfinite(error), "none"
-    if stamped:
-        rule = f"the position was read at its stamps ({share}): {rule}"
-        effect = effect_of_even_stamps(clock, positions)
+        numbers |= {"shortest": float(steps.min()), "longest": float(steps.max())}
+        between = " to ".join(f"{numbers[key]:.2g}" for key in ("shortest", "longest"))
+        text, stamped = f"uneven stamps, steps of {between} times {h:.3g} s", True
+        rule = f"each row at its own stamp: {rule}"
     else:
-        rule = f"read on an even clock, for the position does not follow the stamps ({share})"
-    if not abs(slope - 0.5) > SURELY * error:
+        slope, error = stamps_are_true(clock, positions)
+        numbers |= {"jitter": clock.jitter, "followed": slope}
+        text = f"stamps {float(f'{100 * clock.jitter / h:.2g}'):g} % of a row off an even clock"
+        share = f"({slope:.2f} +- {error:.1g} of what they say)"
+        stamped = slope > HALF and math.isfinite(error)
+        rule = f"the position was read at its stamps {share}: {rule}"
+        if not stamped:
+            rule = f"read on an even clock, for the position does not follow the stamps {share}"
+    effect = effect_of_even_stamps(clock, positions) if stamped else "none"
+    if "followed" in numbers and not abs(slope - 0.5) > SURELY * error:
         effect = "the position hardly tells, so that it makes little difference"
-    numbers = (("jitter", clock.jitter), ("rate", 1.0 / h), ("followed", slope))
-    return stamped, [_step(file, text, rule, effect, numbers, stamped=stamped)]
-
-
-def _step(
-    file: str,
-    text: str,
-    rule: str,
-    effect: str,
-    numbers: tuple[tuple[str, float], ...],
-    *,
-    stamped: bool,
-) -> ReadingStep:
-    return ReadingStep(
-        file, text, rule, effect, topic="sample clock", numbers=numbers, interpolates=stamped
+    step = ReadingStep(
+        file,
+        text,
+        rule,
+        effect,
+        topic="sample clock",
+        numbers=tuple(numbers.items()),
+        interpolates=stamped,
     )
+    return stamped, [step]
 
 
 def stamps_are_true(clock: RecordClock, positions: Sequence[Array]) -> tuple[float, float]:
