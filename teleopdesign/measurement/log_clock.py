@@ -13,10 +13,11 @@ from .channel import Channel, LogLayout
 from .encoder import Array
 from .limits import HALF
 from .reading import ReadingStep, count_of
-from .record_clock import DATE, RecordClock, clock_of, counted_clock, segments_of, usual_step
+from .record_clock import DATE, RecordClock, clock_of, counted_clock, segments_of
 from .repeated_rows import MOST, repeated_rows, rows_between_readings, with_slower_signals
 from .stamps import read_at_stamps
 from .tables import LogColumns
+from .usual_step import usual_step
 
 #: what to do with such a column
 OF_ANOTHER_CLOCK = "a signal of a slower clock goes with its times into a table beside, in a folder"

@@ -23,6 +23,7 @@ from ..base.errors import ExperimentError
 from .encoder import LOST, Array, is_most
 from .limits import HALF
 from .reading import count_of
+from .usual_step import GOES_ON, are_set_back, usual_step
 
 RowNumbers = NDArray[np.intp]
 
@@ -38,10 +39,6 @@ FEW = 0.02
 #: part of a sample time by which each step may be off, or stamps off their places (rms): random
 #: stamps have 0.29
 UNEVEN = 0.2
-#: most successive lost rows that are filled, and most rows by which one is out of order: more are a
-#: pause, or a clock that was set back. At 1 kHz six sample times are a tenth of a period at 16 Hz,
-#: so the motion between them is still known in the band of a comparison
-GOES_ON = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,32 +148,6 @@ def clock_of(
         if n > 0
     )
     return replace(clock, set_back=restarts > 0, remarks=tuple(shown))
-
-
-def usual_step(steps: Array) -> float:
-    """The usual one of the steps between stamps, s: the mean of those near the median.
-
-    steps: those of 0 and back do not count; 0 where none is left
-    """
-    forward = steps[steps > 0]
-    if not len(forward):
-        return 0.0
-    usual = float(np.median(forward))
-    near = forward[np.abs(forward - usual) < HALF * usual]
-    return float(near.mean()) if len(near) else usual
-
-
-def are_set_back(steps: Array, usual: float) -> NDArray[np.bool_]:
-    """Steps between stamps (n,) at which a clock was set back: further than a row out of order."""
-    return np.asarray(steps < -(GOES_ON + 0.5) * usual)
-
-
-def are_out_of_order(stamps: Array) -> bool:
-    """Whether stamps are those of one clock, each once, with rows a little out of order."""
-    steps, ordered = np.diff(stamps), np.diff(np.sort(stamps))
-    if not np.any(steps < 0) or not np.all(ordered > 0):
-        return False
-    return not are_set_back(steps, usual_step(ordered)).any()
 
 
 def _cut(

@@ -17,7 +17,8 @@ from ..base.units import si_factor
 from .encoder import SURELY, Array
 from .limits import HALF
 from .reading import ReadingStep, count_of
-from .record_clock import EVEN, SHORTEST, RecordClock, are_set_back, usual_step
+from .record_clock import EVEN, SHORTEST, RecordClock
+from .usual_step import are_set_back, usual_step
 
 #: s in a day
 DAY = 86_400.0
