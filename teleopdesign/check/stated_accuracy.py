@@ -15,6 +15,7 @@ from ..base.finding import Concern, Finding
 from ..measurement.encoder import is_on_grid, reading_noise, reading_step
 from ..measurement.filtering import Array
 from ..measurement.limits import SMALL
+from ..measurement.prepare import FEWEST
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
 #: multiples of the stated step that are tested as the true one
@@ -22,8 +23,6 @@ MULTIPLES = range(2, 65)
 #: ratio of measured to stated noise that gives a warning: a quarter of a second of a record shows
 #: the noise within 10 %, and a noise floor that is wrong by this factor changes a verdict
 FACTOR = 1.6
-#: fewest samples of which noise is measured
-LEAST = 16
 
 
 def find_wrong_accuracy(recording: CheckedRecording) -> Iterator[Finding]:
@@ -118,4 +117,4 @@ def _shares_steps(other: Signal, stated: float) -> bool:
 def measured_noise(signal: Signal) -> float:
     """Rms noise of the readings in the longest stretch, SI."""
     longest = max((x for _, x in signal.stretches), key=len)
-    return reading_noise(longest) if len(longest) > LEAST else 0.0
+    return reading_noise(longest) if len(longest) >= FEWEST else 0.0
