@@ -29,7 +29,7 @@ def usual_step(steps: Array) -> float:
     return float(near.mean()) if len(near) else usual
 
 
-def off_usual_step(stamps: Array) -> Array:
+def step_deviations(stamps: Array) -> Array:
     """Distance of each step between stamps (n,) from the usual one, in usual steps, (n - 1,)."""
     steps = np.diff(stamps)
     usual = usual_step(steps)

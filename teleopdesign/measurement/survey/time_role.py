@@ -15,7 +15,7 @@ from ..encoder import Array
 from ..limits import HALF, SEVERAL, SMALL
 from ..record_clock import FEWEST
 from ..stamps import unit_of_steps, unwrap_stamps
-from ..usual_step import are_out_of_order, off_usual_step
+from ..usual_step import are_out_of_order, step_deviations
 from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, is_unit_of, rises, unit_in_log
 from .derivative import DERIVATIVE, derivative_factor, has_both_signs, unwrap_column, wrap_of
 from .remarks import sample_rate_in
@@ -64,7 +64,7 @@ def score_times(raw: Mapping[str, Array], log: Log, choices: Choices) -> dict[st
         scores[name] = score_of(
             "time",
             SurveyedColumn(name, stamps, stamps, choices.units.get(name)),
-            left=1.0 if is_called else float(np.median(off_usual_step(stamps))),
+            left=1.0 if is_called else float(np.median(step_deviations(stamps))),
             is_called_a_clock=_is_called_clock(name),
             is_called_a_signal=not is_called and _names_signal(name, log, choices),
             counts_the_rows=counts_rows(stamps),

@@ -22,7 +22,7 @@ from ...limits import HALF
 from ...numbers_in_cells import holds_dates, numbers_of
 from ...record_clock import DATE, FEWEST
 from ...stamps import unit_of_steps, unwrap_stamps
-from ...usual_step import off_usual_step
+from ...usual_step import step_deviations
 from .._cells import is_column_of_texts
 from .._log import Log, join_names
 from ._table import CellTable, LongSignal, LongTable, as_text, rises, time_of
@@ -171,5 +171,5 @@ def _apart_in_time(long: LongTable) -> bool:
 
 def _regularity(times: Array) -> float:
     """Part of the steps of a clock that go forward, by less than twice its usual step."""
-    off = off_usual_step(times[np.isfinite(times)])
+    off = step_deviations(times[np.isfinite(times)])
     return float(np.mean(off < 1.0)) if len(off) else 0.0

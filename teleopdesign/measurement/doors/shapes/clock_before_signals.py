@@ -16,7 +16,7 @@ import numpy as np
 
 from ....base.units import measures
 from ...column_names import likeness, unit_of_text
-from ...usual_step import off_usual_step
+from ...usual_step import step_deviations
 from .._log import bare_column, join_names
 from ._table import AS_EVEN_AS_A_CLOCK, CellTable, LongSignal, LongTable, rises
 
@@ -58,7 +58,7 @@ def _clocks_before(table: CellTable) -> dict[str, str]:
     unit = unit_of_text(word)
     timed = unit is not None and unit != "counts" and measures(unit, "time")
     alternate = names[::2] == clocks and all(
-        np.all(off_usual_step(x[np.isfinite(x)]) <= AS_EVEN_AS_A_CLOCK)
+        np.all(step_deviations(x[np.isfinite(x)]) <= AS_EVEN_AS_A_CLOCK)
         for x in (numeric[clock] for clock in clocks)
     )
     if likeness(word, "time") == 0.0 and not timed and not alternate:
