@@ -33,7 +33,7 @@ from _study import write_study
 from teleopdesign.diagrams import Diagram, four_cases, read_open_number, world_haptics_2005
 from teleopdesign.frequency import delay_margin, loop_gain, measured_impedance
 from teleopdesign.show.figures.style import TWO_COLUMNS, house_style
-from teleopdesign.show.frequency.panels import logarithmic
+from teleopdesign.show.frequency.impedance import logarithmic
 from teleopdesign.simulate import Trajectory, simulate
 
 if TYPE_CHECKING:

@@ -30,6 +30,9 @@ class Model:
         time constant of the hand's sensor: errors of the records that the model was estimated on,
         no physics; empty where unknown
     links: base parameters (SI) of the arm whose joints are the bodies; (): none is estimated
+
+        >>> td.Model.from_experiment(td.load_experiment(td.example("rod"))).body("device").axis
+        'prismatic'
     """
 
     bodies: Mapping[str, Body]

@@ -145,7 +145,7 @@ def test_a_diagnosis_prints_the_ladder_and_writes_what_was_asked_for(
     short_rod, few, tmp_path, capsys, monkeypatch
 ):
     # a line of progress comes after a time, however fast the machine
-    monkeypatch.setattr("teleopdesign.commands._progress.BETWEEN_LINES", float("inf"))
+    monkeypatch.setattr("teleopdesign.commands._terminal.BETWEEN_LINES", float("inf"))
     names = ("answer.json", "predictions.csv", "figure.png", "report.html")
     files = [tmp_path / n for n in names]
     options = [

@@ -116,8 +116,10 @@ def positional(function: Function) -> int:
 
 
 def length(function: Function) -> int:
+    """Lines without those of the docstring, which holds an example where the function is public."""
     assert function.end_lineno is not None
-    return function.end_lineno - function.lineno + 1
+    text = len((ast.get_docstring(function, clean=False) or "").splitlines())
+    return function.end_lineno - function.lineno + 1 - text
 
 
 def test_no_name_says_grammar_instead_of_a_thing():

@@ -64,7 +64,8 @@ def as_rst(text: str) -> list[str]:
     out: list[str] = []
     for kind, lines in blocks(text):
         if kind == "code":
-            out += [".. code-block:: text", "", *indent("\n".join(lines), "   ").split("\n")]
+            language = "pycon" if lines[0].startswith(">>>") else "text"
+            out += [f".. code-block:: {language}", "", *indent("\n".join(lines), "   ").split("\n")]
         elif kind == "entries":
             for name, meaning in entries(lines):
                 mark = f"**{escaped(name)}**: " if name else ""

@@ -88,7 +88,7 @@ def write_all(
 
     say: receives the name of each step
     """
-    from ..show.block_cuts.report import write_block_report
+    from ..show.block_cuts.text import write_block_report
 
     target = folder / RESULTS / diagnosis.experiment.folder.name
     target.mkdir(parents=True, exist_ok=True)

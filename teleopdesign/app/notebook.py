@@ -9,14 +9,14 @@ app = marimo.App(width="medium", app_title="teleopdesign")
 def _():
     import marimo as mo
 
-    from teleopdesign.app import blocks, export, files, logs, pages, settings, views
+    from teleopdesign.app import blocks, export, files, logs, pages, server, views
     from teleopdesign.app.task import BackgroundTask, stop_running
     from teleopdesign.app.workbench import Workbench
     from teleopdesign.base.errors import TeleopDesignError
     from teleopdesign.block_cuts import BlockDiagnosis
 
-    folder = settings.folder(mo.cli_args().to_dict())
-    among = settings.effects(mo.cli_args().to_dict())
+    folder = server.folder(mo.cli_args().to_dict())
+    among = server.effects(mo.cli_args().to_dict())
     return (
         BackgroundTask,
         BlockDiagnosis,

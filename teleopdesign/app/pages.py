@@ -6,15 +6,9 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ..base.errors import TeleopDesignError
-from ..base.sentences import (
-    number_on_page as number,
-)
-from ..base.sentences import (
-    unit_on_page as unit_text,
-)
-from ..base.sentences import (
-    with_error_on_page as with_error,
-)
+from ..base.sentences import number_on_page as number
+from ..base.sentences import unit_on_page as unit_text
+from ..base.sentences import with_error_on_page as with_error
 from ..base.units import unit_after_number, unit_of
 from ..diagnose.adequacy import floors_left, is_adequate
 from ..diagnose.by_simulation import compare_by_simulation

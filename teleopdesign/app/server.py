@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import socket
 import threading
 import warnings
 import webbrowser
+from collections.abc import Mapping
 from pathlib import Path
 from typing import NoReturn
 
@@ -13,6 +15,25 @@ import marimo
 import uvicorn
 
 from ..base.errors import ExperimentError
+
+#: set by `teleopdesign app` for the page that it serves
+FOLDER = "TELEOPDESIGN_APP_FOLDER"
+#: names of the candidate effects, with commas; all where it is not set
+EFFECTS = "TELEOPDESIGN_APP_EFFECTS"
+
+
+def folder(arguments: Mapping[str, object] | None = None) -> Path:
+    """The folder that the page may read; the current one if none is set."""
+    stated = (arguments or {}).get("folder") or os.environ.get(FOLDER) or "."
+    return Path(str(stated)).resolve()
+
+
+def effects(arguments: Mapping[str, object] | None = None) -> tuple[str, ...] | None:
+    """Names of the candidate effects; None: all."""
+    stated = (arguments or {}).get("effects") or os.environ.get(EFFECTS) or ""
+    names = tuple(name.strip() for name in str(stated).split(",") if name.strip())
+    return names or None
+
 
 #: s that open pages have to close when the server stops
 LEAVING = 2.0

@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING
 from ..base.folders import lazy_face
 
 if TYPE_CHECKING:
-    from .base_parameters import BaseParameters as BaseParameters
-    from .base_parameters import base_parameters as base_parameters
     from .chain import INERTIAL as INERTIAL
     from .chain import Chain as Chain
     from .chain import Link as Link
     from .chain import inertia_about as inertia_about
     from .chain import rotation_of as rotation_of
+    from .regressor import BaseParameters as BaseParameters
+    from .regressor import base_parameters as base_parameters
     from .regressor import force_columns as force_columns
     from .urdf import read_urdf as read_urdf
 

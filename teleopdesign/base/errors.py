@@ -2,7 +2,7 @@
 
 A message is one line: where, what the value was, what was expected, a near name. A name is a plain
 word, so that it can be shown, looked up and written into any file. Generated source contains none
-of these names: each has a private stand-in there (`realise.private_names`).
+of these names: each has a private stand-in there (`realise.laws`).
 """
 
 from __future__ import annotations

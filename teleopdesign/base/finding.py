@@ -87,6 +87,8 @@ class Findings(tuple[Finding, ...]):
     def __str__(self) -> str:
         return "\n".join(map(str, self))
 
+    __repr__ = __str__
+
     def _repr_html_(self) -> str:
         rows = [(f.concern, f.topic, f.where, f.sentence) for f in self]
         return html_table("Findings", ("concern", "topic", "where", "finding"), rows)

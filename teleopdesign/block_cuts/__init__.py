@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     from .cuts import cuts_of as cuts_of
     from .diagnosis import BlockDiagnosis as BlockDiagnosis
     from .diagram_experiment import DiagramExperiment as DiagramExperiment
-    from .faces import compare as compare
-    from .faces import describe as describe
-    from .faces import rank as rank
     from .reading import diagram_experiment as diagram_experiment
     from .reading import load_experiment as load_experiment
     from .saved import load_answer as load_answer
     from .saved import write_answer as write_answer
+    from .search import compare as compare
+    from .search import describe as describe
     from .search import find_missing as find_missing
+    from .search import rank as rank
     from .what_to_log import LoggingPlan as LoggingPlan
     from .what_to_log import what_to_log as what_to_log
 

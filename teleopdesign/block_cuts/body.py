@@ -29,10 +29,9 @@ from ..measurement.record import RecordEntry, record_of
 from ..measurement.tables import LogColumns
 from ..model import Model
 from .computer import Placed
-from .cuts import Cut
+from .cuts import OF_A_HAND, Cut
 from .diagram_experiment import DiagramExperiment, RecordedLog
 from .half_steps import command_of, force_at_half_step, share_of_step
-from .look_alikes import OF_A_HAND
 
 
 @dataclass(frozen=True)

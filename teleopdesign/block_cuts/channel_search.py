@@ -21,7 +21,7 @@ import numpy as np
 from ..base.errors import TeleopDesignError
 from ..base.units import measures, unit_of
 from ..diagnose.error import force_error
-from ..diagrams import Diagram, Moving
+from ..diagrams import Diagram
 from ..measurement.column_names import is_another_quantity, is_wanted, likeness, words_of
 from ..measurement.filtering import Array
 from ..measurement.prepare import prepare
@@ -80,7 +80,7 @@ class ChannelSearch:
     ) -> None:
         self.diagram, self.units, self.clock, self.stated = diagram, units, clock, stated
         self.data = {name: values[:ROWS] for name, values in data.items()}
-        self.bodies = [b for b in diagram.blocks if isinstance(b, Moving)]
+        self.bodies = diagram.moving
         self.sensed = [one.name for one in what_to_log(diagram).signals]
         alike = {_letters(n) for n in units}
         more = [s for s in diagram.signals if s in stated or _letters(s) in alike]

@@ -42,8 +42,7 @@ def free_parameters(diagram: Diagram, blocks: Sequence[str]) -> tuple[Placed, ..
     """Parameters of controllers that are not fixed, at their stated values."""
     made = []
     for block in (diagram.block(name) for name in blocks if diagram.has(name)):
-        law = block.controller if isinstance(block, Control) else None
-        for stage in law.stages if isinstance(law, Controller) else ():
+        for stage in block.stages if isinstance(block, Control) else ():
             for name in stage.free:
                 full, value = f"{stage.name}.{name}", float(stage.values[name])
                 free = ControlEffect(

@@ -19,10 +19,9 @@ from ..diagnose.criteria import CRITERIA
 from .computer import Placed
 from .computer_fit import ControlData
 from .computer_search import Attempt, ComputerLadder, ComputerStep
-from .cuts import Cuts
+from .cuts import Cuts, same_effects
 from .cuts_ladder import CutsRow, Key, join_ladders
 from .diagram_experiment import DiagramExperiment
-from .look_alikes import same_effects
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -33,7 +33,7 @@ def share_of_step(experiment: DiagramExperiment, signal: str) -> tuple[Moving, f
     junction = next((j for j in diagram.junctions if j.output == signal), None)
     terms = {signal: 1.0} if junction is None else junction.terms
     for held in (b for b in diagram.blocks if isinstance(b, Attached) and b.force in terms):
-        moving = [b for b in diagram.blocks if isinstance(b, Moving) and b.motion == held.motion]
+        moving = [b for b in diagram.moving if b.motion == held.motion]
         whole = sum(_inertia(b) for b in diagram.blocks if b in moving or _is_at(b, held.motion))
         if len(moving) == 1 and whole > 0.0 and _inertia(held) > 0.0:
             if not _has_command(experiment, moving[0]):

@@ -35,10 +35,9 @@ from .body import body_experiment
 from .computer import Placed, UnevenRows, free_parameters, passes_of
 from .computer_search import ComputerLadder, ComputerStep, are_alike, climb, step_of
 from .control_rows import ControlFit, ControlRows
-from .cuts import Cut
+from .cuts import Cut, feeding
 from .diagram_experiment import DiagramExperiment
 from .half_steps import command_by_laws, laws_of_command
-from .look_alikes import feeding
 
 #: starts of an effect that are followed, of those that promise most
 _FOLLOWED = 2

@@ -31,6 +31,15 @@ def load_experiment(folder: str | Path) -> Experiment | DiagramExperiment:
 
     folder: the folder of experiment.toml (the path of the file is also accepted)
     raises ExperimentError: anything missing, unknown, of the wrong type or unit, in one line
+
+        >>> td.load_experiment(td.example("rod"))
+        Experiment "Rod of a one-axis haptic interface (simulated)" (rod)
+          device: prismatic, coulomb, viscous
+            position in m (resolution 7.2e-06 m)
+            actuator_force in N
+            interaction_force in N (noise 0.0116 N)
+          Record fit.csv.gz (fit): 12000 samples, 12 s at 1000 Hz
+          Record check.csv.gz (check): 8000 samples, 8 s at 1000 Hz
     """
     place = folder_of_experiment(Path(folder))
     table = read_toml(place / _FILE, f"{place.name}/{_FILE}")

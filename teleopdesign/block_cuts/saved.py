@@ -54,19 +54,22 @@ def write_answer(diagnosis: BlockDiagnosis, path: str | Path) -> None:
 @check_types
 def load_answer(
     path: str | Path,
-    known: Mapping[str, Effect] = EFFECTS,
+    known: Mapping[str, Effect] | None = None,
     *,
     experiment: Experiment | DiagramExperiment | None = None,
 ) -> Diagnosis | BlockDiagnosis:
     """The diagnosis in an answer that `teleopdesign diagnose --json` or `write_answer` wrote.
 
     Nothing is searched or estimated again.
-    known: effects of bodies by name, with those of the user
+    known: effects of bodies by name, with those of the user; None: EFFECTS
     experiment: of this answer; None: it is read from the folder that the answer names
     raises ExperimentError: the file cannot be read, is no answer or one to another experiment, or
         an effect is unknown
+
+        >>> diagnosis = td.load_answer("demo/answer.json")  # doctest: +SKIP
+        >>> diagnosis.missing  # doctest: +SKIP
     """
-    content = content_of_answer(path)
+    known, content = EFFECTS if known is None else known, content_of_answer(path)
     if not isinstance(content.get("tested"), dict):
         if isinstance(experiment, DiagramExperiment):
             raise ExperimentError(f"{path}: is an answer for bodies, not for a whole diagram")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ..base.arguments import check_types
 from ..base.units import unit_of
-from ..diagrams import Control, Diagram, Moving
+from ..diagrams import Diagram
 from .cuts import Cuts, cuts_of
 from .diagram_experiment import axis_of
 
@@ -78,8 +78,8 @@ def what_to_log(diagram: Diagram) -> LoggingPlan:
     Signals that a sensor reads, the computer makes, or a force sensor at a body would read. What no
     sensor reads alone, such as the voluntary force of a hand, must be zero where a block needs it.
     """
-    bodies = [b for b in diagram.blocks if isinstance(b, Moving)]
-    controls = [b for b in diagram.blocks if isinstance(b, Control)]
+    bodies = diagram.moving
+    controls = diagram.controls
     at_bodies = [s for b in bodies for s in (b.motion, b.command, *b.loads)]
     read = _sources(diagram, [s for b in controls for s in b.inputs] + [b.command for b in bodies])
     needed = [*(s for s in diagram.outside if s in read and s not in at_bodies), *at_bodies]

@@ -3,9 +3,7 @@
 from ..base.arguments import check_arguments
 from ..effects import BLOCK_EFFECTS, with_block_effects
 from .body import Body
-from .body_equation import BodyEquation, compose_equation
-from .carried_force import solve_carried_force
-from .environment import CONTACT
+from .body_equation import CONTACT, BodyEquation, compose_equation, solve_carried_force
 from .environments import free_space, hand, hunt_crossley, soft_rubber, spring_damper
 from .matrix_impedance import MatrixImpedance, matrix_impedance
 from .value import NINETY_FIVE, Value

@@ -24,12 +24,12 @@ from .body_equation import (
     BodyEquation,
     actuation_of,
     body_symbols,
+    carried_force,
     compose_equation,
+    contact_force,
     friction_level,
     impedance_of,
 )
-from .carried_force import carried_force
-from .environment import contact_force
 from .value import Value, with_held
 
 #: roles that one effect of a body can have, in the words of messages

@@ -14,7 +14,7 @@ from ..base.units import unit_after_number, unit_of
 from ..effects import CONTACT_ROLES, Effect, Parameter, find_effect
 from ..measurement.description import BodyDescription, Effects, EnvironmentDescription, ModelValue
 from .body import INERTIA, Body
-from .environment import CONTACT
+from .body_equation import CONTACT
 from .value import Value
 
 

@@ -23,7 +23,7 @@ from collections.abc import Mapping
 
 from ..effects import BLOCK_EFFECTS, CONTACT_ROLES, EFFECTS
 from .body import Body
-from .environment import CONTACT
+from .body_equation import CONTACT
 from .value import Value
 
 
@@ -39,6 +39,12 @@ def hand(
 
     mass: moving with the handle, kg;  damping: N s/m;  stiffness: N/m
     arm: `inertia`, `damping`, `stiffness` of the arm; then `damping` and `stiffness` are the grip's
+
+        >>> td.hand(mass=0.15, damping=5.0, stiffness=200.0)
+        Body, prismatic
+          inertia = 0.15 kg
+          viscous.damping = 5 N*s/m
+          spring.stiffness = 200 N/m
     """
     body = Body(axis, {"inertia": Value(mass)})
     if arm is None:

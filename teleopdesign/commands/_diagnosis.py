@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError, ModelError, unknown
 from ._arms import inertia_line, joint_of, place_at_pose
-from ._progress import Reporter
-from ._terminal import print_styled
+from ._terminal import Reporter, print_styled
 
 if TYPE_CHECKING:
     from ..block_cuts import DiagramExperiment
@@ -209,7 +208,7 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
     returns: the body, the range that its records reached (None without records), and what limits
         of its friction rest on
     """
-    from ..design.stated_motion import reach_of
+    from ..design.assumptions import reach_of
     from ..diagnose import load_answer
 
     if source.suffix == ".json" and not source.is_dir():

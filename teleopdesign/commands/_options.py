@@ -1,18 +1,23 @@
-"""Arguments and messages that several commands share.
+"""Arguments, paths and messages that several commands share.
 
 Values on the command line: a number, and a unit unless the number is in SI.
+
+The names of the options decide which paths are read and which are written, so that no command has
+to declare them.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
+import shlex
+from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
 
 from ..base.errors import ExperimentError
-from ..base.files import check_writable
+from ..base.files import check_writable, read_whole
 from ..base.units import AXES, QUANTITIES, to_si, unit_of
-from ._terminal import replace_line
 
 
 def add_folder(parser: argparse.ArgumentParser) -> None:
@@ -112,11 +117,6 @@ def make_folder(path: Path) -> Path:
     return path
 
 
-def say(text: str) -> None:
-    """Show progress on one line of a terminal; print nothing elsewhere."""
-    replace_line(text)
-
-
 def add_experiment(parser: argparse.ArgumentParser, *, answer: bool = True) -> None:
     """Arguments: the experiment's folder, the user's effects, and an answer to continue from."""
     if answer:
@@ -190,3 +190,76 @@ def value_in(text: str, *, unit: str, where: str) -> float:
     of_unit = (q for q in product(QUANTITIES, AXES) if unit_of(*q) == unit)
     quantity, axis = next(of_unit, ("dimensionless", AXES[0]))
     return value_from(text, quantity=quantity, axis=axis, where=where)
+
+
+#: options that name what a command reads, and what it writes: a file or a folder
+INPUTS = (
+    *("folder", "logs", "source", "file", "diagram", "answer", "check", "effect", "law", "design"),
+    *("without", "like"),
+)
+OUTPUTS = ("json", "predictions", "figure", "report", "output", "out", "effect_file")
+
+
+def shell_word(path: Path | str) -> str:
+    """A path as it is typed in a shell: in quotes if it contains spaces."""
+    return shlex.quote(str(path))
+
+
+def inputs(options: argparse.Namespace | None) -> Iterator[Path]:
+    """The paths that a command reads, as the user wrote them."""
+    return _paths(options, INPUTS)
+
+
+def outputs(options: argparse.Namespace | None) -> Iterator[Path]:
+    """The paths that a command writes."""
+    return _paths(options, OUTPUTS)
+
+
+def python_files(options: argparse.Namespace | None) -> Iterator[Path]:
+    """The user's Python files that a command runs: effects and studies."""
+    return (path for path in inputs(options) if path.suffix == ".py")
+
+
+def _paths(options: argparse.Namespace | None, names: tuple[str, ...]) -> Iterator[Path]:
+    for name in names:
+        value = getattr(options, name, None)
+        for one in value if isinstance(value, list) else [value]:
+            if isinstance(one, str | Path) and str(one):
+                yield Path(one)
+
+
+def check_paths(options: argparse.Namespace) -> None:
+    """Raise ExperimentError if an output is also an input, or if two outputs are the same file.
+
+    Records that an experiment names count as inputs; so do files that another TOML file names.
+    """
+    read = {os.path.realpath(p): p for p in _files_read(options)}
+    written: dict[str, Path] = {}
+    for path in outputs(options):
+        if path.is_dir():
+            continue
+        real = os.path.realpath(path)
+        if real in read:
+            raise ExperimentError(f"{path}: is read by this command, expected another file")
+        if real in written:
+            raise ExperimentError(f"{path}: is to hold two results, expected a file for each")
+        written[real] = path
+
+
+def _files_read(options: argparse.Namespace) -> Iterator[Path]:
+    for path in inputs(options):
+        file = path / "experiment.toml" if path.is_dir() else path
+        yield file
+        if file.suffix == ".toml":
+            yield from (file.parent / text for text in _texts_of(file))
+
+
+def _texts_of(file: Path) -> Iterator[str]:
+    """Every text in a TOML file; none for an invalid file, which is reported when it is read."""
+    from ..base.toml import parse_toml, texts_in
+
+    try:
+        content = parse_toml(read_whole(file).decode("utf-8-sig"))
+        yield from texts_in(content)
+    except (OSError, ValueError, RecursionError):
+        return

@@ -18,7 +18,7 @@ from ._diagnosis import (
     print_diagnosis,
 )
 from ._options import say_written
-from ._progress import Reporter
+from ._terminal import Reporter
 
 if TYPE_CHECKING:
     from ..block_cuts import BlockDiagnosis, DiagramExperiment
@@ -61,7 +61,7 @@ def diagnose_diagram(experiment: DiagramExperiment, options: argparse.Namespace)
         with write_beside(options.figure) as part:
             diagnosis.plot().savefig(part)
     if options.report is not None:
-        from ..show.block_cuts.report import write_block_report
+        from ..show.block_cuts.text import write_block_report
 
         write_block_report(diagnosis, options.report)
     say_written(options.report, options.json, options.figure)

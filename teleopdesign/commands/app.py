@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> NoReturn:
         raise ExperimentError(
             f'app: needs marimo, found none ({error}): pip install "teleopdesign[app]"'
         ) from error
-    from ..app.settings import EFFECTS, FOLDER
+    from ..app.server import EFFECTS, FOLDER
     from ..effects import EFFECTS as KNOWN
 
     among = candidate_effects(KNOWN, options.only, options.exclude)

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..base.errors import ExperimentError
 from ..base.files import write_json
 from ._diagnosis import experiment_or_diagram, folder_of, stated_model
-from ._options import add_experiment, add_output, say_written
-from ._paths import shell_word
+from ._options import add_experiment, add_output, say_written, shell_word
 from ._whole_diagram import check_diagram
 
 if TYPE_CHECKING:

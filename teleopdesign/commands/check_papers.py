@@ -9,7 +9,8 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from ..base.files import write_json
-from ._options import add_output, say
+from ._options import add_output
+from ._terminal import replace_line
 
 if TYPE_CHECKING:
     from ..papers import Result, Statement
@@ -38,9 +39,9 @@ def run(options: argparse.Namespace) -> int:
     chosen = [find_statement(name) for name in options.statement] or list(STATEMENTS.values())
     results = []
     for done, statement in enumerate(chosen):
-        say(f"{statement.name}: {done} of {len(chosen)} done")
+        replace_line(f"{statement.name}: {done} of {len(chosen)} done")
         results.append(check(statement))
-    say("")
+    replace_line("")
     width = max(72, min(shutil.get_terminal_size().columns, 120))
     print(
         "\n".join(_full(r, width) for r in results) if options.statement else _table(results, width)

@@ -10,8 +10,7 @@ from ..base.errors import ModelError
 from ..base.files import write_beside, write_json
 from ._arms import add_body
 from ._diagnosis import diagnosis_of_part, experiment_and_answer, stated_model
-from ._options import add_experiment, add_output
-from ._paths import shell_word
+from ._options import add_experiment, add_output, shell_word
 from ._whole_diagram import describe_diagram, diagnosed_diagram
 
 if TYPE_CHECKING:

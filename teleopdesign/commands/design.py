@@ -11,8 +11,8 @@ from ..base.errors import ExperimentError, unknown
 from ..base.files import write_json, write_text
 from ._arms import add_body, inertia_line, joint_of, place_at_pose
 from ._diagnosis import diagnosis_of, experiment_and_answer, print_diagnosis
-from ._options import add_experiment, add_output, check_output, make_folder, say, say_written
-from ._paths import shell_word
+from ._options import add_experiment, add_output, check_output, make_folder, say_written, shell_word
+from ._terminal import replace_line
 from ._whole_diagram import diagnosed_diagram
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def _run_diagram(
     diagnosis: BlockDiagnosis, assumptions: Assumptions, options: argparse.Namespace
 ) -> int:
     """Design for a device of a whole diagram, with its computer and its hand."""
-    from ..design.of_diagram import device_of_diagram
+    from ..design.assumptions import device_of_diagram
 
     if options.answer is None:
         print_diagnosis(str(diagnosis))
@@ -133,9 +133,9 @@ def _diagnosis_to_design_for(experiment: Experiment, options: argparse.Namespace
 def _design(diagnosis: Diagnosis | BlockDiagnosis, place: str, assumptions: Assumptions) -> Design:
     from ..design import design
 
-    say(f"designing for {place}")
+    replace_line(f"designing for {place}")
     proposal = design(diagnosis, place=place, assumptions=assumptions)
-    say("")
+    replace_line("")
     return proposal
 
 

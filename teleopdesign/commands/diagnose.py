@@ -15,6 +15,7 @@ from ..base.errors import ExperimentError, ModelError
 from ..base.files import harmless_cell, write_beside, write_text
 from ..base.sentences import percent
 from . import STOPPED
+from ._command_line import BAD_INPUT
 from ._diagnosis import (
     candidate_effects,
     diagnose_experiment,
@@ -23,18 +24,16 @@ from ._diagnosis import (
     folder_of,
     print_diagnosis,
 )
-from ._failures import BAD_INPUT
 from ._options import (
     add_effect_files,
     add_output,
     add_search,
     count_argument,
     make_folder,
-    say,
     say_written,
+    shell_word,
 )
-from ._paths import shell_word
-from ._progress import PointReporter
+from ._terminal import PointReporter, replace_line
 from ._whole_diagram import diagnose_diagram
 from .report import write_page
 
@@ -158,9 +157,9 @@ def _simulation(diagnosis: Diagnosis, options: argparse.Namespace) -> Simulation
     from ..diagnose.by_simulation import compare_by_simulation
 
     loop = None if options.loop is None else RecordedLoop(*options.loop)
-    say("simulating the final model")
+    replace_line("simulating the final model")
     comparison = compare_by_simulation(diagnosis.model, diagnosis.recording.parts, loop=loop)
-    say("")
+    replace_line("")
     print(f"\n{comparison}")
     return comparison
 

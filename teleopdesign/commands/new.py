@@ -11,10 +11,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError
-from ._new_curve import is_curve, make_curve
-from ._new_diagram import add_diagram_options, make_diagram
-from ._new_like import make_like
-from ._paths import shell_word
+from ._new_kinds import (
+    add_diagram_options,
+    is_curve,
+    make_curve,
+    make_diagram,
+    make_like,
+    say_next,
+    say_what_stops,
+)
+from ._options import shell_word
 
 if TYPE_CHECKING:
     from ..measurement.experiment import Experiment
@@ -114,7 +120,6 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from ..check import CheckedRecording, stopping_findings
     from ..measurement import load_experiment
     from ..measurement.new_folder import make_folder, require_new
     from ..measurement.survey import require_same_columns, survey_logs
@@ -156,8 +161,7 @@ def _run(options: argparse.Namespace) -> int:
     experiment = load_experiment(folder)
     print()
     print(experiment)
-    for finding in stopping_findings(CheckedRecording(experiment)):
-        print(f"\nno diagnosis can answer yet: {finding.sentence}")
+    say_what_stops(experiment)
     _write_picture(survey, experiment, folder)
     return 0
 
@@ -172,13 +176,7 @@ def _write_picture(survey: Survey, experiment: Experiment, folder: Path) -> None
     print(f"\nwritten: {folder / 'experiment.toml'}, {picture}")
     if boxes := explain_boxes(survey.columns):
         print(boxes)
-    if survey.guesses:
-        print(
-            "if a guess is wrong: repeat the command with the option below the guess, and with "
-            "--overwrite"
-        )
-    print(f"next: teleopdesign check {shell_word(folder)}")
-    print(f"      teleopdesign diagnose {shell_word(folder)} --report report.html")
+    say_next(folder, wrong="the option below the guess" if survey.guesses else "")
 
 
 def _spans(options: argparse.Namespace) -> FitAndCheck | None:

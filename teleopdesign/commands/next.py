@@ -11,13 +11,9 @@ from typing import TYPE_CHECKING, Any
 from ..base.errors import ExperimentError, unknown
 from ..base.files import write_beside, write_json
 from ._arms import add_body
-from ._diagnosis import (
-    diagnosis_of,
-    diagnosis_of_part,
-    experiment_and_answer,
-    print_diagnosis,
-)
-from ._options import add_experiment, add_output, say, value_from
+from ._diagnosis import diagnosis_of, diagnosis_of_part, experiment_and_answer, print_diagnosis
+from ._options import add_experiment, add_output, value_from
+from ._terminal import replace_line
 from ._whole_diagram import diagnosed_diagram, is_diagram, print_next, print_what_to_log
 
 if TYPE_CHECKING:
@@ -93,15 +89,15 @@ def run(options: argparse.Namespace) -> int:
         return _run_arm(experiment, options)
     limits = _limits(_read_limits(options.limit, experiment), experiment)
     diagnosis = diagnosis_of_part(experiment, options)
-    proposal = propose(diagnosis, duration=options.duration, limits=limits, progress=say)
-    say("")
+    proposal = propose(diagnosis, duration=options.duration, limits=limits, progress=replace_line)
+    replace_line("")
     print_diagnosis(str(diagnosis))
     print()
     print(_wrap(repr(proposal)))
     shown: Sequence[SimulatedDiagnosis] = ()
     if options.simulate is not None:
-        shown = show_in_simulation(proposal, seconds=options.simulate, progress=say)
-        say("")
+        shown = show_in_simulation(proposal, seconds=options.simulate, progress=replace_line)
+        replace_line("")
         print("\n".join(["", *map(str, shown)]))
         print(f"true effect named in simulation: {sum(s.named for s in shown)} of {len(shown)}")
     if options.output is not None:
@@ -134,8 +130,10 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
         j: shown_limits(diagnosis.joints[j].prepared)[j].with_values(**values)
         for j, values in stated.items()
     }
-    paths = propose_paths(diagnosis, duration=options.duration, limits=limits, progress=say)
-    say("")
+    paths = propose_paths(
+        diagnosis, duration=options.duration, limits=limits, progress=replace_line
+    )
+    replace_line("")
     print_diagnosis(str(diagnosis))
     print(f"\n{_wrap('next experiment: ' + repr(paths))}")
     if options.output is not None and paths.is_useful:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from ..base.errors import ModelError
 from ._diagnosis import diagnosis_of, experiment_and_answer
-from ._options import add_experiment, add_output, add_search, check_output, say
+from ._options import add_experiment, add_output, add_search, check_output
+from ._terminal import replace_line
 from ._whole_diagram import diagnosed_diagram
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
 
 def report_diagram(diagnosis: BlockDiagnosis, options: argparse.Namespace) -> int:
     """Write the page of a whole diagram."""
-    from ..show.block_cuts.report import write_block_report
+    from ..show.block_cuts.text import write_block_report
 
     answer: Path | None = options.answer
     beside = Path("report.html") if answer is None else answer.with_suffix(".html")
@@ -78,19 +79,19 @@ def write_page(
     from ..show.report import write_report
     from ..unexplained import where_it_fails
 
-    say("checking the recording")
+    replace_line("checking the recording")
     before = None if diagnosis.joints else diagnosis.before.model
     soundness = check_experiment(diagnosis.experiment, before)
     left = {}
     for part, one in (diagnosis.joints or {"": diagnosis}).items():
-        say(f"describing what is left{f' at {part}' if part else ''}")
+        replace_line(f"describing what is left{f' at {part}' if part else ''}")
         left[part] = where_it_fails(one.model, one.prepared, one.floor)
         if one.kind:
             left[part] = (curve_finding(one), *left[part])
     steps = _next_steps(diagnosis)
-    say("simulating the final model")
+    replace_line("simulating the final model")
     simulation = simulation or simulated_if_possible(diagnosis)
-    say("")
+    replace_line("")
     write_report(
         diagnosis,
         path,
@@ -115,4 +116,4 @@ def _next_steps(diagnosis: Diagnosis) -> tuple[Finding, ...]:
         shown_limits(diagnosis.prepared)
     except ModelError:
         return ()
-    return propose(diagnosis, progress=say).findings()
+    return propose(diagnosis, progress=replace_line).findings()

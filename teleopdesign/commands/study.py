@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 from ..base.errors import ExperimentError, did_you_mean
 from ..base.files import read_whole
 from . import STOPPED
-from ._failures import BAD_INPUT
-from ._options import add_effect_files, add_law_files, add_output, count_argument, say
-from ._progress import PointReporter
+from ._command_line import BAD_INPUT
+from ._options import add_effect_files, add_law_files, add_output, count_argument
+from ._terminal import PointReporter, replace_line
 
 if TYPE_CHECKING:
     from ..studies import Study
@@ -71,10 +71,10 @@ def run(options: argparse.Namespace) -> int:
             progress=reporter,
         )
     except KeyboardInterrupt:
-        say("")
+        replace_line("")
         print(f"teleopdesign: stopped{_describe_kept(options.out, reporter)}", file=sys.stderr)
         return STOPPED
-    say("")
+    replace_line("")
     print(result)
     _print_failures(result)
     if not result.measures and result.failures:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ._options import add_output, say, say_written
+from ._options import add_output, say_written
+from ._terminal import replace_line
 
 EXAMPLES = """
   teleopdesign verify design.json joint_compensated --figure verified.png
@@ -41,9 +42,9 @@ def run(options: argparse.Namespace) -> int:
     plan = read_plan(options.design, options.body)
     experiment = load_experiment(options.folder)
     without = None if options.without is None else load_experiment(options.without)
-    say("comparing along the recorded motion")
+    replace_line("comparing along the recorded motion")
     verified = verify(plan, experiment, case=options.case, without=without)
-    say("")
+    replace_line("")
     print(verified)
     if options.figure is not None:
         save_figure(verified.plot(), options.figure, suffixes=(options.figure.suffix,))

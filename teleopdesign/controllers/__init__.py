@@ -26,13 +26,7 @@ from ._controller import (
     Stage,
     parameter_symbol,
 )
-from ._declarations import (
-    broken_declarations,
-    equation_of,
-    has_shape,
-    symbols_of,
-    unknown_symbols,
-)
+from ._declarations import broken_declarations, equation_of, has_shape, symbols_of, unknown_symbols
 from ._exact import exact_decimal, make_exact, resolvent
 from ._from_control import (
     from_control,
@@ -115,6 +109,9 @@ def controller(name: str | ControlLaw, values: Mapping[str, float]) -> Controlle
     name: of a law of the catalogue, "cancel" with parameters of effects such as
         "cogging.amplitude" (as `cancel`), or a user's law (`load_controller`)
     raises ModelError: no such law, or a value that is missing, unknown or out of bounds
+
+        >>> td.controller("dahl", {"level": 1.0, "stiffness": 1e4})
+        Controller dahl(level = 1, stiffness = 10000)
     """
     if isinstance(name, ControlLaw):
         return Controller((Stage(name, values),))

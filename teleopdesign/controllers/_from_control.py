@@ -44,6 +44,10 @@ def from_control(system: control.InputOutputSystem, *, name: str = "state_space"
     (`control.frd`) takes part only in `bode`, `loop_gain` and `matrix_response`, within its
     frequencies, by linear interpolation.
     raises ModelError: several inputs or outputs, improper, no system
+
+        >>> import control as ct
+        >>> td.from_control(ct.tf([1], [0.1, 1])).names()["state_space.denominator_1"]
+        0.1
     """
     from ..base import python_control as control
 

@@ -60,6 +60,9 @@ def cancel(
         sgn v, or a bristle if `presliding` is among the effects
     zero: reading of the position where the effects have their zero, m or rad
     raises ModelError: an effect cannot be cancelled, or lacks a value; the message says why
+
+        >>> td.cancel({"coulomb": {"level": 1.5}, "viscous": {"damping": 0.4}})
+        Controller cancel(coulomb.level = 1.5, viscous.damping = 0.4)
     """
     if isinstance(what, Body):
         effects = what.effects

@@ -10,7 +10,7 @@ import sympy as sp
 
 from ..base.errors import ModelError, did_you_mean
 from ..base.frozen import ByName, Frozen
-from ..diagrams import AnyBlock, Attached, Control, Diagram, Moving
+from ..diagrams import AnyBlock, Attached, Control, Diagram
 from ..diagrams.short_form import kind_of
 from ..realise.tips import linear_tips
 from .printing import as_latex, as_text, block_symbol, name_as_latex, with_gamma
@@ -147,6 +147,14 @@ def all_transfers(diagram: Diagram, *, seconds: float = SECONDS) -> Transfers:
     `two_port_functions`). A device with a linear transmission is two bodies, and the motion of its
     tip is measured. Blocks need not commute. Functions that take longer than `seconds`, or have no
     solution, are listed in `undone`.
+
+        >>> td.derive_transfers(td.haptic_interface(cancellation=td.ANY))
+        Zhat_M = Z_M - C    (L to R_D - R_M: apparent mechanism impedance)
+        L/R_V = (Z_M - C)^-1    (R_V to L)
+        L/R_D = (Z_M - C)^-1    (R_D to L)
+        R_M/R_V = -1    (R_V to R_M)
+        R_M/R_D = 0    (R_D to R_M)
+        R_V/L = Z_M - C    (impedance at R_V, with all other inputs zero)
     """
     transfers: dict[str, Transfer] = {}
     undone: dict[str, str] = {}
@@ -164,8 +172,8 @@ def all_transfers(diagram: Diagram, *, seconds: float = SECONDS) -> Transfers:
         for signal, case in _from_outside(diagram, output).items():
             if f"{output}/{signal}" not in transfers:
                 _derive(f"{output}/{signal}", case, transfers, undone, seconds)
-    for block in diagram.blocks:
-        if isinstance(block, Moving) and block.driver in diagram.outside:
+    for block in diagram.moving:
+        if block.driver in diagram.outside:
             text = f"impedance at {block.driver}, with all other inputs zero"
             case = Case(diagram, block.driver, block.motion, block.motion, text)
             _derive(f"{block.driver}/{block.motion}", case, transfers, undone, seconds)

@@ -162,15 +162,15 @@ def round_trip(diagram: Diagram, part: Control) -> sp.Expr:
 
 
 def _driver(diagram: Diagram, motion: str) -> str:
-    for block in diagram.blocks:
-        if isinstance(block, Moving) and block.motion == motion:
+    for block in diagram.moving:
+        if block.motion == motion:
             return block.driver
     raise ModelError(f'{diagram.name}: "{motion}" is no motion of a body that forces move')
 
 
 def _order(unknown: list[str], output: str, diagram: Diagram) -> list[str]:
     """Order of elimination: forces first, then the output, motions last."""
-    motions = [b.motion for b in diagram.blocks if isinstance(b, Moving)]
+    motions = [b.motion for b in diagram.moving]
     forces = [s for s in unknown if s not in motions]
     forces.sort(key=lambda s: s == output)
     return [*forces, *(m for m in motions if m in unknown)]

@@ -85,6 +85,14 @@ def transfer_functions(diagram: Diagram) -> TransferFunctions:
     both. Zhat_M = (R_D - R_M)/L. L is the response of a position loop K. Only functions for which
     the diagram has the blocks are derived; other blocks are left out of the diagram for them.
     Bernstein, Lawrence, Pao, World Haptics 2005, eqs (2) to (5) and (7), figure 4.
+
+        >>> parts = {"hand": td.ANY, "cancellation": td.ANY, "force_feedback": td.ANY}
+        >>> td.transfer_functions(td.haptic_interface(**parts))
+        T_o = Z_H (Z_H + Z_M)^-1    (R_D to R_M, uncompensated)
+        T_MBC = Z_H (Z_H + Z_M - C)^-1    (R_D to R_M, motion-based cancellation)
+        T_FF = Z_H (Z_M + Gamma Z_H)^-1 Gamma    (R_D to R_M, force feedback)
+        T_H = Z_H (Z_M + Gamma Z_H - C)^-1 Gamma    (R_D to R_M, hybrid)
+        Zhat_M = Gamma^-1 (Z_M - C)    (L to R_D - R_M: apparent mechanism impedance)
     """
     cases = named_cases(diagram)
     expressions = {name: case.derive() for name, case in cases.items()}

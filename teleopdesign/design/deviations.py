@@ -22,7 +22,6 @@ from ..controllers import Controller
 from ..diagnose.criteria import CRITERIA
 from ..diagnose.evidence import gain_score
 from ..diagnose.fit import block_numbers, standard_errors
-from ..diagrams import Control
 from ..effects import Parameter
 from ..measurement.filtering import Array
 from .second_recording import DELAY, FILTER, GAIN, SHAPE, Key, SecondRecording, force_like
@@ -239,7 +238,7 @@ def _force_delay(on: SecondRecording) -> Key:
 def _of_computer(on: SecondRecording) -> tuple[_Number, ...]:
     """Numbers of the controllers, of the velocity filter and of the delay."""
     row, numbers = on.sampling.period, []
-    for block in (b for b in on.diagram.blocks if isinstance(b, Control)):
+    for block in on.diagram.controls:
         assert isinstance(block.controller, Controller)
         known, lengths, scaled = block.controller.names(), [on.travel], 0
         for stage in block.controller.stages:

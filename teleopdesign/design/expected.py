@@ -21,8 +21,8 @@ from ..measurement.experiment import Experiment
 from ..measurement.prepare import prepare
 from ..realise.tips import led_motion
 from ..simulate import Sampling, simulate_many
+from .assumptions import StatedMotion
 from .prediction import BRISTLE_SHARE, CYCLES
-from .stated_motion import StatedMotion
 
 #: bodies that are drawn: two groups of lanes, computed together
 DRAWS = 32

@@ -23,8 +23,8 @@ from ..frequency import FrequencyResponse, ParameterCovariance, bode, describing
 from ..frequency.closed_forms import dahl
 from ..frequency.confidence import ResponseBand, confidence_band
 from ..frequency.frozen_friction import without_friction
+from .assumptions import StatedMotion
 from .quasi_static import force_needed
-from .stated_motion import StatedMotion
 
 
 def linear_cases(hybrid: Diagram, motion: StatedMotion) -> dict[str, Diagram]:

@@ -112,7 +112,7 @@ def following_cancellation(
     if ratio <= 0:
         return None
     part = round_down(assumptions.fraction * ratio / gain)
-    values = {e: _values(e, body) for e in keep}
+    values = {e: {n: body.parameters[f"{e.name}.{n}"].value for n in e.parameters} for e in keep}
     for effect in (e for e in keep if e.role == "friction_level"):
         assert effect.strength is not None
         values[effect][effect.strength] *= part
@@ -151,10 +151,6 @@ def with_forces(
             smoothing = reason.value
     made = cancel(values, smoothing_velocity=smoothing)
     return ProposedController(made, _reasons(made, body, whys, "as identified"))
-
-
-def _values(effect: Effect, body: Body) -> dict[str, float]:
-    return {n: body.parameters[f"{effect.name}.{n}"].value for n in effect.parameters}
 
 
 def _reasons(made: Controller, body: Body, whys: Mapping[str, str], why: str) -> tuple[Reason, ...]:

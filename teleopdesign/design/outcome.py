@@ -24,10 +24,9 @@ from ..simulate import Sampling
 from .assumptions import Assumptions, sampling_of
 from .cancellation import ProposedController
 from .expected import ExpectedError
-from .felt_impedance import FeltImpedance
 from .force_feedback import FeedbackLoop
 from .other_effects import LEVEL
-from .prediction import Prediction
+from .prediction import FeltImpedance, Prediction
 from .quasi_static import ResidualFriction
 
 if TYPE_CHECKING:

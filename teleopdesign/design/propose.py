@@ -16,7 +16,14 @@ from ..passivity.claims.claim import use_units_of
 from ..realise.damping_interval import small_motion_damping
 from ..realise.friction_interval import FrictionInterval, friction_interval
 from ..realise.reach import Reach
-from .assumptions import Assumptions, sampling_of
+from .assumptions import (
+    Assumptions,
+    StatedMotion,
+    device_of_diagram,
+    reach_of,
+    sampling_of,
+    stated_motion,
+)
 from .cancellation import (
     ProposedController,
     acting_gain,
@@ -26,10 +33,8 @@ from .cancellation import (
     smoothing_name,
 )
 from .expected import ExpectedError, expected_error, unexplained_force
-from .felt_impedance import felt_impedance
 from .force_feedback import FeedbackLoop, force_feedback, identified_delay, whole_inertia
 from .linear import transparency
-from .of_diagram import device_of_diagram
 from .other_effects import (
     following_cancellation,
     late_force_claim,
@@ -38,15 +43,9 @@ from .other_effects import (
     with_gains_divided_out,
 )
 from .outcome import Design
-from .prediction import Prediction, predict
+from .prediction import Prediction, felt_impedance, predict
 from .quasi_static import SHARES, residual_friction
-from .stated_motion import StatedMotion, reach_of, stated_motion
-from .verdict import (
-    cancellation_claims,
-    compliant_claim,
-    energy_claim,
-    feedback_claim,
-)
+from .verdict import cancellation_claims, compliant_claim, energy_claim, feedback_claim
 
 #: load of a hand over the inertia of the device, if no load is stated
 LOAD = 3.0
@@ -90,6 +89,10 @@ def design(
     Of the laws for C that are certain to be passive, the design has the one with the smaller force
     error.
     raises ModelError: no such body, an assumption that cannot hold, a motion beyond the records
+
+        >>> diagnosis = td.find_missing(td.load_experiment(td.example("rod")), among=["stribeck"])
+        >>> td.design_compensation(diagnosis).cancellation.controller.names()
+        {'dahl.level': 0.491, 'dahl.stiffness': 6810.0}
     """
     if isinstance(diagnosis, BlockDiagnosis):
         diagnosis, place, assumptions = device_of_diagram(diagnosis, place, assumptions)
@@ -286,16 +289,10 @@ def _claims(
     if (of_place := late_force_claim(body, reach, assumptions, late=held)) is not None:
         by_case["MBC"].append(of_place)
     by_case["FF"] = [feedback_claim(body, best.force_feedback.controller)]
+    sampling = sampling_of(assumptions, reach)
     for case, diagram in four_cases(best.prediction.hybrid, every=True).items():
-        by_case[case].append(
-            energy_claim(
-                diagram,
-                best.prediction.motion,
-                reach,
-                sampling_of(assumptions, reach),
-                axis=body.axis,
-            )
-        )
+        claim = energy_claim(diagram, best.prediction.motion, reach, sampling, axis=body.axis)
+        by_case[case].append(claim)
     return {
         case: tuple(use_units_of(body.axis, c) for c in claims) for case, claims in by_case.items()
     }

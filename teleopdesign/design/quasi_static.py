@@ -27,7 +27,7 @@ from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..realise.simulated import without_absent
 from ..realise.tips import move_to_tip_body
-from .stated_motion import StatedMotion
+from .assumptions import StatedMotion
 
 #: roles of effects that need dynamic states: in slow motion they are left out, or at steady state
 _ROLES = ("friction_shape", "friction_speed", "structure", "actuation", "contact", "contact_shape")

@@ -17,7 +17,7 @@ from ..block_cuts.cuts import COMPUTER, Cut
 from ..block_cuts.diagram_experiment import StatedComputer
 from ..blocks import Body
 from ..controllers import Controller
-from ..diagrams import Control, Diagram, Moving
+from ..diagrams import Diagram, Moving
 from ..effects import Parameter
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
@@ -71,7 +71,7 @@ class SecondRecording:
     @property
     def mover(self) -> Moving:
         """The block of the body."""
-        (block,) = (b for b in self.diagram.blocks if isinstance(b, Moving))
+        (block,) = self.diagram.moving
         return block
 
     @property
@@ -93,7 +93,7 @@ class SecondRecording:
             delay=max(changes.get(DELAY, self.sampling.delay), 0.0),
         )
         diagram, mover = self.diagram, self.mover
-        for block in (b for b in diagram.blocks if isinstance(b, Control)):
+        for block in diagram.controls:
             new = {n: v for (at, n), v in changes.items() if at == block.name}
             if new:
                 assert isinstance(block.controller, Controller)
@@ -155,7 +155,7 @@ def _with_changes(controller: Controller, new: Mapping[str, float]) -> Controlle
 
 def _rows(diagram: Diagram, experiment: Experiment, place: str, motion: Motion) -> Passes:
     """What the computer read in a stretch; forces have the signs of the diagram."""
-    (block,) = (b for b in diagram.blocks if isinstance(b, Moving))
+    (block,) = diagram.moving
     record = next(
         r
         for r in experiment.records

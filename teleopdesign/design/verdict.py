@@ -42,9 +42,9 @@ from ..realise.lti import S
 from ..realise.reach import Reach
 from ..realise.tips import led_motion
 from ..simulate import Sampling
+from .assumptions import StatedMotion
 from .cancellation import ProposedController
 from .prediction import steady_cycle
-from .stated_motion import StatedMotion
 
 
 def compliant_claim(

@@ -119,13 +119,16 @@ def restrict_to_curve(model: Model) -> Model:
 def list_look_alikes(candidate: Candidate, model: Model) -> list[Candidate]:
     """Effects that the model lacks and that look like the candidate, at the same place.
 
-    One of the two is the commoner by its file (`Effect.commoner`).
+    One of the two is the commoner by its file (`Effect.commoner`), or the candidate is what the
+    other one is on another axis (`Effect.elsewhere`), as a constant force is for gravity.
     """
     body, at = model.body(candidate.at), candidate.at
     return [
         Candidate(e, at)
         for e in model.known.values()
-        if are_alike(candidate.effect, e) and not body.has(e.name) and body.axis not in e.elsewhere
+        if (are_alike(candidate.effect, e) or candidate.effect.name in e.elsewhere.values())
+        and not body.has(e.name)
+        and body.axis not in e.elsewhere
     ]
 
 

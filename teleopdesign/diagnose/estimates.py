@@ -29,6 +29,13 @@ def fit(model: Model, experiment: Experiment, *, seed: int = 0) -> Model:
 
     seed: of the random numbers for the noise floor and for the simulated readings
     raises ExperimentError: the experiment lacks what the comparison needs
+
+        >>> experiment = td.load_experiment(td.example("rod"))
+        >>> td.fit(td.Model.from_experiment(experiment), experiment)
+        Model
+          device.inertia = 0.1978 +- 0.0012 kg
+          device.coulomb.level = 0.6464 +- 0.0082 N
+          device.viscous.damping = 1.223 +- 0.092 N*s/m
     """
     search = search_for(experiment, model, seed=seed)
     fit = estimate_stated(search.stated, search.prepared)

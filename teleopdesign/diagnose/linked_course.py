@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arms.base_parameters import columns_with_motors
+from ..arms.regressor import columns_with_motors
 from ..blocks import Body, matrix_impedance
 from ..controllers import controller
 from ..diagrams import Block, Control, Diagram, Junction, Linked, Moving

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from ..arms import BaseParameters, Chain, base_parameters
-from ..arms.base_parameters import columns_with_motors
+from ..arms.regressor import columns_with_motors
 from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
 from ..effects import EFFECTS

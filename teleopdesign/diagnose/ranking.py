@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..base.frozen import ByValue
-from ..base.shown import html_table
+from ..base.shown import Shown
 from .candidates import Candidate
 from .fit import Fit
 
@@ -59,9 +59,14 @@ class Ranked(ByValue):
         return named_instead(self.candidate, name_of(self.instead_of))
 
     @property
+    def is_idle(self) -> bool:
+        """Whether its fit ended at no strength: it gains nothing."""
+        return self.candidate.key in self.fit.model.absent
+
+    @property
     def note(self) -> str:
         """A remark for the table of candidates; "" for none."""
-        if self.candidate.key in self.fit.model.absent:
+        if self.is_idle:
             return "gains nothing"
         if self.refused or self.implausible:
             return REFUSALS.get(self.refused, self.implausible)
@@ -71,8 +76,8 @@ class Ranked(ByValue):
         return f"Ranked {self.title}: score {self.score:.1f}, behind {self.behind:.1f}"
 
 
-@dataclass(frozen=True, eq=False)
-class Ranking(ByValue):
+@dataclass(frozen=True, eq=False, repr=False)
+class Ranking(Shown, ByValue):
     """Candidates, best first, and the fit that they are compared with.
 
     base: the model without any of them
@@ -86,24 +91,3 @@ class Ranking(ByValue):
     def best(self) -> Ranked:
         """The candidate with the smallest error."""
         return self.ranked[0]
-
-    def _repr_html_(self) -> str:
-        base = (f"{self.base.fit_error:.4f}", f"{self.base.check_error:.4f}")
-        rows: list[tuple[str, ...]] = [("(the model)", *base, "", "", "")]
-        for r in self.ranked:
-            errors = (f"{r.fit.fit_error:.4f}", f"{r.fit.check_error:.4f}")
-            rows.append((r.title, *errors, f"{r.score:.1f}", f"{r.behind:.1f}", r.note))
-        head = ("candidate", "fit error", "check error", "score", "behind", "")
-        return html_table("Candidates, best first", head, rows)
-
-    def __repr__(self) -> str:
-        lines = [f"{'candidate':<40}{'fit error':>10}{'check error':>13}{'score':>8}{'behind':>8}"]
-        lines.append(
-            f"{'(the model)':<40}{self.base.fit_error:>10.4f}{self.base.check_error:>13.4f}"
-        )
-        for r in self.ranked:
-            note = f"  {r.note}" if r.note else ""
-            lines.append(
-                f"{r.title:<40}{r.fit.fit_error:>10.4f}{r.fit.check_error:>13.4f}{r.score:>8.1f}{r.behind:>8.1f}{note}"
-            )
-        return "\n".join(lines)

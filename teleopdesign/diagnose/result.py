@@ -167,17 +167,16 @@ def _likeness(base: Fit, one: Fit, other: Fit) -> float:
 
 
 def _indistinguishable(end: LadderEnd) -> tuple[tuple[Candidate, ...], ...]:
-    """Groups of effects as good as an accepted one, and pairs that the travel hardly separates.
+    """Each accepted effect with those as good, and those that the travel hardly separates from it.
 
-    One of such a pair is the commoner by its file (`Effect.commoner`), so that it is named
-    nonetheless. The links of an arm include gravity, so there are no such pairs at its joints.
+    One of the latter is the commoner by its file (`Effect.commoner`), so that it is named
+    nonetheless. The links of an arm include gravity, so there are none at its joints.
     """
-    groups = [(r.added, *r.alternatives) for r in end.rungs if r.added and r.alternatives]
-    if not end.search.whole.is_linked:
-        doubted = dict.fromkeys(one.candidate for one in end.undetermined)
-        model = end.after.model
-        groups += [(one, other) for one in doubted for other in list_look_alikes(one, model)]
-    return tuple(groups)
+    groups = {r.added: list(r.alternatives) for r in end.rungs if r.added}
+    for one in () if end.search.whole.is_linked else end.undetermined:
+        more = list_look_alikes(one.candidate, end.after.model)
+        groups[one.candidate] += [c for c in more if c not in groups[one.candidate]]
+    return tuple((one, *others) for one, others in groups.items() if others)
 
 
 def _candidates(end: LadderEnd, evidence: list[CandidateEvidence]) -> tuple[CandidateResult, ...]:

@@ -16,7 +16,7 @@ from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA
 from .evidence import whole_score
 from .fit import Fit, estimate
-from .plausibility import undetermined_of
+from .plausibility import implausible_effects, undetermined_of
 from .products import product_of
 from .rung import Rung
 from .statements import Undetermined
@@ -32,21 +32,25 @@ def find_undetermined(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Undete
             continue
         by_effect = undetermined_of(added.effect, added.at, fit.model, prepared)
         statements = [
-            by_effect or alike_on_records(fit, added, prepared),
+            by_effect or alike_on_records(fit, rung, prepared),
             known_together(fit, added),
         ]
         sentences += [Undetermined(added, one) for one in statements if one]
     return tuple(sentences)
 
 
-def alike_on_records(fit: Fit, candidate: Candidate, prepared: Prepared) -> str:
+def alike_on_records(fit: Fit, rung: Rung, prepared: Prepared) -> str:
     """A sentence where the records hardly distinguish an effect from its look-alike; else "".
+
+    fit: of the last model;  rung: that added the effect
 
     For example gravity, and a spring with its rest position (`spring` and `bias`): over much of a
     turn the two differ, but where more than noise is left the records may not show the difference.
     """
     if prepared.is_linked:  # the links of an arm include gravity
         return ""
+    candidate = rung.added
+    assert candidate is not None
     body = fit.model.body(candidate.at)
     for other in (c.effect for c in list_look_alikes(candidate, fit.model)):
         more = len(candidate.effect.parameters) > len(other.parameters) and not body.has("bias")
@@ -54,17 +58,30 @@ def alike_on_records(fit: Fit, candidate: Candidate, prepared: Prepared) -> str:
         try:
             model = fit.model.without_effect(candidate.effect.name, at=candidate.at)
             for name in names:
-                model = model.with_effect(name, at=candidate.at)
+                start = _start_of(Candidate(fit.model.known[name], candidate.at), rung)
+                model = model.with_effect(name, at=candidate.at, values=start)
         except ModelError:  # another effect needs it
             return ""
         instead = estimate(model, prepared)
         if whole_score(instead, fit) >= CRITERIA.indistinguishable:
+            continue
+        if (other.name, candidate.at) in implausible_effects(instead.model, prepared):
             continue
         return (
             f"these records hardly distinguish it from {' and '.join(f'`{n}`' for n in names)}, "
             f"with which {100 * instead.check_error:.3g} % of the force would be left"
         )
     return ""
+
+
+def _start_of(candidate: Candidate, rung: Rung) -> dict[str, float] | None:
+    """The values that a candidate had beside the model before the rung; None: it was not fitted."""
+    for one in () if rung.ranking is None else rung.ranking.ranked:
+        if one.candidate.key == candidate.key:
+            values = one.fit.model.parameters
+            full = f"{candidate.at}.{candidate.effect.name}"
+            return {n: values[f"{full}.{n}"].value for n in candidate.effect.parameters}
+    return None
 
 
 def known_together(fit: Fit, candidate: Candidate) -> str:

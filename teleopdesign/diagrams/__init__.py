@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from .coupled_plants import coupled_plant_parts as coupled_plant_parts
     from .disturbance_observer import disturbance_observer as disturbance_observer
     from .energy_tanks import energy_tanks as energy_tanks
-    from .felt_friction import FeltFriction as FeltFriction
-    from .felt_friction import felt_friction as felt_friction
     from .junctions import Junction as Junction
     from .junctions import Kinematics as Kinematics
     from .junctions import position_symbol as position_symbol
+    from .parallel_rods import FeltFriction as FeltFriction
+    from .parallel_rods import felt_friction as felt_friction
     from .parallel_rods import parallel_rods as parallel_rods
     from .parts import ANY as ANY
     from .parts import AnyBlock as AnyBlock

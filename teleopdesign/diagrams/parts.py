@@ -15,7 +15,7 @@ from ..base.arguments import check_types
 from ..base.errors import ModelError, check_name
 from ..base.frozen import Frozen
 from ..blocks import Body, MatrixImpedance
-from ..controllers import Controller
+from ..controllers import Controller, Stage
 from .junctions import Junction, Kinematics, Weight, as_expression, check_names
 
 
@@ -200,16 +200,19 @@ class Control:
         return self.controller.dead_time if isinstance(self.controller, Controller) else None
 
     @property
+    def stages(self) -> tuple[Stage, ...]:
+        """The laws of the block, in the order of the signal; empty where it is only a name."""
+        return self.controller.stages if isinstance(self.controller, Controller) else ()
+
+    @property
     def is_code(self) -> bool:
         """Whether a stage is a nonlinear python-control system, which is only code."""
-        stages = self.controller.stages if isinstance(self.controller, Controller) else ()
-        return any(stage.law.system is not None for stage in stages)
+        return any(stage.law.system is not None for stage in self.stages)
 
     @property
     def is_measured(self) -> bool:
         """Whether a stage is a measured frequency response, known only at its frequencies."""
-        stages = self.controller.stages if isinstance(self.controller, Controller) else ()
-        return any(stage.law.response is not None for stage in stages)
+        return any(stage.law.response is not None for stage in self.stages)
 
 
 def reads_command(controller: Controller | AnyBlock) -> bool:
@@ -254,8 +257,7 @@ def write_equation(part: Part) -> str:
 def list_laws(part: Part) -> str:
     """Names of the laws or effects in a block; "" for sums and kinematics."""
     if isinstance(part, Control):
-        stages = part.controller.stages if isinstance(part.controller, Controller) else ()
-        return ", ".join(stage.name for stage in stages)
+        return ", ".join(stage.name for stage in part.stages)
     if isinstance(part, Moving | Attached):
         return ", ".join(e.name for e in part.body.effects) if isinstance(part.body, Body) else ""
     return ""

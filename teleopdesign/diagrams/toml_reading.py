@@ -20,7 +20,7 @@ from ..base.units import AXES, QUANTITIES, to_si
 from ..blocks import Body, with_block_effects
 from ..blocks.described import body_of
 from ..controllers import CANCEL, CONTROLLERS, ControlLaw, Controller, Stage, cancelling_law
-from ..effects import EFFECTS, Effect
+from ..effects import Effect
 from ..measurement.description import BODY, body_from
 from .expressions import read_expression
 from .junctions import Junction, Kinematics, Weight
@@ -52,19 +52,25 @@ class _Known:
 def read_diagram(
     path: str | Path,
     *,
-    effects: Mapping[str, Effect] = EFFECTS,
-    laws: Mapping[str, ControlLaw] = CONTROLLERS,
+    effects: Mapping[str, Effect] | None = None,
+    laws: Mapping[str, ControlLaw] | None = None,
 ) -> Diagram:
     """The diagram that a file describes; the page "Diagrams" of the documentation has the format.
 
-    effects: known effects by name, for users who add effects (`effects.catalogue`); the effects of
-        blocks, such as "environment", are known as well
-    laws: known control laws by name, for users who add laws (`controllers.catalogue`). A file names
-        laws and never holds code
+    effects: known effects by name, for users who add effects (`effects.catalogue`); None: EFFECTS.
+        The effects of blocks, such as "environment", are known as well
+    laws: known control laws by name, for users who add laws (`controllers.catalogue`); None:
+        CONTROLLERS. A file names laws and never holds code
     raises ExperimentError: the file cannot be read, or an entry has no meaning
+
+        >>> device = td.hand(mass=0.2, damping=2.0, stiffness=0.0)
+        >>> td.write_diagram(td.haptic_interface(device), "interface.toml")
+        >>> td.read_diagram("interface.toml").name
+        'haptic interface'
     """
     path = Path(path)
-    root, known = read_toml(path, path.name), _Known(with_block_effects(effects), laws)
+    root = read_toml(path, path.name)
+    known = _Known(with_block_effects(effects), CONTROLLERS if laws is None else laws)
     head = root.table("diagram")
     try:
         if "kind" in head.content:

@@ -18,7 +18,7 @@ from ..base.files import write_text
 from ..base.toml import inline_text, key_text, string_text
 from ..blocks import Body, Value, with_block_effects
 from ..controllers import CANCEL, CONTROLLERS, ControlLaw, Controller, Stage, cancelling_law
-from ..effects import EFFECTS, Effect
+from ..effects import Effect
 from .expressions import read_expression
 from .junctions import Junction, Kinematics
 from .parts import AnyBlock, Attached, Block, Control, Linked, Moving
@@ -32,8 +32,8 @@ def write_diagram(
     diagram: Diagram,
     path: str | Path,
     *,
-    effects: Mapping[str, Effect] = EFFECTS,
-    laws: Mapping[str, ControlLaw] = CONTROLLERS,
+    effects: Mapping[str, Effect] | None = None,
+    laws: Mapping[str, ControlLaw] | None = None,
 ) -> None:
     """Write a diagram as a TOML file, in SI units.
 
@@ -43,6 +43,9 @@ def write_diagram(
         `read_diagram`
     raises ModelError: an effect of a body or a law differs from the known one of that name, an
         expression has functions that a file must not have
+
+        >>> device = td.hand(mass=0.2, damping=2.0, stiffness=0.0)
+        >>> td.write_diagram(td.haptic_interface(device), "interface.toml")
     """
     text = diagram_text(diagram, effects=effects, laws=laws)
     write_text(path, text)
@@ -51,8 +54,8 @@ def write_diagram(
 def diagram_text(
     diagram: Diagram,
     *,
-    effects: Mapping[str, Effect] = EFFECTS,
-    laws: Mapping[str, ControlLaw] = CONTROLLERS,
+    effects: Mapping[str, Effect] | None = None,
+    laws: Mapping[str, ControlLaw] | None = None,
 ) -> str:
     """The text of the file that `write_diagram` writes."""
     kind, known = kind_of(diagram), with_block_effects(effects)
@@ -68,7 +71,7 @@ def diagram_text(
         lines += [] if kind is not None else _wiring_lines(block)
         if isinstance(block, Control):
             lines += ["analog = true"] if block.analog else []
-            lines += _laws(block, laws, known)
+            lines += _laws(block, CONTROLLERS if laws is None else laws, known)
         elif not isinstance(block, Linked):
             lines += _body(block.name, block.body, known)
     if kind is None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TypeGuard
 
 import sympy as sp
 
@@ -81,7 +80,7 @@ class Diagram:
                 made[signal] = part.name
         needed = [(p.name, s) for p in self.parts for s in p.inputs]
         needed += [("measured", s) for s in self.measured]
-        needed += [(f"{b.name}: driver", b.driver) for b in self.blocks if isinstance(b, Moving)]
+        needed += [(f"{b.name}: driver", b.driver) for b in self.moving]
         for where, signal in needed:
             if signal not in made:
                 raise ModelError(
@@ -115,7 +114,7 @@ class Diagram:
         return self._position(name) is not None
 
     def _position(self, name: str, visited: tuple[str, ...] = ()) -> sp.Expr | None:
-        if any(isinstance(b, Moving) and b.motion == name for b in self.blocks):
+        if any(b.motion == name for b in self.moving):
             return position_symbol(name)
         makers: tuple[Junction | Kinematics, ...] = (*self.kinematics, *self.junctions)
         maker = next((p for p in makers if p.output == name), None)
@@ -150,6 +149,10 @@ class Diagram:
     @property
     def bodies(self) -> tuple[Moving | Attached, ...]:
         return tuple(b for b in self.blocks if isinstance(b, Moving | Attached))
+
+    @property
+    def moving(self) -> tuple[Moving, ...]:
+        return tuple(b for b in self.blocks if isinstance(b, Moving))
 
     @property
     def controls(self) -> tuple[Control, ...]:
@@ -189,7 +192,11 @@ class Diagram:
             for b in self.blocks
             if b.name not in names
         )
-        wanted = [b.command if isinstance(b, Moving) else b.input for b in kept if _is_driven(b)]
+        wanted = [
+            b.command if isinstance(b, Moving) else b.input
+            for b in kept
+            if isinstance(b, Moving | Control)
+        ]
         nothing = tuple(Junction(s, {}) for s in dict.fromkeys(wanted) if s in gone)
         return replace(
             self,
@@ -271,11 +278,6 @@ class Diagram:
             lines.append(f"  {write_equation(part)}")
         lines.append(f"  from outside: {', '.join(self.outside)}")
         return "\n".join(lines)
-
-
-def _is_driven(part: Block) -> TypeGuard[Moving | Control]:
-    """Whether the block needs one input signal, which may be zero: a command or an input."""
-    return isinstance(part, Moving | Control)
 
 
 def _prune(diagram: Diagram) -> Diagram:

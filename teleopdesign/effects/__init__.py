@@ -82,6 +82,9 @@ def load_effect(path: str | Path) -> Effect:
     An unchanged file returns the same effect again.
     raises ModelError: the file cannot be read or run, defines no EFFECT, or an unsound one, such as
         one that is declared linear and is not
+
+        >>> known = td.effects.catalogue([td.load_effect("end_stop.py")])  # doctest: +SKIP
+        >>> wider = td.Model.from_experiment(experiment, known)  # doctest: +SKIP
     """
     path = checked_path(path, "effect", "my_effect.py")
     return _load_effect(path.resolve(), path)
@@ -194,12 +197,12 @@ BLOCK_EFFECTS: Mapping[str, Effect] = Shelf(
 )
 
 
-def with_block_effects(effects: Mapping[str, Effect] = EFFECTS) -> Mapping[str, Effect]:
-    """These effects and those of blocks such as "environment", by name.
+def with_block_effects(effects: Mapping[str, Effect] | None = None) -> Mapping[str, Effect]:
+    """These effects (None: `EFFECTS`) and those of blocks such as "environment", by name.
 
     Of two effects with one name, the one in `effects` is used.
     """
-    return ChainMap(effects, BLOCK_EFFECTS)  # type: ignore[arg-type]  # only read
+    return ChainMap(EFFECTS if effects is None else effects, BLOCK_EFFECTS)  # type: ignore[arg-type]  # only read
 
 
 def catalogue(extra: Iterable[str | Path | Effect] = ()) -> Mapping[str, Effect]:

@@ -13,6 +13,9 @@ def example(name: str = "rod") -> Path:
     """The folder of an experiment that comes with the package: "rod", "friction_curve".
 
     raises ExperimentError: no such experiment; the message has the nearest name
+
+        >>> td.example("rod").name
+        'rod'
     """
     folders = {p.parent.name: p.parent for p in Path(__file__).parent.glob("*/experiment.toml")}
     if name not in folders:

@@ -29,6 +29,10 @@ def check_experiment(
     seed: of the random numbers for the noise floor
     Signs, units, shifts and effects of a long experiment are checked on windows (`excerpt`).
     A reason why nothing can be checked (no inertia, a bandwidth too high) is a finding, no error.
+
+        >>> findings = td.check_experiment(td.load_experiment(td.example("rod")))
+        >>> print(findings[0])
+        fine    the time stamps are uniform, 1000 Hz.
     """
     recording = look_at(experiment, model, seed=seed)
     findings = findings_of(recording)

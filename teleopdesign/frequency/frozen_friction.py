@@ -13,7 +13,7 @@ import sympy as sp
 
 from ..base.errors import ModelError
 from ..blocks import Body, Value
-from ..controllers import CANCEL, Controller
+from ..controllers import CANCEL
 from ..derive.all_states import all_states
 from ..diagrams import Attached, Diagram, Moving
 from ..effects import EFFECTS, SIGNALS
@@ -71,10 +71,9 @@ def cancellations_left_over(diagram: Diagram, left_out: Collection[str]) -> tupl
         part.name
         for part in diagram.controls
         if part.name not in left_out
-        and isinstance(part.controller, Controller)
         and any(
             stage.law.bound or (stage.law.name == CANCEL and _takes_friction(stage.values))
-            for stage in part.controller.stages
+            for stage in part.stages
         )
     )
 
@@ -92,8 +91,7 @@ def growing_modes(diagram: Diagram, *, speed: float = 0.0) -> str | None:
     returns: None where a block is sampled, code or measured, so that nothing is known
     """
     for part in diagram.controls:
-        stages = part.controller.stages if isinstance(part.controller, Controller) else ()
-        if part.is_code or part.is_measured or any(s.law.in_z is not None for s in stages):
+        if part.is_code or part.is_measured or any(s.law.in_z is not None for s in part.stages):
             return None
     try:
         states = all_states(diagram, speed=speed)

@@ -1,9 +1,4 @@
-"""An impedance over case, frequency and amplitude, and its deviation from a linear one.
-
-Zhat_M = Gamma^-1 (Z_M - C) holds for linear blocks; `quasi_linear_impedance` puts describing
-functions at the amplitude of the motion in place of nonlinear ones. The input of a controller that
-a force drives is reduced to its first harmonic. The simulation is compared with this approximation.
-"""
+"""An impedance over case, frequency and amplitude, and its deviation from a linear one."""
 
 from __future__ import annotations
 

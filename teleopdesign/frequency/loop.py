@@ -19,10 +19,10 @@ from sympy.core.function import AppliedUndef
 
 from ..base.errors import ModelError, UnstableLoop
 from ..base.shown import Shown
-from ..controllers import Controller, measured_frequencies
+from ..controllers import measured_frequencies
 from ..derive import symbol_values
 from ..derive.elimination import round_trip
-from ..diagrams import Control, Diagram
+from ..diagrams import Diagram
 from ..realise.lti import S, as_transfer_function, linear_blocks, numerical
 from ..realise.tips import linear_tips
 from . import sampled_margins
@@ -96,14 +96,14 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
     diagram = linear_tips(diagram)
     linear = linear_blocks(diagram, speed=speed, held=True)
     if controller in linear.left_out:
-        laws = ", ".join(stage.name for stage in _stages(part))
+        laws = ", ".join(stage.name for stage in part.stages)
         raise ModelError(
             f"{diagram.name}: {controller} ({laws}) has no linear form, so that its loop has no "
             "gain: see `describing_function`; a system with dt=True needs its period"
         )
     gain = -sp.sympify(round_trip(diagram, part)).subs(symbol_values(linear))
     kept = {c.name: c for c in diagram.controls if c.name in linear.held}
-    periods = [g.values["period"] for c in kept.values() for g in _stages(c) if g.law.in_z]
+    periods = [g.values["period"] for c in kept.values() for g in c.stages if g.law.in_z]
     fastest = np.pi / max(periods) if periods else float("inf")
     growing, form = 0, linear.blocks[controller]
     if not (form.atoms(AppliedUndef) or form.has(sp.exp)):
@@ -219,10 +219,6 @@ def frequencies_of(loop: LoopGain, ratio: LateRatio | None, points: int) -> np.n
     if len(corners):
         slowest, fastest = min(slowest, corners.min() / 1e4), max(fastest, corners.max() * 1e4)
     return np.unique(np.concatenate([np.geomspace(slowest, fastest, points), corners]))
-
-
-def _stages(part: Control) -> tuple[Any, ...]:
-    return part.controller.stages if isinstance(part.controller, Controller) else ()
 
 
 #: frequencies between two neighbouring measured ones. Between these the measured response is

@@ -17,7 +17,7 @@ from ..base.frozen import ByValue
 from ..base.shown import Shown
 from ..derive import symbol_values
 from ..derive.elimination import rows
-from ..diagrams import Diagram, Moving
+from ..diagrams import Diagram
 from ..realise.lti import linear_blocks, numerical
 from ..realise.simulated import linear_parted
 from .frozen_friction import cancellations_left_over, growing_modes
@@ -75,7 +75,7 @@ def matrix_response(
     diagram, led = linear_parted(diagram, tuple(given))
     inputs, outputs = ([led.get(n, n) for n in names] for names in (inputs, outputs))
     given = list(led.values())
-    drivers = {b.motion: b.driver for b in diagram.blocks if isinstance(b, Moving)}
+    drivers = {b.motion: b.driver for b in diagram.moving}
     free = [s for s in diagram.outside if s not in {drivers.get(m) for m in given}] + given
     for name in (*outputs, *inputs):
         diagram.signal(name)

@@ -21,12 +21,7 @@ from ..derive import block_symbol, transfer
 from ..derive.printing import dead_time_symbol, motion_controller_symbol
 from ..diagrams import Control, Diagram
 from ..realise.lti import S, linear_blocks, numerical
-from .describing_function import (
-    LawExpressions,
-    controller_law,
-    describing_function,
-    driven_gain,
-)
+from .describing_function import LawExpressions, controller_law, describing_function, driven_gain
 
 #: relative change at the end of the iteration for the phase of a controller's input; most
 #: iterations

@@ -1,8 +1,4 @@
-"""Frequency response between signals: the symbolic transfer function with values inserted.
-
-From several inputs to several outputs the same equations are solved at each frequency instead: the
-symbolic forms of a diagram of many axes would fill pages.
-"""
+"""Frequency response between signals: the symbolic transfer function with values inserted."""
 
 from __future__ import annotations
 
@@ -171,6 +167,12 @@ def bode(
         functions there, as in `quasi_linear_impedance`; default: at 200 frequencies
     covariance: of fitted parameters, such as `diagnosis.covariance()`: the response has a band
     raises ModelError: frequencies below 0, speed and amplitude together, no describing function
+
+        >>> device = td.hand(mass=0.2, damping=2.0, stiffness=0.0)
+        >>> hand = td.hand(mass=0.1, damping=5.0, stiffness=200.0)
+        >>> response = td.bode(td.haptic_interface(device, hand=hand), frequency=[1.0, 10.0])
+        >>> response.magnitude.round(3)
+        array([[1.028, 0.343]])
     """
     cases = cases_of(diagrams)
     if amplitude and speed:

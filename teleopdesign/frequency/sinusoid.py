@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from ..base.errors import ModelError, did_you_mean
-from ..diagrams import Diagram, Junction, Moving
+from ..diagrams import Diagram, Junction
 from ..simulate import Sampling, Setup, prepare, sine
 from ..simulate.sampling import SAMPLED
 
@@ -82,9 +82,9 @@ def steady_harmonics(
 def _set_up(diagram: Diagram, drive: Sinusoid, *, duration: float) -> Setup:
     omega = 2 * np.pi * drive.frequency
     motion = sine(amplitude=drive.amplitude, frequency=drive.frequency)
-    prescribed = drive.drive in {b.motion for b in diagram.blocks if isinstance(b, Moving)}
+    prescribed = drive.drive in {b.motion for b in diagram.moving}
     if not prescribed and drive.drive not in diagram.outside:
-        known = [b.motion for b in diagram.blocks if isinstance(b, Moving)] + [*diagram.outside]
+        known = [b.motion for b in diagram.moving] + [*diagram.outside]
         raise ModelError(
             f'{diagram.name}: "{drive.drive}" cannot be driven, found {", ".join(known)}'
             f"{did_you_mean(drive.drive, known)}"

@@ -60,6 +60,17 @@ def experiment(
     effects: those of the model;  fit, check: spans (begin, end) in s from the first row, or one
         span; default: all rows are fitted, and blocks of them are held out in turn
     raises ExperimentError: no such column, a unit that does not fit, too little data
+
+        >>> t = np.arange(0.0, 10.0, 0.001)
+        >>> data = {"t": t, "x (mm)": 10 * np.sin(5 * t), "F (N)": np.cos(5 * t)}
+        >>> td.experiment(
+        ...     data, axis="prismatic", position="x (mm)", actuator_force="F (N)", inertia=0.2
+        ... )
+        Experiment "data" (data)
+          device: prismatic, coulomb, viscous
+            position in m
+            actuator_force in N
+          Record fit (fit): 10000 samples, 10 s at 1000 Hz
     """
     log = log_of(data)
     entries: dict[str, Any] = {

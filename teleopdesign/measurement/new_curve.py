@@ -170,6 +170,11 @@ def friction_curve(
     noise: rms of the force, in its unit; None: read from the points
     effects: those of the model: friction of the speed, and "bias"
     raises ExperimentError: arrays of different lengths, an unknown unit, too few points
+
+        >>> speed = np.array([-0.2, -0.1, -0.05, -0.02, 0.02, 0.05, 0.1, 0.2])
+        >>> curve = td.friction_curve(speed, 1.5 * np.sign(speed) + 0.4 * speed, axis="prismatic")
+        >>> curve.kind
+        'friction curve'
     """
     where = "friction_curve"
     stated = dict(units or {})

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arms.base_parameters import BaseParameters, base_parameters, columns_with_motors
+from ..arms.regressor import BaseParameters, base_parameters, columns_with_motors
 from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
 from ..base.shown import Shown

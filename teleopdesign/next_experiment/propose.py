@@ -52,6 +52,9 @@ def propose(
     limits: body -> limits to keep; None: those that the records have shown to be safe
     progress: called with a line of text at each step;  seed: of the sensors' errors
     raises ModelError: limits of a body that is not in the experiment
+
+        >>> proposal = td.propose_experiment(td.load_answer("demo/answer.json"))  # doctest: +SKIP
+        >>> proposal.plot()  # doctest: +SKIP
     """
     _refuse_curve(diagnosis)
     say = progress or (lambda _: None)

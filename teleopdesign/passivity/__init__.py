@@ -90,13 +90,13 @@ if TYPE_CHECKING:
     from .theorems.wave_channel import wave_channel as wave_channel
     from .theorems.wave_channel import wave_claim as wave_claim
     from .theorems.wave_channel import wave_teleoperator as wave_teleoperator
-    from .two_port.two_port import FrequencyMargins as FrequencyMargins
-    from .two_port.two_port import TwoPort as TwoPort
-    from .two_port.two_port import absolutely_stable as absolutely_stable
-    from .two_port.two_port import passive as passive
-    from .two_port.two_port import sweep_margins as sweep_margins
-    from .two_port.two_port import teleoperator_two_port as teleoperator_two_port
-    from .two_port.two_port import two_port as two_port
+    from .two_port import FrequencyMargins as FrequencyMargins
+    from .two_port import TwoPort as TwoPort
+    from .two_port import absolutely_stable as absolutely_stable
+    from .two_port import passive as passive
+    from .two_port import sweep_margins as sweep_margins
+    from .two_port import teleoperator_two_port as teleoperator_two_port
+    from .two_port import two_port as two_port
     from .z_width import WALL_DAMPING as WALL_DAMPING
     from .z_width import WALL_STIFFNESS as WALL_STIFFNESS
     from .z_width import ZWidth as ZWidth

@@ -19,7 +19,7 @@ from sympy.integrals.manualintegrate import manualintegrate
 
 from ..base.errors import ModelError
 from ..blocks import Body
-from ..controllers import Controller, Stage, broken_declarations
+from ..controllers import Stage, broken_declarations
 from ..diagrams import Control, Diagram
 from ..effects import BLOCK_EFFECTS, EFFECTS, SIGNALS, Effect, acts_linearly
 from ..realise.friction_interval import DIRECTION, lowest_of
@@ -66,8 +66,8 @@ def falsely_linear(diagram: Diagram) -> list[str]:
         if isinstance(body, Body):
             declaring = (e for e in body.effects if e.linear and not is_shipped(e))
             names += [f"{part.name}.{e.name}" for e in declaring if not acts_linearly(e)]
-        if isinstance(part, Control) and isinstance(part.controller, Controller):
-            names += [part.name] * any(not is_kept(stage) for stage in part.controller.stages)
+        if isinstance(part, Control):
+            names += [part.name] * any(not is_kept(stage) for stage in part.stages)
     return names
 
 

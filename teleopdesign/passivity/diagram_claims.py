@@ -81,6 +81,12 @@ def diagram_claims(
     rng: draws the motions of the search, or the seed of the generator that draws them
     search: its settings
     raises ModelError: a block without values, or no port
+
+        >>> device = td.hand(mass=0.2, damping=2.0, stiffness=0.0)
+        >>> loop = td.controller("gain", {"gain": 4.0})
+        >>> claims = td.diagram_claims(td.haptic_interface(device, force_feedback=loop))
+        >>> claims.claims[0].claim.status
+        'proved'
     """
     search, rng = search or Search(), np.random.default_rng(rng)
     whole = drop_absent_effects(diagram)
@@ -254,10 +260,8 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
     unchanged on this body and on nothing else. A body whose friction level may be zero has no pair.
     """
     pairs = []
-    for part in diagram.blocks:
-        if not isinstance(part, Moving) or not isinstance(part.body, Body):
-            continue
-        if part.body.level() == 0:
+    for part in diagram.moving:
+        if not isinstance(part.body, Body) or part.body.level() == 0:
             continue
         along = [c for c in diagram.controls if c.input == c.motion == part.motion]
         if len(along) > 1 or not all(_acts_alone(c, part, diagram) for c in along):
@@ -275,8 +279,7 @@ def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
 
 
 def _acts_alone(control: Control, part: Moving, diagram: Diagram) -> bool:
-    law = control.controller
-    if not isinstance(law, Controller) or len(law.stages) != 1:
+    if len(control.stages) != 1:
         return False
     acts = not any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
     return acts and drives_alone(diagram, control.output, part)

@@ -19,13 +19,13 @@ from ..realise.lti import linear_blocks
 from ..realise.tips import led_motion, linear_tips
 from .claims.claim import Claim, Unknown, use_units_of
 from .declarations import falsely_linear
+from .growing_mode import GrowingMode
 from .linear.family import Family, family_at
 from .linear.impedance import Impedance, impedance
 from .linear.judge import NEARBY, passive_claim, stable_claim
 from .ports import Port, nonlinear_parts
 from .search.growing_wave import GrowingWave, wave_of
 from .theorems import TopicClaim
-from .two_port.growing_mode import GrowingMode
 
 #: topics of claims that are about all ports at once
 WHOLE = ("all ports, any motion", "the port, any motion", "both ports, any motion")

@@ -113,9 +113,7 @@ def _impedance(
     speed: float,
 ) -> Callable[[np.ndarray, Sequence[float]], np.ndarray]:
     """The impedance matrix, (n, 2, 2), as a function of s (1/s) and numbers for these values."""
-    names = tuple(values)
-    ends = [(float(np.min(x)), float(np.max(x))) for x in values.values()]
-    box = ValueBox(names, *(tuple(side) for side in zip(*ends, strict=True)))
+    box = ValueBox.of({n: (float(np.min(x)), float(np.max(x))) for n, x in values.items()})
     known = states_over(device.with_values(box.named(box.centre)), box, speed)
 
     moved = [f"port {k}" for k in range(len(at))]
@@ -130,7 +128,7 @@ def _impedance(
             numbers = dict(zip(shared.states.ring.symbols[1:], point, strict=False))
             over_position = shared.at(s, numbers)
         else:
-            there = device.with_values(dict(zip(names, point, strict=True)))
+            there = device.with_values(dict(zip(values, point, strict=True)))
             over_position = responses(all_states(there, speed=speed)).at(s)
         return np.asarray(over_position / s[:, None, None])
 

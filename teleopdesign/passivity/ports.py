@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 
 import numpy as np
@@ -87,7 +87,7 @@ def ports(diagram: Diagram) -> tuple[Port, ...]:
     raises ModelError: no force from outside drives a body
     """
     diagram = with_tips(diagram)
-    moving = [b for b in diagram.blocks if isinstance(b, Moving)]
+    moving = diagram.moving
     at_forces = []
     for force in dict.fromkeys(b.driver for b in moving if b.driver in diagram.outside):
         loads = _loads_of(diagram, force).items()
@@ -137,15 +137,13 @@ def without_friction(diagram: Diagram, motion: str, *controllers: str) -> Diagra
     raises ModelError: no body has that motion
     """
     diagram = diagram.without(*controllers)
-    for part in diagram.blocks:
-        if isinstance(part, Moving) and part.motion == motion and isinstance(part.body, Body):
+    for part in diagram.moving:
+        if part.motion == motion and isinstance(part.body, Body):
             body = part.body
             for effect in reversed(body.effects):
                 if effect.role.startswith("friction"):
                     body = body.without_effect(effect.name)
-            moved = replace(part, body=body)
-            blocks = tuple(moved if b is part else b for b in diagram.blocks)
-            return replace(diagram, blocks=blocks)
+            return diagram.with_block(part.name, body)
     raise ModelError(f'{diagram.name}: no body moves by "{motion}"')
 
 
@@ -253,7 +251,7 @@ def holders(diagram: Diagram) -> dict[str, tuple[str, ...]]:
 def _loads_of(diagram: Diagram, force: str) -> dict[str, sp.Expr]:
     """Motion of each body on which a force acts -> its share, not 0."""
     shares = shares_of(diagram, force)
-    moving = (b for b in diagram.blocks if isinstance(b, Moving))
+    moving = diagram.moving
     loads = {b.motion: total_share(b.loads, shares) for b in moving}
     return {motion: share for motion, share in loads.items() if share != 0}
 

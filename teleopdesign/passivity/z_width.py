@@ -21,7 +21,7 @@ from ..base.finding import Graph, Series
 from ..base.frozen import ByValue
 from .linear.excess import is_positive_real
 from .linear.impedance import exact
-from .search.sampled_wave import Z
+from .search.growing_wave import Z
 from .theorems.sampled_data import travel_operator
 
 WALL_STIFFNESS = sp.Symbol("K")

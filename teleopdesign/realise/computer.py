@@ -11,15 +11,18 @@ from ..base.errors import ModelError
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ._linear import solve_linear
 from .signal_symbols import (
+    NO_VELOCITY,
     PERIOD,
     LateSignals,
+    SignalReader,
     estimate,
+    place_controller,
     rate_of,
     reading_symbol,
     signal,
+    sum_inputs,
     travel_rate,
 )
-from .wired_parts import NO_VELOCITY, SignalReader, place_controller, sum_inputs
 
 
 @dataclass(frozen=True)
@@ -115,7 +118,7 @@ def held_signals(
 
 def _command_signals(diagram: Diagram) -> list[str]:
     plants = (c for c in diagram.controls if _is_plant(c, diagram))
-    commands = [part.command for part in diagram.blocks if isinstance(part, Moving)]
+    commands = [part.command for part in diagram.moving]
     return [*commands, *(s for c in plants for s in (c.input, *c.others))]
 
 

@@ -44,7 +44,7 @@ def damping_interval(body: Body, reach: Reach | None = None, *, errors: float) -
     open_ones = [e for e in forces if e.energy == "supplies"]
     for counted in (
         [e for e in plain if least_damping(body, [e], reach, errors)],
-        _dissipating_effects(plain),
+        [e for e in plain if e.energy == "dissipates"],
     ):
         least = least_damping(body, counted, reach, errors)
         if least is not None and least.low >= 0:
@@ -62,10 +62,6 @@ def small_motion_damping(body: Body, *, errors: float) -> float:
             slope = sp.diff(at_rest, SIGNALS["velocity"])
             damping += max(lowest_of(body, slope, None, errors=errors)[0].low, 0.0)
     return damping
-
-
-def _dissipating_effects(effects: Sequence[Effect]) -> list[Effect]:
-    return [e for e in effects if e.energy == "dissipates"]
 
 
 def least_damping(

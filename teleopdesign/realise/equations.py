@@ -27,21 +27,19 @@ from .computer import (
     write_computer,
 )
 from .signal_symbols import (
+    NO_VELOCITY,
     TIME,
     LateSignals,
     acceleration,
+    check_inputs,
     motion_of,
     parameter_names,
-    replace_delays,
-    signal,
-    velocity,
-)
-from .wired_parts import (
-    NO_VELOCITY,
-    check_inputs,
     place_controller,
     refuse_unsimulated,
+    replace_delays,
+    signal,
     sum_inputs,
+    velocity,
 )
 
 _NO_COMMAND = sp.Symbol("no_command", real=True)
@@ -106,7 +104,7 @@ def affine_slopes(equations: Equations) -> dict[sp.Symbol, sp.Expr]:
 class _Builder:
     def __init__(self, diagram: Diagram, prescribed: tuple[str, ...], sampled: bool) -> None:
         self.diagram, self.prescribed, self.sampled = diagram, prescribed, sampled
-        self.moving = [b for b in diagram.blocks if isinstance(b, Moving)]
+        self.moving = diagram.moving
         motions = [b.motion for b in self.moving]
         for motion in prescribed:
             if motion not in motions:

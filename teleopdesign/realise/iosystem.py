@@ -21,12 +21,10 @@ from ..base.errors import ModelError
 from ..controllers import Controller, Stage, from_control
 from ..diagrams import Control, Diagram, Junction, Kinematics, with_shared_states
 from .equations import Equations, build_equations
-from .laws import needed_steps
-from .private_names import PrivateNames, private_names
+from .laws import PrivateNames, needed_steps, private_names
 from .sampled_iosystem import sampled_iosystem
-from .signal_symbols import TIME, motion_of, signal, velocity
+from .signal_symbols import TIME, motion_of, signal, sum_inputs, velocity
 from .simulated import prepare_for_simulation
-from .wired_parts import sum_inputs
 
 if TYPE_CHECKING:
     import control
@@ -70,6 +68,10 @@ def to_iosystem(
         commands ("u_held"), the last position readings ("L_read") and the samples of delay blocks.
     raises ModelError: a block has no laws, a delay block has no `delay_order` (with dt: an analog
         one), an actuator has a dead time, or, with dt, a motion is prescribed, which cannot be held
+
+        >>> device = td.hand(mass=0.2, damping=2.0, stiffness=0.0)
+        >>> td.to_iosystem(td.haptic_interface(device)).input_labels
+        ['R_V', 'R_D']
     """
     diagram = prepare_for_simulation(diagram, give, prescribed)
     if dt is not None:

@@ -17,7 +17,7 @@ from sympy.core.function import AppliedUndef
 
 from ..base.errors import ModelError
 from ..blocks import Body
-from ..controllers import Controller, Stage, exact_decimal, make_exact, parameter_symbol
+from ..controllers import Controller, exact_decimal, make_exact, parameter_symbol
 from ..diagrams import Control, Diagram, Linked, Moving
 from ..diagrams.wiring import acts_along_another, without_motion
 
@@ -81,7 +81,7 @@ def linear_blocks(
                 along[part.name] = forms[1]
             if not forms:
                 left_out.append(part.name)
-            elif any(stage.law.in_z is not None for stage in _stages(part)):
+            elif any(stage.law.in_z is not None for stage in part.stages):
                 sampled.append(part.name)
             continue
         if isinstance(part, Linked):
@@ -100,10 +100,6 @@ def linear_blocks(
             left_out += [f"{part.name}.{name}" for name in gone]
     gone, names = tuple(left_out), tuple(sampled)
     return LinearBlocks(blocks, actuation, gone, abs(speed), names, times, along)
-
-
-def _stages(part: Control) -> tuple[Stage, ...]:
-    return part.controller.stages if isinstance(part.controller, Controller) else ()
 
 
 def _forms_of_controller(

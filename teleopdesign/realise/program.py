@@ -21,7 +21,7 @@ from ..effects import Effect
 from ._codegen import Generator
 from .compiled import PHI, WEIGHTS, compiled_module
 from .equations import Equations, Layout, build_equations
-from .private_names import PrivateNames, private_names
+from .laws import PrivateNames, private_names
 
 
 @dataclass(frozen=True)

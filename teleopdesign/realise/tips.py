@@ -32,13 +32,20 @@ def tip(motion: str) -> str:
     return f"{motion}_tip"
 
 
+def _structures(diagram: Diagram) -> list[tuple[Moving, Body, Effect]]:
+    """The bodies that have a structure between two sides, each with it."""
+    return [
+        (part, part.body, effect)
+        for part in diagram.moving
+        if isinstance(part.body, Body)
+        for effect in part.body.effects
+        if effect.role == "structure"
+    ]
+
+
 def led_motion(diagram: Diagram, motion: str) -> str:
     """The motion that a hand leads: the tip's where the body has a structure, else this motion."""
-    for part in diagram.blocks:
-        if isinstance(part, Moving) and part.motion == motion and isinstance(part.body, Body):
-            if any(e.role == "structure" for e in part.body.effects):
-                return tip(motion)
-    return motion
+    return tip(motion) if any(p.motion == motion for p, *_ in _structures(diagram)) else motion
 
 
 def linear_tips(diagram: Diagram) -> Diagram:
@@ -46,18 +53,12 @@ def linear_tips(diagram: Diagram) -> Diagram:
 
     A structure without a linear form (backlash) is not divided: linear forms leave it out, by name.
     """
-    for part in diagram.blocks:
-        if not isinstance(part, Moving) or not isinstance(part.body, Body):
-            continue
-        structure = next((e for e in part.body.effects if e.role == "structure"), None)
-        if structure is None or not structure.linear:
-            continue
-        values = {n: part.body.parameters[f"{structure.name}.{n}"].value for n in structure.absent}
-        if values == dict(structure.absent):
-            body = part.body.without_effect(structure.name)
-            diagram = diagram.with_block(part.name, body)
-        else:
-            diagram = _part_body(diagram, part, part.body, structure)
+    for part, body, structure in _structures(diagram):
+        values = {n: body.parameters[f"{structure.name}.{n}"].value for n in structure.absent}
+        if structure.linear and values == dict(structure.absent):
+            diagram = diagram.with_block(part.name, body.without_effect(structure.name))
+        elif structure.linear:
+            diagram = _part_body(diagram, part, body, structure)
     return diagram
 
 
@@ -67,18 +68,13 @@ def with_tips(diagram: Diagram, *, prescribed: Iterable[str] = ()) -> Diagram:
     prescribed: prescribed motions; of such a body only the tip's can be prescribed
     raises ModelError: the tip is not lighter than the body, or the actuator's side is prescribed
     """
-    for part in diagram.blocks:
-        if not isinstance(part, Moving) or not isinstance(part.body, Body):
-            continue
-        structure = next((e for e in part.body.effects if e.role == "structure"), None)
-        if structure is None:
-            continue
+    for part, body, structure in _structures(diagram):
         if part.motion in prescribed:
             raise ModelError(
                 f"{diagram.name}: {part.motion} is the actuator's side of {structure.name}, which "
                 f"no hand leads: give the motion {tip(part.motion)}"
             )
-        diagram = _part_body(diagram, part, part.body, structure)
+        diagram = _part_body(diagram, part, body, structure)
     return diagram
 
 

@@ -210,7 +210,7 @@ def _absent_values(diagram: Diagram, name: str) -> list[float]:
     """Values of a parameter at which a term is left out of the equations."""
     block_name, _, within = name.partition(".")
     block = diagram.block(block_name)
-    stages = getattr(getattr(block, "controller", None), "stages", ())
+    stages = getattr(block, "stages", ())
     if any(within == f"{g.name}.{g.law.dead_time}" for g in stages):
         return [0.0]
     body = getattr(block, "body", None)

@@ -70,6 +70,16 @@ def simulate_many(
         does not touch the others
     raises ModelError: no such parameter or signal, arrays of different lengths, more samples kept
         than 2 GB; no GPU; what fails in every case
+
+        >>> device = td.hand(mass=0.2, damping=2.0, stiffness=0.0)
+        >>> runs = td.simulate_many(
+        ...     td.haptic_interface(device),
+        ...     {"Z_M.viscous.damping": [1.0, 2.0]},
+        ...     duration=0.1,
+        ...     inputs={"R_D": 1.0},
+        ... )
+        >>> runs["L_rms"].values.round(5)
+        array([0.00985, 0.0087 ])
     """
     if device == "cuda":
         from ..realise.on_gpu import check_gpu

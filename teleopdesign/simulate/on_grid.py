@@ -13,7 +13,7 @@ import numpy as np
 
 from ..base.errors import GrowsWithoutBound, ModelError
 from ..base.expectations import describe_value
-from ..diagrams import Diagram, Moving
+from ..diagrams import Diagram
 from ..realise.signal_symbols import is_whole
 
 if TYPE_CHECKING:
@@ -137,8 +137,8 @@ def refuse_results(
     diagram: Diagram, inputs: Mapping[str, Input], motion: Mapping[str, Trajectory]
 ) -> None:
     """Refuse the force that prescribes a motion as an input: it is what the motion takes."""
-    for block in diagram.blocks:
-        if not isinstance(block, Moving) or block.motion not in motion:
+    for block in diagram.moving:
+        if block.motion not in motion:
             continue
         force = inputs.get(block.driver, 0.0)
         if callable(force) or np.any(force):

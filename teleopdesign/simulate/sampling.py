@@ -22,6 +22,9 @@ class Sampling:
     velocity_bandwidth: of the low-pass, or of all poles of the observer, Hz; inf: no low-pass
     observer_order: 2: least noise, delayed by two time constants; 3: no delay in slow motion
     raises ModelError: another name or order, an observer without bandwidth
+
+        >>> td.Sampling(period=1e-3, delay=2e-4, velocity_bandwidth=100.0).velocity
+        'filtered'
     """
 
     period: float = 1e-3

@@ -122,6 +122,12 @@ def simulate(
     jit: False runs the generated code in plain Python, as a nonlinear python-control system among
         the controllers does in any case: some hundred times slower
     raises ModelError: block without laws, unknown signal, step refused or force not finite
+
+        >>> device = td.hand(mass=0.2, damping=2.0, stiffness=0.0)
+        >>> diagram = td.haptic_interface(device)
+        >>> run = td.simulate_diagram(diagram, duration=0.1, inputs={"R_D": 1.0})
+        >>> round(float(run["L"][-1]), 4)
+        0.0184
     """
     arguments: dict[str, Any] = {"duration": duration, "inputs": inputs, "motion": motion}
     arguments |= {"initial": initial, "computer": computer, "step": step, "jit": jit}

@@ -92,6 +92,9 @@ def sine(*, amplitude: float, frequency: float, phase: float = 0.0) -> Trajector
 
     amplitude: of the position, m or rad;  frequency: Hz;  phase: rad, of the position
     returns: position, velocity and acceleration over time (s); `.position` is a signal for `inputs`
+
+        >>> td.sine(amplitude=0.01, frequency=2.0).velocity(np.array([0.0])).round(4)
+        array([0.1257])
     """
     omega = 2 * np.pi * frequency
     return Trajectory(

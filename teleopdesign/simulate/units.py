@@ -34,7 +34,7 @@ def _states(diagram: Diagram) -> dict[str, tuple[str, str]]:
     by_state = {}
     for block in diagram.blocks:
         laws = [(e.name, e.states) for e in getattr(getattr(block, "body", None), "effects", ())]
-        stages = getattr(getattr(block, "controller", None), "stages", ())
+        stages = getattr(block, "stages", ())
         for law, states in (*laws, *((g.name, g.law.states) for g in stages)):
             for state, declared in states.items():
                 name = f"{block.name}_{law}_{state}"
@@ -92,7 +92,7 @@ def _axes(diagram: Diagram) -> dict[str, str]:
         else:
             axis_of |= dict.fromkeys((block.motion, block.force, f"{block.name}_friction"), axis)
     groups: list[tuple[str, ...]]
-    groups = [(b.input, b.output) for b in diagram.blocks if isinstance(b, Control)]
+    groups = [(b.input, b.output) for b in diagram.controls]
     groups += [(b.motion, b.force) for b in diagram.blocks if isinstance(b, Attached)]
     for linked in (b for b in diagram.blocks if isinstance(b, Linked)):
         groups += zip(linked.motions, linked.forces, strict=True)

@@ -106,7 +106,7 @@ class SimulatedCase(ByValue):
                 initial[rest] = value
             elif stem == "motion":
                 signal, _, part = rest.rpartition(".")
-                motion[signal] = _sine_with(motion[signal], part, value)
+                motion[signal] = sine(**{**_sine_parts(motion[signal]), part: value})
         if computer:
             changes["computer"] = replace(self.computer, **computer)  # type: ignore[type-var]
         diagram = self.diagram.with_values(within) if within else self.diagram
@@ -170,10 +170,6 @@ def _is_sine(motion: Trajectory) -> bool:
 def _sine_parts(motion: Trajectory) -> dict[str, float]:
     made: Any = motion.position
     return {"amplitude": made.size, "frequency": made.rate / (2 * np.pi), "phase": made.phase}
-
-
-def _sine_with(motion: Trajectory, part: str, value: float) -> Trajectory:
-    return sine(**{**_sine_parts(motion), part: value})
 
 
 def _join_names(known: tuple[str, ...]) -> str:

@@ -41,7 +41,7 @@ class Measure(ByValue):
     """
 
     name: str
-    function: PointFunction
+    function: PointFunction = field(repr=False)
     options: Mapping[str, Any] = field(default_factory=dict)
     of_package: bool = False
     signals: tuple[str, ...] = ()
@@ -58,6 +58,9 @@ def measure(name: str, **options: Any) -> Measure:
     """A measure of the package with options: measure("rms", signal="R_M").
 
     raises ModelError: no measure of that name, an option that it does not have or that is missing
+
+        >>> td.measure("rms", signal="R_M").name
+        'rms_R_M'
     """
     kind = MEASURES[name]
     for option in options:

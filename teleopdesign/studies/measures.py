@@ -33,7 +33,8 @@ def _rows(point: Point, signal: str, after: float) -> tuple[np.ndarray, str]:
 def _rms(point: Point, *, signal: str, after: float) -> Amount:
     """root mean square of a signal, from the time `after` (s) on"""
     values, unit = _rows(point, signal, after)
-    return Amount(float(np.sqrt(np.mean(values**2))), unit, f"rms of {signal}")
+    with np.errstate(over="ignore"):  # a motion without bound
+        return Amount(float(np.sqrt(np.mean(values**2))), unit, f"rms of {signal}")
 
 
 def _peak(point: Point, *, signal: str, after: float) -> Amount:

@@ -67,6 +67,17 @@ def study(
         cannot be reached
     A point that fails is NaN, and `failure` says why. The data do not depend on where the points
     were computed.
+
+        >>> device = td.hand(mass=0.2, damping=2.0, stiffness=0.0)
+        >>> td.study(
+        ...     td.haptic_interface(device),
+        ...     {"Z_M.viscous.damping": [1.0, 2.0]},
+        ...     measures=td.measure("rms", signal="L"),
+        ...     duration=0.1,
+        ...     inputs={"R_D": 1.0},
+        ... )
+        Study of the haptic interface: 2 Z_M.viscous.damping
+          rms_L                    0.008701 to 0.00985 m
     """
     settings: dict[str, Any] = {
         "duration": duration,

@@ -40,8 +40,7 @@ def box_of_parameters(parameters: Mapping[str, tuple[float, float]]) -> ValueBox
             raise ModelError(
                 f"parameters: {name}: found {describe_value(ends)}, expected (low, high)"
             )
-    low, high = (tuple(float(ends[k]) for ends in parameters.values()) for k in (0, 1))
-    return ValueBox(tuple(parameters), low, high)
+    return ValueBox.of(parameters)
 
 
 def unit_box(names: tuple[str, ...]) -> ValueBox:
@@ -259,7 +258,7 @@ class Problem:
     def _scenarios(self, one: TuningLimit) -> list[dict[str, float]]:
         if not one.over:
             return [{}]
-        box = box_over(one)
+        box = ValueBox.of(one.over)
         points = [*box.vertices()[:_MOST_VERTICES], box.centre]
         return [box.named(p) for p in points]
 
@@ -267,22 +266,9 @@ class Problem:
         """The margin of a claim or a loop as a function of values; None for a measure."""
         if one.measure is not None:
             return None
-        diagram = self.case.diagram
-        both = {n: (a, b) for n, a, b in zip(*self._sides(), strict=True) if n in diagram.values}
-        both |= dict(one.over)
-        box = ValueBox(
-            tuple(both), tuple(a for a, _ in both.values()), tuple(b for _, b in both.values())
-        )
-        return margin_function(one, diagram, box)
-
-    def _sides(self) -> tuple[tuple[str, ...], tuple[float, ...], tuple[float, ...]]:
-        return self.parameters.names, self.parameters.low, self.parameters.high
-
-
-def box_over(one: TuningLimit) -> ValueBox:
-    """The box of the intervals of a limit."""
-    ends = one.over.values()
-    return ValueBox(tuple(one.over), tuple(a for a, _ in ends), tuple(b for _, b in ends))
+        diagram, every = self.case.diagram, self.parameters.intervals
+        both = {n: ends for n, ends in every.items() if n in diagram.values}
+        return margin_function(one, diagram, ValueBox.of(both | dict(one.over)))
 
 
 def start_values(case: SimulatedCase, box: ValueBox) -> np.ndarray:

@@ -9,11 +9,11 @@ import numpy as np
 
 from ..base.frozen import ByValue
 from ..base.shown import Shown
+from ..passivity.intervals.box import ValueBox, search_worst
 from ..passivity.intervals.linear import CLAIMS
 from ..passivity.intervals.over_box import claim_over_intervals
-from ..passivity.intervals.worst import search_worst
 from .limits import LOOP_MARGINS, TuningLimit, loop_margin
-from .problem import Problem, TrialPoint, box_over
+from .problem import Problem, TrialPoint
 
 #: points inside the intervals of a limit, beside vertices and middle
 _POINTS = 32
@@ -62,7 +62,7 @@ def _check(problem: Problem, trial: TrialPoint, k: int) -> CheckedLimit:
             how = f"checked numerically at {claim.points} points, worst found there"
         active = active and holds
         return CheckedLimit(one, claim.margin, claim.unit, holds, how, claim.worst, active)
-    box = box_over(one)
+    box = ValueBox.of(one.over)
 
     def margin(point: np.ndarray) -> float:
         values = box.named(point)

@@ -106,6 +106,19 @@ def tune(
     seed: the same seed gives the same answer, for any number of `workers` (processes)
     returns: the best evaluated point, never "the optimum": other points may be better
     raises ModelError: an unknown parameter or measure, an invalid interval
+
+        >>> device = td.hand(mass=0.2, damping=2.0, stiffness=0.0)
+        >>> loop = td.controller("gain", {"gain": 0.5})
+        >>> best = td.tune(
+        ...     td.haptic_interface(device, force_feedback=loop),
+        ...     {"H.gain.gain": (0.1, 0.9)},
+        ...     "force_error",
+        ...     duration=0.2,
+        ...     motion={"L": td.sine(amplitude=0.01, frequency=2.0)},
+        ...     evaluations=10,
+        ... )
+        >>> sorted(best.values)
+        ['H.gain.gain']
     """
     if isinstance(objective, list | tuple):
         raise ModelError(f"tune: found {len(objective)} objectives, expected one; see `trade_off`")

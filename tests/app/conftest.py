@@ -9,7 +9,7 @@ from functools import partial
 
 import pytest
 
-from teleopdesign.app.settings import FOLDER
+from teleopdesign.app.server import FOLDER
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 import teleopdesign as td
-from teleopdesign.app import charts, logs, pages, settings
+from teleopdesign.app import charts, logs, pages, server
 from teleopdesign.app.workbench import Workbench
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
@@ -105,11 +105,11 @@ def test_a_chart_shows_the_residual_of_both(bench):
 
 
 def test_the_page_tries_the_effects_that_it_was_started_with(monkeypatch):
-    monkeypatch.delenv(settings.EFFECTS, raising=False)
-    assert settings.effects() is None
-    monkeypatch.setenv(settings.EFFECTS, "stribeck,presliding")
-    assert settings.effects() == ("stribeck", "presliding")
-    assert settings.effects({"effects": "bias"}) == ("bias",)
+    monkeypatch.delenv(server.EFFECTS, raising=False)
+    assert server.effects() is None
+    monkeypatch.setenv(server.EFFECTS, "stribeck,presliding")
+    assert server.effects() == ("stribeck", "presliding")
+    assert server.effects({"effects": "bias"}) == ("bias",)
 
 
 def test_the_workbench_tries_what_it_is_asked_to_beside_effects_that_are_described():

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import teleopdesign.app
-from teleopdesign.app import blocks, export, files, logs, pages, settings
+from teleopdesign.app import blocks, export, files, logs, pages, server
 from teleopdesign.app.task import BackgroundTask
 from teleopdesign.app.workbench import Workbench
 
@@ -19,7 +19,7 @@ OWNERS = {
     "files": files,
     "logs": logs,
     "pages": pages,
-    "settings": settings,
+    "server": server,
     "bench": Workbench,
     "BackgroundTask": BackgroundTask,
     "task": BackgroundTask,

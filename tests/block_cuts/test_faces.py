@@ -7,7 +7,7 @@ from block_cuts.interface_simulator import draw_interface, write_case
 import teleopdesign as td
 from teleopdesign.block_cuts import write_answer
 from teleopdesign.cli import main
-from teleopdesign.design.of_diagram import device_of_diagram
+from teleopdesign.design.assumptions import device_of_diagram
 from teleopdesign.diagnose.search_plan import QUICK
 
 LATE = 0.003

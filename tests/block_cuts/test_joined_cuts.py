@@ -7,7 +7,7 @@ from block_cuts.teleoperator_simulator import draw_teleoperator, write_teleopera
 
 import teleopdesign as td
 from teleopdesign.block_cuts.body import body_experiment
-from teleopdesign.block_cuts.look_alikes import same_effects
+from teleopdesign.block_cuts.cuts import same_effects
 from teleopdesign.cli import main
 from teleopdesign.diagnose.search_plan import QUICK
 

@@ -9,7 +9,7 @@ from shared_data import shared_folder
 
 from teleopdesign import ExperimentError, Model, ModelError, load_experiment
 from teleopdesign.blocks import CONTACT
-from teleopdesign.blocks.environment import contact_force
+from teleopdesign.blocks.body_equation import contact_force
 from teleopdesign.diagnose.candidates import candidates
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.effects import SIGNALS

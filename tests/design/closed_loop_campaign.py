@@ -24,7 +24,7 @@ from design.compensated_joint import compensation_of, record, record_without
 
 import teleopdesign as td
 from teleopdesign.cli import main as command
-from teleopdesign.design import felt_impedance, verdict
+from teleopdesign.design import prediction, verdict
 from teleopdesign.design.verify import read_plan, verify
 
 SECONDS = 12
@@ -57,7 +57,7 @@ def keep_small(put=setattr):
     """Few motions in the claims and in the map of impedances; put: sets an attribute."""
     put(verdict, "SIZES", (1.0,))
     put(verdict, "FREQUENCIES", (1.0, 10.0))
-    put(felt_impedance, "MULTIPLES", (1.0,))
+    put(prediction, "MULTIPLES", (1.0,))
 
 
 def draw_device(number):

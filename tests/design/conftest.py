@@ -4,7 +4,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.blocks import Value
-from teleopdesign.design import felt_impedance, verdict
+from teleopdesign.design import prediction, verdict
 from teleopdesign.diagnose import Diagnosis, LadderRow
 from teleopdesign.diagnose.noise_floor import NoiseFloor
 from teleopdesign.diagnose.recording import DiagnosedRecording
@@ -25,7 +25,7 @@ def few_motions():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(verdict, "SIZES", (0.1, 1.0))
         patch.setattr(verdict, "FREQUENCIES", (1.0, 3.0, 30.0))
-        patch.setattr(felt_impedance, "MULTIPLES", (1.0, 10.0))
+        patch.setattr(prediction, "MULTIPLES", (1.0, 10.0))
         yield
 
 

@@ -11,10 +11,10 @@ import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError, ModelError
 from teleopdesign.blocks import Body, Value
 from teleopdesign.design import Assumptions, design
+from teleopdesign.design.assumptions import StatedMotion
 from teleopdesign.design.other_effects import with_forces
 from teleopdesign.design.propose import cancellations
 from teleopdesign.design.quasi_static import quasi_static_error, slow_output
-from teleopdesign.design.stated_motion import StatedMotion
 from teleopdesign.diagrams import haptic_interface, read_diagram, world_haptics_2005
 from teleopdesign.realise.friction_interval import friction_interval
 

@@ -11,11 +11,11 @@ import pytest
 import sympy as sp
 from passivity.test_certificates_over_a_box import HIGH, LOW, is_accepted, made
 
+from teleopdesign.passivity.growing_mode import growing_mode
 from teleopdesign.passivity.linear.conditions import is_shown
 from teleopdesign.passivity.linear.family import Family, family_of_matrix
 from teleopdesign.passivity.linear.matrices import close, dampers
 from teleopdesign.passivity.linear.signs import Signs
-from teleopdesign.passivity.two_port.growing_mode import growing_mode
 from teleopdesign.realise.lti import S
 
 V = sp.Symbol("v", real=True)

@@ -11,8 +11,8 @@ import pytest
 import teleopdesign
 from teleopdesign.base.files import harmless_cell
 from teleopdesign.cli import _parser, main
-from teleopdesign.commands import _paths, effects
-from teleopdesign.commands._failures import TRACEBACK
+from teleopdesign.commands import _options, effects
+from teleopdesign.commands._command_line import TRACEBACK
 from teleopdesign.commands._terminal import PrintableStream
 
 ROD = Path(teleopdesign.__file__).parent / "examples" / "rod"
@@ -260,8 +260,8 @@ def test_every_path_of_every_command_is_an_input_or_an_output():
     ).choices
     paths = {a.dest for p in subparsers.values() for a in p._actions if a.type is Path}
     assert len(paths) > 8
-    assert paths <= {*_paths.INPUTS, *_paths.OUTPUTS}
-    assert not set(_paths.INPUTS) & set(_paths.OUTPUTS)
+    assert paths <= {*_options.INPUTS, *_options.OUTPUTS}
+    assert not set(_options.INPUTS) & set(_options.OUTPUTS)
 
 
 @pytest.fixture

@@ -59,6 +59,16 @@ def haptic_interface(
     analog: controllers among "C", "H", "K" that no computer samples
     ANY stands for a block of which only the place is known.
     raises ModelError: `analog` names no controller, or the position loop uses a velocity
+
+        >>> td.haptic_interface(cancellation=td.ANY, force_feedback=td.ANY)
+        Diagram haptic interface
+          Z_M L = R_A - R_M
+          R_FF = H E
+          R_MBC = C L
+          E = R_D - R_M
+          R_A = R_D + R_FF + R_MBC
+          R_M = - R_V
+          from outside: R_V, R_D
     """
     if unknown := set(analog) - {"C", "H", "K"}:
         raise ModelError(f'haptic interface: analog: no controller "{min(unknown)}", has C, H, K')

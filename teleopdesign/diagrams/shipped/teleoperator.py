@@ -57,6 +57,20 @@ def teleoperator(
     environment: Z_E, such as a body without inertia with the contact `CONTACT`
     master_cancellation, slave_cancellation: C_m and C_s, each on the motion of its side
     ANY stands for a block of which only the place is known.
+
+        >>> device = td.hand(mass=0.2, damping=2.0, stiffness=0.0)
+        >>> coupling = td.controller("spring_damper", {"stiffness": 500.0, "damping": 4.0})
+        >>> td.teleoperator(device, device, coupling=coupling)
+        Diagram teleoperator
+          Z_m X_m = U_m + F_m
+          Z_s X_s = U_s + F_s
+          F_P = P X_e
+          X_e = X_m - X_s
+          F_m = F_u
+          U_m = - F_P
+          F_s = F_d
+          U_s = F_P
+          from outside: F_u, F_d
     """
     blocks: list[Block] = [
         Moving("Z_m", master, "X_m", "U_m", {"F_m": 1}, "F_u"),

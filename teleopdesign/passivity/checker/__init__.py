@@ -6,8 +6,8 @@ status is 1 if any certificate is refused. A small parser (`algebra.py`) reads t
 certificate and never runs them. All numbers are fractions. The effort is bounded (`effort.py`). The
 folder imports nothing but Python's standard library: a copy checks without the package.
 
-Each kind of certificate has its theorem and its proof in its file: `storage.py`,
-`positive_real.py`, `absolute_stability.py`, and `over_a_box.py` for all values within intervals.
+Each kind of certificate has its theorem and its proof in its file: `storage.py`, `matrices.py`, and
+`over_a_box.py` for all values within intervals.
 """
 
 from .check import KINDS, check, load, main

@@ -9,11 +9,10 @@ import stat
 from collections.abc import Callable
 from typing import Any
 
-from .absolute_stability import state_absolute_stability
 from .algebra import expect
 from .effort import FILE, Refused, need
+from .matrices import state_absolute_stability, state_positive_real
 from .over_a_box import state_stability
-from .positive_real import state_positive_real
 from .storage import Storage
 
 #: kinds that are decided from the fields alone; a certificate of kind "storage" contains its proofs

@@ -16,15 +16,13 @@ from ...base.files import read_whole, write_json
 from ...diagrams.expressions import read_expression
 from ...diagrams.junctions import position_symbol
 from ...realise.lti import S
+from ..growing_mode import CLAMPED, GrowingMode, Termination
 from ..rate_independent import Coulomb, Cycle, Dahl, Spring
-from ..search.growing_wave import GrowingWave
-from ..search.sampled_wave import SampledWave, Z, sampled_wave
+from ..search.growing_wave import GrowingWave, SampledWave, Z, sampled_wave
 from ..theorems.lugre import Jumps
 from ..theorems.quantised_spring import Flip
 from ..theorems.sampled_compensation import Trembling
 from ..theorems.velocity_compensation import SteadyStrokes
-from ..two_port.growing_mode import GrowingMode
-from ..two_port.termination import CLAMPED, Termination
 from .claim import Counterexample
 
 _KINDS: dict[str, Any] = {

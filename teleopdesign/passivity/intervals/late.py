@@ -35,9 +35,8 @@ from ...derive.effort import try_within_effort
 from ...derive.polynomials import is_hurwitz
 from ...frequency.late_zeros import Terms, count_growing, exact_terms, terms_of
 from ..linear.signs import Signs
-from .box import IntervalClaim, Status, ValueBox
+from .box import IntervalClaim, Status, ValueBox, interval_claim, search_worst
 from .late_cells import is_zero_free
-from .worst import interval_claim, search_worst
 
 _STATEMENT = "every pole has a negative real part"
 

@@ -19,15 +19,24 @@ from ...derive.responses import Responses
 from ...diagrams import Diagram
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim
-from ..linear.box_certificates import impedance_certificate, stability_certificate
-from ..linear.conditions import is_shown, take_damping
+from ..linear.conditions import impedance_certificate, is_shown, stability_certificate, take_damping
 from ..linear.family import Family, family_of_states
 from ..linear.signs import Signs
 from ..linear_diagrams import linear_claims
 from ..ports import drop_absent_effects, ports
-from .box import IntervalClaim, Status, ValueBox, nonlinear_within
+from .box import (
+    IntervalClaim,
+    MarginFunction,
+    Status,
+    ValueBox,
+    Worst,
+    interval_claim,
+    nonlinear_within,
+    pole_margin,
+    port_margin,
+    search_worst,
+)
 from .late import judge_late
-from .worst import MarginFunction, Worst, interval_claim, pole_margin, port_margin, search_worst
 
 #: names of claims -> units of their margins
 CLAIMS = {"passive": "N s/m", "absolutely stable": "1", "stable": "1/s"}

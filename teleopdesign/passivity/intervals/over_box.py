@@ -31,9 +31,8 @@ from ..linear.family import family_of_states
 from ..linear.impedance import decimal, exact
 from ..linear.signs import Signs
 from ..ports import drop_absent_effects, nonlinear_parts, ports, without_friction, without_holders
-from .box import IntervalClaim, ValueBox, box_of, nonlinear_within
+from .box import IntervalClaim, ValueBox, Worst, box_of, interval_claim, nonlinear_within
 from .linear import CLAIMS, judge_at_points, judge_linear, judge_stability, states_over
-from .worst import Worst, interval_claim
 
 
 @check_types

@@ -20,12 +20,10 @@ from ...derive.effort import TooMuchEffort, bounded_effort
 from ...derive.polynomials import X, as_poly, element, where_negative
 from ..claims.certificate import matrix_certificate
 from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown, Verdict
+from ..growing_mode import far_termination, growing_mode
 from ..search.growing_wave import GrowingWave, wave_of
 from ..search.points import candidates, near_axis, near_poles, wave_out_of
-from ..two_port.growing_mode import growing_mode
-from ..two_port.termination import far_termination
-from .box_certificates import KINDS, stability_certificate
-from .conditions import axis_conditions, is_shown
+from .conditions import KINDS, axis_conditions, is_shown, stability_certificate
 from .excess import damping_excess, describe_equality
 from .family import Family, family_of_impedance
 from .impedance import Impedance, MotionKind, impedance, readable
@@ -64,6 +62,11 @@ def positive_real(system: Any, *, motion: MotionKind = "velocity") -> Claim:
         last digits of floats, or where the wave releases so little energy that a replay in double
         precision does not show it
     raises ModelError: not a rational function of s with known coefficients
+
+        >>> import control as ct
+        >>> td.positive_real(ct.tf([1, 2], [1, 3]))
+        proved: Z(s) = (s + 2)/(s + 3) is passive at its port (force, velocity)
+            by the positive-real test; 1 certificate; margin 0.6667 N s/m
     """
     z = impedance(system, motion=motion)
     claim = passive_claim(replace(family_of_impedance(z), unseen=unseen_modes(system)))

@@ -3,7 +3,7 @@
 With dampings b_m, b_s of master and slave, stiffness P and one-way delay T, Llewellyn's criterion
 reads b_m b_s >= (P T)^2 q(w), q = (sin(w T)/(w T))^2 <= 1, with equality for w -> 0.
 
-The other conditions (`checker/absolute_stability.py`) hold for every such coupling. The entries
+The other conditions (`checker/matrices.py`) hold for every such coupling. The entries
 have no pole but s = 0, where e^(-s T) = 1. The residues there are P, P and -P, so that
 k11 k22 = k12 k21. At infinity the masses grow like s, and the coupling between the ports does not.
 The product z12 z21 is bounded at high frequency.
@@ -14,7 +14,7 @@ from __future__ import annotations
 from ...realise.lti import S
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
-from ..two_port.two_port import absolutely_stable, teleoperator_two_port
+from ..two_port import absolutely_stable, teleoperator_two_port
 from ._hypotheses import NonNegative, Real, certificate, require_hypotheses
 from ._theorem import Theorem
 

@@ -33,8 +33,8 @@ from ..linear.family import family_of_impedance
 from ..linear.impedance import Impedance, decimal, exact, impedance, read_expression, readable
 from ..linear.judge import NO_WAVE, prove
 from ..rate_independent import strongest
+from ..search.growing_wave import Z, sampled_wave
 from ..search.points import waves_out_of
-from ..search.sampled_wave import Z, sampled_wave
 from ._hypotheses import Free, NonNegative, Positive, Real, require_hypotheses
 from ._theorem import Question, Theorem, TopicClaim, refute
 

@@ -22,7 +22,7 @@ from dataclasses import replace
 import sympy as sp
 
 from ...base.errors import ModelError
-from ...diagrams import Diagram, Moving, wave_variables
+from ...diagrams import Diagram, wave_variables
 from ...realise.lti import S, linear_blocks
 from ..claims.claim import Claim, Proof, Unknown
 from ..declarations import falsely_linear, is_shipped
@@ -140,7 +140,7 @@ def _wave_impedance(diagram: Diagram) -> float:
 
     raises ModelError: another wiring
     """
-    bodies = {b.name: b.body for b in diagram.blocks if isinstance(b, Moving)}
+    bodies = {b.name: b.body for b in diagram.moving}
     controls = {c.name: replace(c, analog=False) for c in diagram.controls}
     impedance = 0.0
     if "b_m" in controls:  # its linear form is to be b s

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+from html import escape
+from io import StringIO
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...base.files import write_text
 from ...base.sentences import with_standard_error
 from ...block_cuts.cuts import Cut
 from ...block_cuts.cuts_ladder import Key
 from ...block_cuts.diagnosis import BlockDiagnosis
 from ...diagnose.criteria import CRITERIA
 from ..registry import shows
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @shows("text")
@@ -85,3 +94,36 @@ def _verdict(diagnosis: BlockDiagnosis) -> str:
         return "verdict: undecided. One effect of a group above is missing; no signal tells which."
     open_cuts = loud or [n for n, fine in diagnosis.adequate.items() if not fine]
     return f"verdict: undecided. More than noise is left at {', '.join(open_cuts)}."
+
+
+_PAGE = """<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>{title}</title>
+<style>body {{ font-family: serif; max-width: 60em; margin: 2em auto; }}
+svg {{ max-width: 100%; height: auto; }} pre {{ white-space: pre-wrap; }}</style></head>
+<body><h1>{title}</h1>
+{sections}
+</body></html>
+"""
+
+
+def write_block_report(diagnosis: BlockDiagnosis, path: str | Path) -> None:
+    """Write the page: the diagram in colours, the text, and the residuals before and after."""
+    sections = [_as_svg(diagnosis.plot()), f"<pre>{escape(repr(diagnosis))}</pre>"]
+    if diagnosis.data is not None:
+        sections += ["<h2>The computer</h2>", "<p>Grey: the stated laws; blue: at the end.</p>"]
+        sections.append(_as_svg(diagnosis.plot_residuals()))
+    for name, body in diagnosis.bodies.items():
+        sections += [f"<h2>{escape(name)}</h2>", _as_svg(body.plot())]
+        sections.append(f"<pre>{escape(repr(body))}</pre>")
+    title = escape(diagnosis.experiment.title)
+    write_text(path, _PAGE.format(title=title, sections="\n".join(sections)))
+
+
+def _as_svg(figure: Figure) -> str:
+    """A figure as SVG inside a page."""
+    import matplotlib.pyplot as plt
+
+    out = StringIO()
+    figure.savefig(out, format="svg")
+    plt.close(figure)
+    return out.getvalue()[out.getvalue().index("<svg") :]

@@ -1,7 +1,4 @@
-"""A design as text: proposals with their reasons, predictions, claims, notes.
-
-The figure computes nothing.
-"""
+"""A design as text, proposals with their reasons, predictions, claims, notes; and as a figure."""
 
 from __future__ import annotations
 
@@ -12,7 +9,7 @@ from typing import TYPE_CHECKING
 from ...base.sentences import unit_at_axis, with_standard_error
 from ...base.units import unit_of
 from ..figures.style import CASES, TWO_COLUMNS
-from ..frequency.panels import draw_interval, keep_scale
+from ..frequency.impedance import draw_interval, keep_scale
 from ..registry import shows
 from .headline import headline
 
@@ -21,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ...design import Design, ProposedController, TunedControllers
-    from ...design.felt_impedance import FeltImpedance
+    from ...design.prediction import FeltImpedance
 
 
 WIDTH = 100

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ...base.sentences import unit_at_axis
 from ..figures.style import ONE_COLUMN, TWO_COLUMNS
 from ..registry import shows
-from .panels import (
+from .impedance import (
     PageColumns,
     draw_interval,
     keep_scale,

@@ -5,21 +5,11 @@ from __future__ import annotations
 import math
 
 from ...base.finding import Finding
-from ...base.sentences import (
-    join_names,
-)
-from ...base.sentences import (
-    number_on_page as number,
-)
-from ...base.sentences import (
-    percent_on_page as percent,
-)
-from ...base.sentences import (
-    unit_on_page as unit_text,
-)
-from ...base.sentences import (
-    with_error_on_page as with_error,
-)
+from ...base.sentences import join_names
+from ...base.sentences import number_on_page as number
+from ...base.sentences import percent_on_page as percent
+from ...base.sentences import unit_on_page as unit_text
+from ...base.sentences import with_error_on_page as with_error
 from ...diagnose.criteria import CRITERIA
 from ...diagnose.diagnosis import Diagnosis
 from ...diagnose.fit import Fit, free_parameters

@@ -24,10 +24,9 @@ from ...base.sentences import percent_on_page as percent
 from ...base.sentences import unit_on_page as unit_text
 from ..figures.graph import draw_graph
 from ..figures.style import AFTER, BEFORE, STYLE, further_fonts
-from ..frequency.panels import legend_below
+from ..frequency.impedance import legend_below
 from ..frequency.response import draw_bode
-from .before_and_after import YOURS
-from .motion import ImpedanceView
+from .motion import YOURS, ImpedanceView
 from .residuals import BodyView, RungResidual
 
 if TYPE_CHECKING:

@@ -1,22 +1,184 @@
-"""What a page shows of motion and frequency: simulated motion, and the impedance of each body."""
+"""What a page shows of motion, force and frequency of a body: graphs with their units.
+
+The residual over what carries it and force in time, before and after; simulated motion; impedance.
+An axis has the unit prefix that suits its values: 0.012 m as 12 mm.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...base.errors import ModelError
 from ...base.finding import Array, Graph, Series
+from ...base.sentences import unit_on_page as unit_text
 from ...base.units import unit_of
 from ...blocks import free_space
 from ...diagnose import Diagnosis, SimulationComparison
 from ...diagnose.comparison import energetic_speed, recorded_impedance
 from ...diagrams import haptic_interface
 from ...frequency import FrequencyResponse, bode
+from ..figures.carrier import CarryingVariable
 from ..figures.graph import thin_series
-from .before_and_after import choose_prefix, size_of
+
+#: most points of a profile in each direction, and fewest samples of a point
+PROFILE, FEWEST = 24, 3
+#: part of the samples outside a band on each side
+TAIL = 0.1
+#: length of an excerpt in periods at the bandwidth, and its longest part of a stretch
+PERIODS, PART = 60.0, 0.25
+#: points of each line of an excerpt
+EXCERPT_POINTS = 240
+#: part of the record's mean square force below which a window counts as quiet
+QUIET = 0.03
+#: name of the only model of a graph
+YOURS = "your model"
+
+
+@dataclass(frozen=True)
+class BodySamples:
+    """Samples of one body that count in the error, (n,) each.
+
+    time: s, without gaps;  clock: s, of the record;  residual: one array for each rung
+    """
+
+    time: Array
+    clock: Array
+    stretch: NDArray[np.intp]
+    position: Array
+    velocity: Array
+    command: Array
+    direction: NDArray[np.int8]
+    measured: Array
+    residual: tuple[Array, ...]
+
+    def select_rungs(self, rungs: list[int]) -> BodySamples:
+        """The same samples, with the residuals of these rungs."""
+        return replace(self, residual=tuple(self.residual[i] for i in rungs))
+
+
+def plot_over_carrier(
+    rows: BodySamples, axis: str, force: Scaled, carrier: CarryingVariable
+) -> Graph:
+    """Mean residual over the carrier on the first and last rung, and 80 % of the samples."""
+    quantity = "force" if carrier.name == "command" else carrier.name
+    places = carrier.values(vars(rows))
+    scale = choose_prefix(unit_of(quantity, axis), size_of(places))
+    series = [
+        Series(
+            name=name,
+            x=scale.factor * np.array([p[0] for p in profile]),
+            y=force.factor * np.array([p[1] for p in profile]),
+            kind="model",
+            low=force.factor * np.array([p[2] for p in profile]),
+            high=force.factor * np.array([p[3] for p in profile]),
+        )
+        for name, r in _first_and_last(rows.residual)
+        if (profile := _profile(rows, places, r))
+    ]
+    label = f"residual force ({force.unit})"
+    return Graph(f"{carrier.label(axis)} ({scale.unit})", label, tuple(series))
+
+
+def _first_and_last(residual: tuple[Array, ...]) -> list[tuple[str, Array]]:
+    if len(residual) == 1:
+        return [(YOURS, residual[0])]
+    return [("before", residual[0]), ("after", residual[-1])]
+
+
+def _profile(
+    rows: BodySamples, places: Array, residual: Array
+) -> list[tuple[float, float, float, float]]:
+    """Mean place, mean, low and high residual of groups of equal size in each direction."""
+    groups = []
+    for way in (-1, 1):
+        this_way = np.flatnonzero(rows.direction == way)
+        if len(this_way) < 10 * FEWEST:
+            continue
+        this_way = this_way[np.argsort(places[this_way], kind="stable")]
+        for group in np.array_split(this_way, min(PROFILE, len(this_way) // FEWEST)):
+            low, high = np.quantile(residual[group], (TAIL, 1.0 - TAIL))
+            mean = float(np.mean(residual[group]))
+            groups.append((float(np.mean(places[group])), mean, float(low), float(high)))
+        groups.append((float("nan"),) * 4)  # the line breaks where the motion turns
+    return groups
+
+
+def excerpt(rows: BodySamples, axis: str, bandwidth: float) -> Graph:
+    """Measured and modelled force where the residual decreased most (or is largest)."""
+    window = _window(rows, bandwidth)
+    kept = window[:: max(1, len(window) // EXCERPT_POINTS)]  # low-passed: neighbours are alike
+    force = choose_prefix(unit_of("force", axis), size_of(rows.measured[window]))
+    series = [Series("measured", rows.clock[kept], force.factor * rows.measured[kept], "course")]
+    for name, r in _first_and_last(rows.residual):
+        model = force.factor * (rows.measured[kept] - r[kept])
+        series.append(Series(name, rows.clock[kept], model, "model"))
+    return Graph("time (s)", f"force ({force.unit})", tuple(series))
+
+
+def _window(rows: BodySamples, bandwidth: float) -> NDArray[np.intp]:
+    gain = rows.residual[0] ** 2
+    if len(rows.residual) > 1:
+        gain = gain - rows.residual[-1] ** 2
+    force = rows.measured**2
+    least = QUIET * float(np.mean(force))
+    best, window = -np.inf, np.arange(len(rows.time))
+    for number in np.unique(rows.stretch):
+        of_stretch = np.flatnonzero(rows.stretch == number)
+        step = float(np.median(np.diff(rows.time[of_stretch]))) if len(of_stretch) > 1 else 1.0
+        length = max(2, int(min(PERIODS / bandwidth, PART * len(of_stretch) * step) / step))
+        if len(of_stretch) < length:
+            continue
+        share = _moving_mean(gain[of_stretch], length) / (
+            _moving_mean(force[of_stretch], length) + least
+        )
+        if share.max() > best:
+            start = int(np.argmax(share))
+            best, window = float(share.max()), of_stretch[start : start + length]
+    return window
+
+
+def _moving_mean(values: Array, length: int) -> Array:
+    """Mean of each window of `length` samples."""
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    return np.asarray((sums[length:] - sums[:-length]) / length)
+
+
+#: SI unit -> (unit that is shown, factor), from small to large; other units are not changed
+_SHOWN = {
+    "m": (("µm", 1e6), ("mm", 1e3), ("m", 1.0)),
+    "m/s": (("µm/s", 1e6), ("mm/s", 1e3), ("m/s", 1.0)),
+    "N": (("mN", 1e3), ("N", 1.0)),
+    "N*m": (("mN·m", 1e3), ("N·m", 1.0)),
+    "rad": (("mrad", 1e3), ("rad", 1.0)),
+    "rad/s": (("mrad/s", 1e3), ("rad/s", 1.0)),
+}
+
+
+@dataclass(frozen=True)
+class Scaled:
+    """A unit for display, and the factor from SI to it."""
+
+    unit: str
+    factor: float
+
+
+def choose_prefix(unit: str, size: float) -> Scaled:
+    """The largest prefix in which `size` (SI) is at least 0.5, or the smallest that exists."""
+    choices = _SHOWN.get(unit, ((unit_text(unit), 1.0),))
+    for shown, factor in reversed(choices):
+        if size * factor >= 0.5:
+            return Scaled(shown, factor)
+    return Scaled(*choices[0])
+
+
+def size_of(values: Array) -> float:
+    """Size of values: the 98 % quantile of their magnitudes."""
+    return float(np.quantile(np.abs(values), 0.98))
+
 
 #: roles of effects between command and force, or between two sides of a body: the recorded force
 #: and motion are then not those of one impedance

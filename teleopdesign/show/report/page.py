@@ -1,11 +1,10 @@
-"""The data of a report's page: all its content, as plain numbers and texts.
-
-Its sources are the record files and the channels.
-"""
+"""The data of a report's page: all its content, as plain numbers and texts."""
 
 from __future__ import annotations
 
 import dataclasses
+import hashlib
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
@@ -13,9 +12,11 @@ from typing import Any
 
 from ...base.files import make_plain
 from ...base.finding import Finding, Graph
+from ...base.units import unit_of
 from ...diagnose import Diagnosis, SimulationComparison
 from ...diagnose.answer import answer
-from ...measurement.reading import ReadingStep
+from ...measurement.experiment import Experiment
+from ...measurement.reading import ReadingStep, log_name
 from ..diagnose.text import sentence
 from ..figures.graph import thin_series
 from .candidate_table import (
@@ -24,7 +25,10 @@ from .candidate_table import (
     LadderLine,
     candidate_rows,
     candidate_steps,
+    describe_judgement,
     ladder_lines,
+    sentence_of,
+    verdict,
 )
 from .cannot_tell import cannot_tell
 from .motion import ImpedanceView, MotionOverlay, impedance_views, simulated_motions
@@ -36,9 +40,7 @@ from .parameter_table import (
     correlation_rows,
     parameter_rows,
 )
-from .provenance import ChannelRow, RecordRow, channel_rows, record_rows
 from .residuals import BodyView, body_views
-from .words import describe_judgement, sentence_of, verdict
 
 #: most points of one series of a finding's graph, drawn and in the page's data
 POINTS = 400
@@ -223,3 +225,85 @@ def _thin(graph: Graph) -> Graph:
 def page_data(page: Page, diagnosis: Diagnosis) -> dict[str, Any]:
     """Data embedded in the page: the answer, and every number that the page shows."""
     return {"answer": make_plain(answer(diagnosis)), "report": make_plain(page, digits=DIGITS)}
+
+
+@dataclass(frozen=True)
+class RecordRow:
+    """A record and its content; duration: s, rate: Hz, NaN on friction curves; digest: SHA-256."""
+
+    file: str
+    use: str
+    samples: int
+    duration: float
+    rate: float
+    segments: int
+    offset_names: tuple[str, ...]
+    digest: str
+
+
+@dataclass(frozen=True)
+class ChannelRow:
+    """A channel as described; resolution and noise in SI (`si_unit`), None if not stated."""
+
+    name: str
+    column: str
+    unit: str
+    resolution: float | None
+    noise: float | None
+    si_unit: str
+
+
+def record_rows(experiment: Experiment) -> tuple[RecordRow, ...]:
+    """Every record of the experiment."""
+    return tuple(
+        RecordRow(
+            file=r.file,
+            use=r.use,
+            samples=len(r.time),
+            duration=math.nan if r.is_curve else r.duration,
+            rate=math.nan if r.is_curve else 1.0 / r.sample_time,
+            segments=len(r.segments),
+            offset_names=tuple(sorted(n.replace("_", " ") for n in r.offset_names)),
+            digest=_digest(experiment, r.file),
+        )
+        for r in experiment.records
+    )
+
+
+def _digest(experiment: Experiment, file: str) -> str:
+    """SHA-256 of a record's log; "" if the log no longer exists.
+
+    For a folder (a bag): of its files one after the other, sorted by name.
+    """
+    path = experiment.folder / file
+    if not path.exists():  # a part of a log
+        path = experiment.folder / log_name(file)
+    files = sorted(p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
+    whole = hashlib.sha256()
+    try:
+        for one in files:
+            with one.open("rb") as stream:
+                hashlib.file_digest(stream, lambda: whole)
+    except OSError:
+        return ""
+    return whole.hexdigest()
+
+
+def channel_rows(experiment: Experiment) -> tuple[ChannelRow, ...]:
+    """Every channel of the experiment."""
+    kinds = {"actuator_force": "force", "interaction_force": "force"}
+    return tuple(
+        ChannelRow(
+            name=name,
+            column=c.column,
+            unit=c.unit,
+            resolution=c.resolution,
+            noise=c.noise,
+            si_unit=(
+                ""
+                if c.body is None
+                else unit_of(kinds.get(c.quantity, c.quantity), experiment.axis(c.body))
+            ),
+        )
+        for name, c in experiment.channels.items()
+    )

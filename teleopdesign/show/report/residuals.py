@@ -19,7 +19,7 @@ from ...diagnose import Diagnosis
 from ...diagnose.comparison import residual_data
 from ...diagnose.evidence import SAME
 from ..figures.carrier import carrier_of
-from .before_and_after import (
+from .motion import (
     BodySamples,
     Scaled,
     choose_prefix,

@@ -18,34 +18,15 @@ from markupsafe import Markup
 
 from ...base.files import write_text
 from ...base.finding import Finding
-from ...base.sentences import (
-    number_on_page as number,
-)
-from ...base.sentences import (
-    percent_on_page as percent,
-)
-from ...base.sentences import (
-    short_on_page as short,
-)
-from ...base.sentences import (
-    typeset,
-)
-from ...base.sentences import (
-    unit_on_page as unit_text,
-)
-from ...base.sentences import (
-    with_error_on_page as with_error,
-)
+from ...base.sentences import number_on_page as number
+from ...base.sentences import percent_on_page as percent
+from ...base.sentences import short_on_page as short
+from ...base.sentences import typeset
+from ...base.sentences import unit_on_page as unit_text
+from ...base.sentences import with_error_on_page as with_error
 from ...diagnose import Diagnosis, SimulationComparison
 from .candidate_table import COLUMNS
-from .figures import (
-    WIDE,
-    colour_scale,
-    graph_figure,
-    impedance_figure,
-    ladder_figure,
-    step_figure,
-)
+from .figures import WIDE, colour_scale, graph_figure, impedance_figure, ladder_figure, step_figure
 from .page import Page, Unexplained, page_data, page_of
 
 TEMPLATES = Path(__file__).with_name("templates")

@@ -13,8 +13,8 @@ from teleopdesign.diagnose.recording import DiagnosedRecording
 from teleopdesign.diagnose.statements import Alternative
 from teleopdesign.show.report.cannot_tell import cannot_tell
 from teleopdesign.show.report.motion import simulated_motions
+from teleopdesign.show.report.page import record_rows
 from teleopdesign.show.report.parameter_table import parameter_rows
-from teleopdesign.show.report.provenance import record_rows
 from teleopdesign.show.report.residuals import CELLS, body_views
 
 

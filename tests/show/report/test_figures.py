@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from teleopdesign.base.finding import Graph
 from teleopdesign.show.figures.diagnosis import AFTER, BEFORE
 from teleopdesign.show.report import figures
-from teleopdesign.show.report.before_and_after import Scaled
 from teleopdesign.show.report.candidate_table import LadderLine
+from teleopdesign.show.report.motion import Scaled
 from teleopdesign.show.report.residuals import BodyView, RungResidual
 
 EMPTY = Graph("", "", ())

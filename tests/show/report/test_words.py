@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from teleopdesign.diagnose.statements import Alternative
-from teleopdesign.show.report.words import sentence_of, verdict
+from teleopdesign.show.report.candidate_table import sentence_of, verdict
 
 
 def test_the_verdict_names_the_effect_and_both_errors(diagnosis):

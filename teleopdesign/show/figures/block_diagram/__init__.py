@@ -12,9 +12,9 @@ from ....base.errors import ModelError
 from ....diagrams import Diagram
 from .drawing import Drawing
 from .from_diagram import network
-from .network import Network, Node
 from .paths import Path, paths, place
 from .routes import route
+from .shapes import Network, Node
 from .sheet import sheet
 
 __all__ = ["Drawing", "draw_diagram"]

@@ -1,7 +1,4 @@
-"""A drawing: shapes on a sheet, written as SVG or painted by matplotlib.
-
-A drawing of shapes painted by matplotlib, for PDF and PNG in house style.
-"""
+"""A drawing: shapes on a sheet, written as SVG, or painted by matplotlib for PDF and PNG."""
 
 from __future__ import annotations
 

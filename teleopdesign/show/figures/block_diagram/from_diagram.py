@@ -16,12 +16,10 @@ import sympy as sp
 from sympy.printing.str import StrPrinter
 
 from ....blocks import Body
-from ....controllers import Controller
 from ....derive import has_actuation
 from ....diagrams import Attached, Block, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ....diagrams.junctions import Weight
-from .network import MINUS, Net, Network, Node, join_names
-from .shapes import Run, symbol
+from .shapes import MINUS, Net, Network, Node, Run, join_names, symbol
 
 #: characters of a line, and lines of a box; what is longer is not shown
 LONGEST, MOST = 34, 4
@@ -110,7 +108,7 @@ class _Making:
         return [signal, *(s for s in self.diagram.signals if self.same.get(s) == signal)]
 
     def sources(self) -> None:
-        drivers = {b.driver for b in self.diagram.blocks if isinstance(b, Moving)}
+        drivers = {b.driver for b in self.diagram.moving}
         for signal in self.diagram.outside:
             name, title = f"from {signal}", join_names(self.names(signal))
             self.made.nodes[name] = Node(name, "source", title, driver=signal in drivers)
@@ -273,9 +271,8 @@ def _is_delay(block: Block) -> bool:
 
 def _notes(block: Block) -> tuple[str, ...]:
     if isinstance(block, Control):
-        if not isinstance(block.controller, Controller) or _is_delay(block):
-            return ()
-        return _shorten_names(tuple(stage.law.name for stage in block.controller.stages))
+        laws = () if _is_delay(block) else (stage.law.name for stage in block.stages)
+        return _shorten_names(tuple(laws))
     if not isinstance(block.body, Body):
         return ()
     return _shorten_names(

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from .network import Network
+from .shapes import Network
 
 LONGEST = 12  # most nodes of a path: a longer one would make a drawing of one row
 MOST_STEPS = 4000  # most steps of a search for a longest path; more would not change the drawing

@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from ....base.errors import ModelError
-from .network import Net, Network
 from .paths import LEFT, RIGHT, Cells
+from .shapes import Net, Network
 
 Vertex = tuple[int, int]
 #: steps right, down, left, up

@@ -8,10 +8,25 @@ from itertools import pairwise
 from typing import Literal
 
 from .drawing import Drawing
-from .network import MINUS, RADIUS, Network, Node, label
 from .paths import LEFT, RIGHT, Cells
 from .routes import Route, RoutingGrid
-from .shapes import SIZES, Box, Circle, Dot, Run, SheetPoint, SheetShape, Text, Wire, width
+from .shapes import (
+    MINUS,
+    RADIUS,
+    SIZES,
+    Box,
+    Circle,
+    Dot,
+    Network,
+    Node,
+    Run,
+    SheetPoint,
+    SheetShape,
+    Text,
+    Wire,
+    label,
+    width,
+)
 
 MARGIN, PITCH = 8.0, 11.0
 APPROACH = 15.0  # arrow head and sign before a node

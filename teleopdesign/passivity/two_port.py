@@ -9,7 +9,7 @@ A passive two-port is absolutely stable. Dead times are exact: e^(-s T) is evalu
 approximated.
 
 Llewellyn, Proc. IRE 40 (1952) 271. His inequality on the axis is one of several conditions;
-`checker/absolute_stability.py` lists all of them.
+`checker/matrices.py` lists all of them.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...base.arguments import describe_value
-from ...base.errors import ModelError
-from ...base.finding import Graph, Series
-from ...base.frozen import ByValue
-from ...diagrams.control_parts import entry_of
-from ...realise.lti import S
-from ..claims.claim import Claim
-from ..linear.family import Family, family_of_matrix
-from ..linear.impedance import Impedance, exact, impedance, read_expression
-from ..linear.judge import passive_claim, stable_claim
-from ..linear.sweep import passive_margin, stable_margin
-from ..linear.unseen import unseen_modes
+from ..base.arguments import describe_value
+from ..base.errors import ModelError
+from ..base.finding import Graph, Series
+from ..base.frozen import ByValue
+from ..diagrams.control_parts import entry_of
+from ..realise.lti import S
+from .claims.claim import Claim
+from .linear.family import Family, family_of_matrix
+from .linear.impedance import Impedance, exact, impedance, read_expression
+from .linear.judge import passive_claim, stable_claim
+from .linear.sweep import passive_margin, stable_margin
+from .linear.unseen import unseen_modes
 
 
 @dataclass(frozen=True)
@@ -182,7 +182,7 @@ def passive(system: TwoPort) -> Claim:
 def absolutely_stable(system: TwoPort) -> Claim:
     """Is the two-port stable between any passive terminations (Llewellyn, residues on the axis)?
 
-    `checker/absolute_stability.py` contains the statement and its proof.
+    `checker/matrices.py` contains the statement and its proof.
 
     returns: proved; or refuted by a motion that grows by itself between the two passive
         terminations that the verdict names. With dead times: evidence over frequency, or refuted by

@@ -1,8 +1,26 @@
-"""Certificates of absolute stability of two-ports: "absolute stability", and the same over a box.
+"""Certificates of matrices of impedances, at a point or over a box, in two parts with a proof each.
 
-Z(s) is a 2x2 matrix of rational functions with real coefficients. The claim: no pair of
-positive-real terminations (Z1, Z2) for which (Z + diag(Z1, Z2))^-1 exists gives this inverse a pole
-in the open right half plane. With E = (Z + 1)^-1 the checker shows, at each point of a box:
+Positive real: "positive real", and "positive real over a box". The first kind contains Z
+alone, at a point, of up to 6 ports. The second contains numerators N, a denominator d and a scale
+c > 0, of one port or two, with names that vary over a box. The checker decides, at each point of
+the box, with Z = N/d and c = 1 where no scale is given:
+
+1. (Z + c)^-1 has a denominator all of whose zeros have Re s < 0. So S = (Z - c)/(Z + c) =
+   1 - 2 c (Z + c)^-1 is analytic for Re s >= 0.
+2. All principal minors of H = N conj(d) + N^H d = abs(d)^2 (Z + Z^H) are >= 0 on the imaginary
+   axis. So H is positive semidefinite there, and so is
+   1 - S^H S = 2 c (Z + c)^-H (Z + Z^H) (Z + c)^-1.
+3. S is bounded on the axis, so it is proper. By the maximum principle |S| <= 1 for Re s > 0. So Z
+   is analytic for Re s > 0 with Z + Z^H >= 0.
+
+Over a box, step 1 may instead show that the poles of Z are at s = 0 and infinity, simple, with
+symmetric, positive semidefinite residues. Z without them is analytic and bounded for Re s >= 0, so
+v^H (Z + Z^H) v is harmonic there, and >= 0 by the maximum principle. The poles add a term >= 0.
+
+Absolute stability of two-ports: "absolute stability", and the same over a box. Z(s) is a 2x2
+matrix of rational functions with real coefficients. The claim: no pair of positive-real
+terminations (Z1, Z2) for which (Z + diag(Z1, Z2))^-1 exists gives this inverse a pole in the open
+right half plane. With E = (Z + 1)^-1 the checker shows, at each point of a box:
 
 1. E11, E22 and E12 E21 have no pole with Re s >= 0;
 2. E12 and E21 have no pole with Re s > 0, and simple ones on the axis, infinity included;
@@ -46,28 +64,81 @@ that passes through grows like time or faster, and nothing is claimed.
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from .algebra import Poly
+from .algebra import Poly, read_number
 from .effort import need
-from .over_a_box import PolyMatrix, SignsOverBox, degree, read_impedance, times_x
+from .over_a_box import PolyMatrix, SignsOverBox, degree, halves, read_impedance, times_x
 from .polynomials import coefficient_list, derivative, greatest_common_divisor, is_hurwitz
-from .positive_real import with_damper
+
+#: numbers of rows that are allowed: each further row doubles the number of principal minors
+SIZES = (1, 2, 3, 4, 5, 6)
+
+
+def state_positive_real(c: dict[str, Any]) -> str:
+    """The statement that Z is positive real, as the certificate says; raises Refused if not."""
+    box, n, d, text, where = read_impedance(c, SIZES, "scale")
+    scale = read_number(c["scale"], "scale") if where else Fraction(1)
+    need(scale > 0, "scale: not > 0")
+    _check_matrix(box, n, d, scale)
+    return f"{text} is positive real: analytic with Z + Z^H >= 0 for Re s > 0{where}"
+
+
+def _check_matrix(box: SignsOverBox, n: PolyMatrix, d: Poly, scale: Fraction) -> None:
+    """Raise Refused unless steps 1 and 2 of the first part are shown."""
+    below = box.inverse_denominator(with_damper(box, n, d, scale), d)
+    need(below, "not positive real: Z + c is singular")
+    shown = box.is_stable(below) or box.names and box.has_passive_residues(n, d, symmetric=True)
+    need(shown, "not positive real: (Z - c)/(Z + c) is not shown to be stable")
+    weight = box.cross(d, d)[0]
+    for minor in _hermitian_minors(box, n, d):
+        shown = box.are_non_negative([minor], weight)
+        need(shown, "not positive real: Z + Z^H is not shown to be >= 0 on the axis")
+
+
+def with_damper(box: SignsOverBox, n: PolyMatrix, d: Poly, scale: Fraction) -> PolyMatrix:
+    """N + c d, with c on the diagonal."""
+    return [
+        [box.algebra.plus(e, d, scale) if i == j else e for j, e in enumerate(row)]
+        for i, row in enumerate(n)
+    ]
+
+
+def _hermitian_minors(box: SignsOverBox, n: PolyMatrix, d: Poly) -> Iterator[Poly]:
+    """Principal minors of N conj(d) + N^H d on the axis, in x = w^2."""
+    times, plus, size = box.algebra.times, box.algebra.plus, len(n)
+    late = _mirror(d)
+    h = [
+        [plus(times(n[i][j], late), times(_mirror(n[j][i]), d)) for j in range(size)]
+        for i in range(size)
+    ]
+    for number in range(1, size + 1):
+        for chosen in itertools.combinations(range(size), number):
+            real, odd = halves(box.minor(h, chosen, chosen))
+            need(not odd, "not positive real: odd on the axis")
+            yield real
+
+
+def _mirror(p: Poly) -> Poly:
+    """p(-s), which is the conjugate of p(s) on the imaginary axis."""
+    return {k: -c if k[0] % 2 else c for k, c in p.items()}
 
 
 def state_absolute_stability(c: dict[str, Any]) -> str:
     """The statement that Z is absolutely stable, as the certificate says; raises Refused if not."""
     box, n, d, text, where = read_impedance(c, (2,))
-    _check(box, n, d)
+    _check_two_port(box, n, d)
     return (
         f"{text} is absolutely stable: no positive-real Z1 and Z2 for which the inverse "
         f"(Z + diag(Z1, Z2))^-1 exists give it a pole with Re s > 0{where}"
     )
 
 
-def _check(box: SignsOverBox, n: PolyMatrix, d: Poly) -> None:
-    """Raise Refused unless conditions 1 to 3 are shown."""
+def _check_two_port(box: SignsOverBox, n: PolyMatrix, d: Poly) -> None:
+    """Raise Refused unless conditions 1 to 3 of the second part are shown."""
     m = with_damper(box, n, d, Fraction(1))
     below = box.inverse_denominator(m, d)
     need(below, "not absolutely stable: Z + 1 is singular")

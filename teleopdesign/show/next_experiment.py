@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ...base.finding import Finding, Graph, Series
-from ...base.sentences import percent
-from ...base.units import si_factor
-from ...diagnose.noise_floor import say_floors
-from ...next_experiment.prediction import DECIDES, SAME
-from ..registry import shows
+from ..base.finding import Finding, Graph, Series
+from ..base.sentences import percent
+from ..base.units import si_factor
+from ..diagnose.noise_floor import say_floors
+from ..next_experiment.prediction import DECIDES, SAME
+from .registry import shows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ...next_experiment import ArmPaths, Proposal, SimulatedDiagnosis
-    from ...next_experiment.remedies import Remedy
+    from ..next_experiment import ArmPaths, Proposal, SimulatedDiagnosis
+    from ..next_experiment.remedies import Remedy
 
 #: most pairs of rival models that a sentence names one by one; more are summarised
 FEW = 2

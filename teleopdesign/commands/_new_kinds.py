@@ -1,0 +1,224 @@
+"""`new` for what is no log of one body: signals of a diagram, a friction curve, a further log.
+
+The signals of a diagram are looked for among the columns of a log. A friction curve is a table of
+speeds and forces. A further log is one of a logger that an experiment reads already.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+from collections.abc import Callable, Collection
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..base.errors import ExperimentError
+from ..base.files import read_whole, write_text
+from ._options import shell_word
+
+if TYPE_CHECKING:
+    from ..block_cuts import ChannelProposal
+    from ..measurement.doors._log import Log
+    from ..measurement.experiment import Experiment
+    from ..measurement.new_folder import FitAndCheck
+    from ..measurement.survey import Choices, Survey
+
+#: options that state a channel or a value of one body
+_OF_ONE_BODY = (
+    *("kind", "axis", "position", "velocity", "force", "hand", "torque_constant", "lever_arm"),
+    *("gear_ratio", "counts_per_turn", "inertia"),
+)
+
+
+def add_diagram_options(parser: argparse.ArgumentParser) -> None:
+    """The options of an experiment of a diagram."""
+    parser.add_argument(
+        "--diagram",
+        type=Path,
+        metavar="FILE",
+        help="compare this diagram, not one body",
+    )
+    parser.add_argument(
+        "--signal",
+        action="append",
+        default=[],
+        metavar="NAME=COLUMN",
+        help="the column of a signal of the diagram, or none (may be repeated)",
+    )
+
+
+def say_what_stops(experiment: Experiment) -> None:
+    """Print each finding that keeps any diagnosis from an answer."""
+    from ..check import CheckedRecording, stopping_findings
+
+    for finding in stopping_findings(CheckedRecording(experiment)):
+        print(f"\nno diagnosis can answer yet: {finding.sentence}")
+
+
+def say_next(folder: Path, *, wrong: str = "") -> None:
+    """Print the commands that may follow;  wrong: what replaces a wrong guess; "": none was made"""
+    if wrong:
+        print(f"if a guess is wrong: repeat the command with {wrong}, and with --overwrite")
+    print(f"next: teleopdesign check {shell_word(folder)}")
+    print(f"      teleopdesign diagnose {shell_word(folder)} --report report.html")
+
+
+def make_diagram(
+    options: argparse.Namespace,
+    choices: Choices,
+    log: Log,
+    folder: Path,
+    spans: FitAndCheck | None,
+) -> int:
+    """Write the folder of an experiment of a diagram, and say what each choice rests on.
+
+    log: the first one
+    raises ExperimentError: an option of one body; no such signal or column
+    """
+    from ..block_cuts import load_experiment, propose_channels
+    from ..block_cuts.channel_proposal import make_diagram_folder
+    from ..diagrams import read_diagram
+
+    if options.diagram is None:
+        raise ExperimentError("--signal: is for signals of a diagram, expected --diagram FILE")
+    for name in _OF_ONE_BODY:
+        if getattr(options, name) is not None:
+            option = name.replace("_", "-")
+            raise ExperimentError(
+                f"--{option}: is for experiments of one body, expected --signal NAME=COLUMN"
+            )
+    diagram, name = read_diagram(options.diagram), options.logs[0].name
+    stated = _columns_of_signals(options.signal)
+    proposal = propose_channels(diagram, log, file=name, choices=choices, stated=stated)
+    if proposal.open and not options.yes and sys.stdin.isatty():
+        stated |= _ask_about(proposal, input)
+        proposal = propose_channels(diagram, log, file=name, choices=choices, stated=stated)
+    title = options.title or name.split(".")[0]
+    make_diagram_folder(proposal, options.logs, options.diagram, folder, title=title, spans=spans)
+    print(
+        f"{name}: {proposal}\n\n{load_experiment(folder)}\n\nwritten: {folder / 'experiment.toml'}"
+    )
+    say_next(folder, wrong="--signal, --unit or --time" if proposal.guesses else "")
+    return 0
+
+
+def _columns_of_signals(texts: list[str]) -> dict[str, str]:
+    """Signal -> column, of the option --signal."""
+    stated = {}
+    for text in texts:
+        signal, equals, column = text.partition("=")
+        if not equals or not signal or not column:
+            raise ExperimentError(f"--signal: found {text!r}, expected NAME=COLUMN or NAME=none")
+        stated[signal] = column
+    return stated
+
+
+def _ask_about(proposal: ChannelProposal, ask: Callable[[str], str]) -> dict[str, str]:
+    """The user's columns for signals of which another choice is about as likely."""
+    stated = {}
+    for signal in proposal.open:
+        column = proposal.channels[signal]["column"]
+        why = proposal.guesses[f"channels.{signal}.column"]
+        text = (
+            f"{signal}: {column!r}: {why}\n  Enter accepts this; or type another column, or none: "
+        )
+        stated[signal] = ask(text).strip() or column
+    return stated
+
+
+def make_like(
+    options: argparse.Namespace, choices: Choices, folder: Path, spans: FitAndCheck | None
+) -> int:
+    """Write the folder of an experiment that reads its logs as another one does.
+
+    raises ExperimentError: an option that states what the other experiment states, no experiment
+        is there, or the logs cannot be read like its own
+    """
+    from ..block_cuts import load_experiment
+    from ..measurement.experiment import Experiment, folder_of_experiment
+    from ..measurement.new_like import make_folder_like
+    from ..measurement.survey import Choices
+
+    stated = [
+        n for n in ("kind", "diagram", "signal", "velocity", "inertia") if getattr(options, n)
+    ]
+    if stated or choices != Choices():
+        raise ExperimentError("--like: found beside an option that states a channel: expected one")
+    source = folder_of_experiment(options.like)
+    written = folder / "experiment.toml"
+    title = options.title or options.logs[0].name.split(".")[0]
+    present = set(folder.iterdir()) if folder.is_dir() else None
+    before = read_whole(written).decode() if written.is_file() else None
+    try:
+        make_folder_like(source, options.logs, folder, title=title, spans=spans)
+        experiment = load_experiment(folder)
+    except ExperimentError:
+        _remove_new(folder, present)
+        if before is not None:
+            write_text(written, before)
+        raise
+    print(f"columns, units, signs and model are those of {options.like}\n\n{experiment}")
+    if isinstance(experiment, Experiment):
+        say_what_stops(experiment)
+    print(f"\nwritten: {written}")
+    print(f"next: teleopdesign check {shell_word(folder)}")
+    return 0
+
+
+def _remove_new(folder: Path, present: Collection[Path] | None) -> None:
+    """Remove what a command wrote into a folder;  present: before it; None: the folder was not."""
+    for path in set(folder.iterdir() if folder.is_dir() else ()) - set(present or ()):
+        shutil.rmtree(path) if path.is_dir() else path.unlink()
+    if present is None and folder.is_dir():
+        folder.rmdir()
+
+
+def is_curve(options: argparse.Namespace, log: Log) -> bool:
+    """Whether a table is read as a friction curve: as stated, or as its columns say."""
+    from ..measurement.new_curve import looks_like_a_curve
+
+    with_time = (options.time, options.position, options.sample_rate, options.fit_span)
+    if options.kind is not None or options.velocity is not None:
+        return True
+    return not any(with_time) and looks_like_a_curve(log)
+
+
+def make_curve(
+    options: argparse.Namespace, choices: Choices, log: Log, folder: Path, title: str
+) -> int:
+    """Write the folder of a friction curve, and say what was understood.
+
+    log: the first of the tables
+    """
+    from ..measurement import load_experiment
+    from ..measurement.new_curve import curve_columns, make_curve_folder
+
+    curve = curve_columns(
+        log,
+        options.logs[0].name,
+        axis=options.axis,
+        velocity=options.velocity,
+        force=options.force,
+        units=choices.units,
+        torque_constant=choices.torque_constant,
+    )
+    make_curve_folder(curve, options.logs, folder, title=title)
+    print(_text_of(curve, options.logs[0].name))
+    experiment = load_experiment(folder)
+    print(f"\n{experiment}")
+    say_what_stops(experiment)
+    print(f"\nwritten: {folder / 'experiment.toml'}")
+    say_next(folder, wrong="the option")
+    return 0
+
+
+def _text_of(curve: Survey, name: str) -> str:
+    lines = [f"{name}: a friction curve; {curve.axis} axis"]
+    for channel, entry in curve.channels.items():
+        lines.append(f'  {channel:<18} "{entry["column"]}" in {entry["unit"]}')
+    if curve.guesses:
+        lines.append("guessed:")
+    lines += [f"  {key}: {why}" for key, why in curve.guesses.items()]
+    lines.append("    otherwise: --sample-rate HZ, --velocity COLUMN, --force COLUMN, --unit")
+    return "\n".join(lines)

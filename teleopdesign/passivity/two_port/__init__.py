@@ -1,1 +1,0 @@
-"""Two-ports: passivity and absolute stability, and motions that grow between terminations."""

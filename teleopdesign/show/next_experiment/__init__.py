@@ -1,1 +1,0 @@
-"""How a proposed experiment looks: sentences, findings, figure."""
