@@ -158,7 +158,7 @@ def _with_units(choices: Choices, units: Mapping[str, str], survey: Survey, file
 def spans_of_sliders(fit: Sequence[float], check: Sequence[float], shown: Preview) -> FitAndCheck:
     """The spans of two sliders; raises ExperimentError: spans that overlap or are empty."""
     spans = (fit[0], fit[1]), (check[0], check[1])
-    check_spans(spans, shown.survey.duration, [Path(shown.name).name])
+    check_spans(spans, shown.survey.duration, Path(shown.name).name)
     return spans
 
 

@@ -206,3 +206,16 @@ def inline_text(entries: Mapping[str, str]) -> str:
     """An inline table; keys and values are TOML text already."""
     inside = ", ".join(f"{key} = {value}" for key, value in entries.items())
     return f"{{ {inside} }}" if inside else "{}"
+
+
+def toml_text(value: Any) -> str:
+    """A text, a truth value, a number, a list or a table of such values, on one line."""
+    if isinstance(value, Mapping):
+        return inline_text({name: toml_text(inner) for name, inner in value.items()})
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return string_text(value)
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(toml_text, value)) + "]"
+    return repr(value)

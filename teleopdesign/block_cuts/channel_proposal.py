@@ -12,18 +12,12 @@ import numpy as np
 from ..base.arguments import check_types
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.files import write_text
-from ..base.toml import comment_text, string_text
+from ..base.toml import comment_text, string_text, toml_text
 from ..diagrams import Diagram
 from ..measurement.doors._log import Log, join_names
 from ..measurement.from_arrays import log_of
-from ..measurement.new_folder import (
-    FitAndCheck,
-    check_spans,
-    copy_logs,
-    records_of,
-    records_text,
-    toml_table,
-)
+from ..measurement.new_folder import FitAndCheck, check_spans, copy_logs, records_of
+from ..measurement.saving import records_text
 from ..measurement.survey import spans_of
 from ..measurement.survey.clock import duration_of, numeric_columns, time_column
 from ..measurement.survey.content import NONE, Choices, unit_in_log
@@ -217,12 +211,10 @@ def make_diagram_folder(
     if diagram.name == _FILE:
         raise ExperimentError(f"{diagram}: a diagram beside {_FILE} needs another name")
     names = [log.name for log in logs]
+    alone = len(names) == 1
+    records = records_of(names, spans or (spans_of(proposal.duration) if alone else None))
     if spans is not None:
-        check_spans(spans, proposal.duration, names)
-    records = records_of(names)
-    if len(names) == 1:
-        parts = zip(("fit", "check"), spans or spans_of(proposal.duration), strict=True)
-        records = [{"file": names[0], "use": use, "span": part} for use, part in parts]
+        check_spans(spans, proposal.duration, names[0])
     copy_logs([*logs, diagram], folder)
     lines = ["# Written by `teleopdesign new`. Comments say what was guessed, and why.", ""]
     lines += [f"title = {string_text(title)}", "", "[diagram]"]
@@ -233,7 +225,7 @@ def make_diagram_folder(
     lines += ["", "[channels]"]
     for name, table in proposal.channels.items():
         lines += _comments(proposal, f"channels.{name}.")
-        lines.append(f"{string_text(name)} = {toml_table(table)}")
+        lines.append(f"{string_text(name)} = {toml_text(table)}")
     lines += [comment_text(f"not used: {n}: {why}") for n, why in proposal.unused.items()]
     write_text(folder / _FILE, "\n".join([*lines, "", *records_text(records)]) + "\n")
     return folder

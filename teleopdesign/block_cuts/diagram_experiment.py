@@ -15,7 +15,7 @@ from ..base.toml import Table
 from ..base.units import unit_of
 from ..diagrams import Attached, Diagram, Moving
 from ..effects.of_blocks.controllers import ControlEffect
-from ..measurement.channel import Channel, conversion_to_si
+from ..measurement.channel import Channel
 from ..measurement.description import BodyDescription
 from ..measurement.filtering import Array
 from ..measurement.tables import LogColumns
@@ -109,9 +109,7 @@ class DiagramExperiment(ByValue):
 
     def signal(self, name: str, log: RecordedLog) -> Array:
         """A recorded signal as written, SI, (n,)."""
-        channel = self.channel[name]
-        bodies = body_of_axis(self.axis(name))
-        return conversion_to_si(channel, bodies, f"channels.{name}").signal(log.columns.values)
+        return self.channel[name].signal(log.columns.values)
 
     def digit(self, name: str, log: RecordedLog) -> float:
         """Step of the last digit of a signal's column, SI, rms over its rows; 0: not rounded."""

@@ -12,11 +12,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..base.finding import Concern, Finding
-from ..base.units import si_factor
-from ..measurement.channel import BODY_QUANTITIES
 from ..measurement.encoder import is_on_grid, reading_noise, reading_step
 from ..measurement.filtering import Array
 from ..measurement.limits import SMALL
+from ..measurement.prepare import FEWEST
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
 #: multiples of the stated step that are tested as the true one
@@ -24,8 +23,6 @@ MULTIPLES = range(2, 65)
 #: ratio of measured to stated noise that gives a warning: a quarter of a second of a record shows
 #: the noise within 10 %, and a noise floor that is wrong by this factor changes a verdict
 FACTOR = 1.6
-#: samples of a piece of which noise is measured, and fewest of the last piece
-PIECE, LAST = 500, 16
 
 
 def find_wrong_accuracy(recording: CheckedRecording) -> Iterator[Finding]:
@@ -59,7 +56,7 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
         text = (
             f" moves in steps of {step:.4g} {signal.unit}, {step / stated:.0f} times the stated "
             f"{stated:.4g}: the encoder is coarser than stated; write resolution = "
-            f"{_as_written(signal, step):.4g} at channels.{signal.name}."
+            f"{step / abs(signal.channel.conversion.factor):.4g} at channels.{signal.name}."
         )
     elif swapped:
         text += f", but {swapped[0]} is: are the two columns swapped?"
@@ -111,15 +108,6 @@ def true_step(x: Array, stated: float) -> float | None:
     return stated * max(on, default=1)
 
 
-def _as_written(signal: Signal, step: float) -> float:
-    """A step in the unit in which the channel's resolution is written."""
-    channel = signal.channel
-    if channel.conversion is not None:
-        return step / abs(channel.conversion.factor)
-    factor = si_factor(channel.unit, quantity=BODY_QUANTITIES[channel.quantity], axis=signal.axis)
-    return step / factor
-
-
 def _shares_steps(other: Signal, stated: float) -> bool:
     """Whether another channel moves in the stated steps; a much finer step would fit by chance."""
     alike = 0.5 < other.step / stated < 2.0 * MULTIPLES.stop
@@ -127,9 +115,6 @@ def _shares_steps(other: Signal, stated: float) -> bool:
 
 
 def measured_noise(signal: Signal) -> float:
-    """Rms noise of the readings, SI."""
-    pieces: list[float] = []
-    for _, x in signal.stretches:
-        starts = range(0, max(len(x) - PIECE, 0) + 1, max(PIECE, len(x) // 40))
-        pieces += [reading_noise(x[k : k + PIECE]) for k in starts if len(x) - k >= LAST]
-    return float(np.median(pieces)) if pieces else 0.0
+    """Rms noise of the readings in the longest stretch, SI."""
+    longest = max((x for _, x in signal.stretches), key=len)
+    return reading_noise(longest) if len(longest) >= FEWEST else 0.0

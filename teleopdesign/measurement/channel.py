@@ -9,7 +9,7 @@ import numpy as np
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.toml import Table
 from ..base.units import si_factor, to_si
-from .conversion import KEYS, Conversion, conversion_of
+from .conversion import AS_WRITTEN, KEYS, Conversion, conversion_of
 from .description import ONE_BODY, BodyDescription
 from .encoder import Array
 
@@ -37,7 +37,7 @@ class Channel:
     unit: the unit in which the file holds the values
     resolution: step of the encoder or converter, SI; None: not stated
     noise: rms, SI; None: not stated
-    conversion: how the columns become the signal; None: one column times the factor of the unit
+    conversion: how the columns become the signal in SI; default: one column, as it is
     measured: an actuator force that is measured (for example by the motor current), not commanded
     beside: a force that acts, but to which no error is relative, as a command nobody recorded
     one_pass: written in one pass with the position, so that its log is neither late nor early
@@ -49,7 +49,7 @@ class Channel:
     unit: str
     resolution: float | None
     noise: float | None
-    conversion: Conversion | None = None
+    conversion: Conversion = AS_WRITTEN
     measured: bool = False
     beside: bool = False
     one_pass: bool = False
@@ -57,12 +57,16 @@ class Channel:
     @property
     def columns(self) -> tuple[str, ...]:
         """The columns from which the signal is computed."""
-        return (self.column,) if self.conversion is None else self.conversion.columns
+        return self.conversion.columns or (self.column,)
 
     @property
     def delay(self) -> float:
         """Delay of the signal in the log, s; positive if the log has the signal late."""
-        return 0.0 if self.conversion is None else self.conversion.delay
+        return self.conversion.delay
+
+    def signal(self, values: Mapping[str, Array]) -> Array:
+        """The signal (n,) in SI;  values: column -> (n,)."""
+        return self.conversion.signal({name: values[name] for name in self.columns})
 
 
 @dataclass(frozen=True)
@@ -94,8 +98,7 @@ class LogLayout:
         if self.sample_rate is not None:
             count = max((len(x) for c, x in values.items() if c not in apart), default=0)
             return np.asarray(np.arange(count) / self.sample_rate)
-        time = self.channels["time"]
-        return values[time.column] * factor_of(time, self.bodies, "channels.time")
+        return self.channels["time"].signal(values)
 
 
 def layout_from(experiment: Table, bodies: Mapping[str, BodyDescription]) -> LogLayout:
@@ -136,25 +139,6 @@ def channels_from(
     _refuse_missing(table, channels, bodies, required)
     _refuse_shared_columns(table, channels)
     return channels
-
-
-def factor_of(channel: Channel, bodies: Mapping[str, BodyDescription], where: str) -> float:
-    """Factor from the column's unit to SI; raises ExperimentError if the unit does not fit."""
-    if channel.body is None:
-        quantity = "time" if channel.quantity == "time" else "dimensionless"
-        return si_factor(channel.unit, quantity=quantity, where=where)
-    axis = bodies[channel.body].axis
-    quantity = BODY_QUANTITIES[channel.quantity]
-    return si_factor(channel.unit, quantity=quantity, axis=axis, where=where)
-
-
-def conversion_to_si(
-    channel: Channel, bodies: Mapping[str, BodyDescription], where: str
-) -> Conversion:
-    """How the columns of a channel become its signal in SI; raises the errors of `factor_of`."""
-    if channel.conversion is not None:
-        return channel.conversion
-    return Conversion((channel.column,), (1.0,), factor=factor_of(channel, bodies, where))
 
 
 def sample_rate_from(experiment: Table, channels: Table) -> float | None:
@@ -217,9 +201,10 @@ def channel_from(table: Table, name: str, bodies: Mapping[str, BodyDescription])
     if quantity in _OF_THE_RECORD:
         table.allow(("column", "unit"))
         unit = table.text("unit", "1" if quantity == "segment" else None)
-        written = Channel(quantity, None, table.text("column"), unit, None, None)
-        factor_of(written, bodies, table.where("unit"))
-        return written
+        column, where = table.text("column"), table.where("unit")
+        kind = "time" if quantity == "time" else "dimensionless"
+        plain = Conversion((column,), (1.0,), factor=si_factor(unit, quantity=kind, where=where))
+        return Channel(quantity, None, column, unit, None, None, plain)
     actuator = ("measured",) if quantity == "actuator_force" else ()
     table.allow(("column", "unit", "resolution", "noise", *KEYS, *actuator))
     unit = table.text("unit")
@@ -233,7 +218,6 @@ def channel_from(table: Table, name: str, bodies: Mapping[str, BodyDescription])
     resolution = table.number_or_none("resolution", above=0)
     noise = table.number_or_none("noise", above=0)
     factor = abs(conversion.factor)
-    plain = conversion.is_plain and not any(key in table.content for key in KEYS)
     return Channel(
         quantity,
         body,
@@ -241,7 +225,7 @@ def channel_from(table: Table, name: str, bodies: Mapping[str, BodyDescription])
         unit,
         count if resolution is None else resolution * factor,
         None if noise is None else noise * factor,
-        None if plain else conversion,
+        conversion,
         table.flag("measured", False),
     )
 

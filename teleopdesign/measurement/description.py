@@ -6,11 +6,11 @@ unit in which they were written. Only the effect knows the physical quantity of 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..base.errors import ExperimentError
 from ..base.toml import Table
-from ..base.units import AXES, to_si
+from ..base.units import AXES, to_si, unit_of
 
 ONE_BODY = ("device",)
 TWO_BODIES = ("master", "slave")
@@ -138,6 +138,31 @@ def effects_from(table: Table) -> dict[str, dict[str, ModelValue]]:
         name: {parameter: value_from(effect, parameter) for parameter in effect.content}
         for name, effect in written.items()
     }
+
+
+def with_first_values(
+    body: BodyDescription, *, inertia: float, level: float, damping: float
+) -> BodyDescription:
+    """The body with an inertia, and values of its plain friction where none is written, SI.
+
+    inertia, level, damping: starts, of which three digits count; friction above 0 alone
+    """
+    start = _start(body, "inertia", inertia, "inertia")
+    effects = {name: dict(values) for name, values in body.effects.items()}
+    for name, parameter, quantity, number in (
+        ("coulomb", "level", "force", level),
+        ("viscous", "damping", "damping", damping),
+    ):
+        if name in effects and not effects[name] and number > 0:
+            effects[name] = {
+                parameter: _start(body, f"effects.{name}.{parameter}", number, quantity)
+            }
+    return replace(body, inertia=start, effects=effects)
+
+
+def _start(body: BodyDescription, key: str, number: float, quantity: str) -> ModelValue:
+    unit = unit_of(quantity, body.axis)
+    return ModelValue(float(f"{number:.3g}"), unit, False, f"{body.where}.{key}")
 
 
 def value_from(table: Table, key: str) -> ModelValue:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
 from ..base.toml import Table
-from .channel import Channel, channels_from, conversion_to_si
+from .channel import Channel, channels_from
 from .description import ONE_BODY, BodyDescription, ModelValue, bodies_from
 from .filtering import Array, spectrum
 from .limits import SEVERAL
@@ -73,10 +73,7 @@ def curve_record(
 
     raises ExperimentError: no point has a speed and a force
     """
-    signals = {}
-    for key, channel in channels.items():
-        conversion = conversion_to_si(channel, bodies, f"channels.{key}.unit")
-        signals[key] = conversion.signal(columns.values)
+    signals = {key: channel.signal(columns.values) for key, channel in channels.items()}
     velocity, force = (signals[f"device.{name}"] for name in CHANNELS)
     known = np.isfinite(velocity) & np.isfinite(force)
     moving = known & (velocity != 0.0)

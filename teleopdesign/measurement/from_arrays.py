@@ -14,7 +14,7 @@ from ..base.toml import Table
 from ..base.units import AXES, unit_of
 from .channel import BODY_QUANTITIES, layout_from
 from .column_names import as_unit, likeness, unfit_unit, unit_in_name, why_no_unit
-from .description import BodyDescription, ModelValue, bodies_from
+from .description import BodyDescription, bodies_from, with_first_values
 from .doors._log import Log
 from .experiment import Experiment
 from .first_guess import guess_from
@@ -161,11 +161,11 @@ def build_experiment(
     if not any(r.use == "fit" for r in records):
         raise ExperimentError(f"{_WHERE}: fit: found no span, expected at least one (begin, end)")
     fitted = [r for r in records if r.use == "fit"]
-    bodies = {name: with_first_values(body, fitted) for name, body in bodies.items()}
+    bodies = {name: _with_first_values(body, fitted) for name, body in bodies.items()}
     return Experiment(Path(title), title, bodies, None, layout.channels, bandwidth, tuple(records))
 
 
-def with_first_values(body: BodyDescription, records: Sequence[Record]) -> BodyDescription:
+def _with_first_values(body: BodyDescription, records: Sequence[Record]) -> BodyDescription:
     """The body, with inertia and first friction values from its records if it has no inertia.
 
     raises ExperimentError: the motion shows a negative inertia, or none
@@ -173,24 +173,14 @@ def with_first_values(body: BodyDescription, records: Sequence[Record]) -> BodyD
     if body.inertia is not None:
         return body
     guess = guess_from(records, body.name)
-    if not guess.start_of_inertia > 0:
+    start = guess.start_of_inertia
+    if not start > 0:
         raise ExperimentError(
             f"{_WHERE}: the motion tells no inertia of {body.name} ({guess.inertia:.3g} "
             f"{unit_of('inertia', body.axis)}): give inertia, or look at signs and units of "
             "position and force"
         )
-
-    def value(number: float, key: str) -> ModelValue:
-        return ModelValue(float(f"{number:.3g}"), None, False, f"{body.where}.{key}")
-
-    effects = {name: dict(values) for name, values in body.effects.items()}
-    first = {"coulomb": ("level", guess.level), "viscous": ("damping", guess.damping)}
-    for name, (parameter, number) in first.items():
-        if name in effects and not effects[name] and number > 0:
-            effects[name] = {parameter: value(number, f"effects.{name}.{parameter}")}
-    return BodyDescription(
-        body.name, body.axis, value(guess.start_of_inertia, "inertia"), effects, body.where
-    )
+    return with_first_values(body, inertia=start, level=guess.level, damping=guess.damping)
 
 
 def channel_table(

@@ -41,8 +41,6 @@ FOR_EACH = 20
 #: rows of a run without a clipped command, and memories of the filter after which a run counts: a
 #: set point that varies would be a filter whose memory does not fade
 SHORTEST_RUN, MEMORIES = 16, 3.0
-#: steps of Gauss and Newton: rounding of past commands makes the first estimate a little wrong
-ITERATIONS = 4
 
 
 @dataclass(frozen=True)
@@ -141,24 +139,11 @@ def law_of_readings(
     for free in (command != rest, command > rest, command < rest):
         counted = inside & free
         rows = _Rows(command, x - x.mean(), velocity, tuple(segments), counted)
-        for taps, past in () if _is_hopeless(rows) else ORDERS:
+        for taps, past in ORDERS:
             law = _law_of_order(rows, taps, past, step=step, sample_time=sample_time)
             if law is not None:
                 return replace(law, is_partial=bool(np.mean(counted) < WHOLE))
     return None
-
-
-def _is_hopeless(rows: _Rows) -> bool:
-    """Whether the law with most numbers leaves more than any exact one: a saving of time."""
-    taps, past = ORDERS[-1]
-    runs = list(rows.runs(taps, past))
-    if not runs:
-        return False
-    forward, back = _first_estimate(rows, runs, taps, past)
-    numbers = np.concatenate([forward, back])
-    left = [rows.u[r] - rows.all_columns(r, taps, past) @ numbers for r in runs]
-    # of poles that fade, the factors a_1 and a_2 are below 2 and 1
-    return float(np.std(np.concatenate(left))) > (1.0 + 3.0) * _exact(rows, np.array([2.0, 1.0]))
 
 
 def _exact(rows: _Rows, back: Array) -> float:
@@ -176,10 +161,13 @@ def _law_of_order(
     changes = sum(int(np.count_nonzero(np.diff(rows.x[run]))) for run in runs)
     if changes < FOR_EACH * numbers:
         return None
-    forward, back = _estimate(rows, runs, taps, past)
+    columns = np.vstack([rows.all_columns(run, taps, past) for run in runs])
+    command = np.concatenate([rows.u[run] for run in runs])
+    factors = _least_squares(columns, command)
+    forward, back = np.split(factors, [len(factors) - past])
     if not _fades(runs, back, FOR_EACH * numbers):
         return None
-    errors = np.concatenate([rows.u[r] - _follow(rows, r, forward, back)[0] for r in runs])
+    errors = np.concatenate([rows.u[run] - _follow(rows, run, forward, back) for run in runs])
     worst = float(np.abs(errors).max())
     lost = DIGITS * float(np.ptp(rows.u))
     if worst > _exact(rows, back) or np.abs(forward[:taps]).max() < VISIBLE * max(worst, lost):
@@ -193,31 +181,6 @@ def _law_of_order(
     return LawOfReadings(-spring / step, -damper * sample_time / step - of_speed, is_damped)
 
 
-def _first_estimate(
-    rows: _Rows, runs: Sequence[slice], taps: int, past: int
-) -> tuple[Array, Array]:
-    """Factors of readings and constant, and of past commands, from the commands of the log."""
-    columns = np.vstack([rows.all_columns(r, taps, past) for r in runs])
-    numbers = _least_squares(columns, np.concatenate([rows.u[run] for run in runs]))
-    forward, back = np.split(numbers, [len(numbers) - past])
-    return forward, back
-
-
-def _estimate(rows: _Rows, runs: Sequence[slice], taps: int, past: int) -> tuple[Array, Array]:
-    """Factors of readings and constant, and of past commands, of the law that fits best."""
-    command = np.concatenate([rows.u[run] for run in runs])
-    forward, back = _first_estimate(rows, runs, taps, past)
-    for _ in range(ITERATIONS if past else 0):
-        if _memory(back) is None:
-            break
-        followed = [_follow(rows, run, forward, back) for run in runs]
-        left = command - np.concatenate([f for f, _ in followed])
-        change = _least_squares(np.vstack([tangent for _, tangent in followed]), left)
-        more = np.split(change, [len(forward)])
-        forward, back = forward + more[0], back + more[1]
-    return forward, back
-
-
 def _least_squares(columns: Array, values: Array) -> Array:
     """Factors of columns (n, m) that explain values (n,) best, of columns of any size."""
     sizes = np.maximum(np.abs(columns).max(axis=0), 1e-300)
@@ -226,22 +189,17 @@ def _least_squares(columns: Array, values: Array) -> Array:
     return factors
 
 
-def _follow(rows: _Rows, run: slice, forward: Array, back: Array) -> tuple[Array, Array]:
-    """Commands (n,) of a law along a run from its own past commands, and their tangents (n, m)."""
+def _follow(rows: _Rows, run: slice, forward: Array, back: Array) -> Array:
+    """Commands (n,) of a law along a run, from its own past commands."""
     past = len(back)
-    columns = rows.columns(run, len(forward) - 1 - (rows.w is not None))
-    driven = columns @ forward
+    driven = rows.columns(run, len(forward) - 1 - (rows.w is not None)) @ forward
     if not past:
-        return driven, columns
+        return np.asarray(driven)
     from scipy.signal import lfilter, lfiltic
 
-    before = rows.u[run.start - past : run.start][::-1]
     poles = np.concatenate([[1.0], -back])
-    followed = lfilter([1.0], poles, driven, zi=lfiltic([1.0], poles, before))[0]
-    whole = np.concatenate([before[::-1], followed])
-    delayed = [whole[past - j : len(whole) - j] for j in range(1, past + 1)]
-    tangents = lfilter([1.0], poles, np.column_stack([columns, *delayed]), axis=0)
-    return followed, tangents
+    before = lfiltic([1.0], poles, rows.u[run.start - past : run.start][::-1])
+    return np.asarray(lfilter([1.0], poles, driven, zi=before)[0])
 
 
 def _memory(back: Array) -> float | None:

@@ -11,14 +11,18 @@ from numpy.typing import NDArray
 from ..base.errors import ExperimentError, quote
 from .channel import Channel, LogLayout
 from .encoder import Array
+from .limits import HALF
 from .reading import ReadingStep, count_of
 from .record_clock import DATE, RecordClock, clock_of, counted_clock, segments_of
 from .repeated_rows import MOST, repeated_rows, rows_between_readings, with_slower_signals
 from .stamps import read_at_stamps
 from .tables import LogColumns
+from .usual_step import usual_step
 
 #: what to do with such a column
 OF_ANOTHER_CLOCK = "a signal of a slower clock goes with its times into a table beside, in a folder"
+#: why rows of a slower source are left out
+FASTER = "rows come faster than readings, which all channels change together"
 #: channels that are no signals
 APART = ("time", "segment")
 
@@ -60,10 +64,18 @@ def clock_of_log(
         for c in ch.columns
         if c not in columns.stamps
     ]
-    stamped, more = read_at_stamps(clock, positions, file)
-    steps += _left_out(file, ~filled, again, between, clock.sample_time)
+    stamped, more_steps = read_at_stamps(clock, positions, file)
+    one_each = f"one row of each reading, {1 / clock.sample_time:.4g} a second"
+    for left_out, text, rule in (
+        (~filled, "with a cell that holds no number", "read as lost"),
+        (again, "the same as the one before", "read as lost"),
+        (between, f"that say nothing new: {FASTER}", one_each),
+    ):
+        if count := int(np.count_nonzero(left_out)):
+            part = f"{100 * count / len(filled):.2g} % of the rows"
+            steps.append(ReadingStep(file, f"{count_of(count, 'row')} {text}", rule, part))
     steps += [ReadingStep(file, *words) for words in clock.remarks]
-    return replace(clock, stamped=stamped), columns, steps + more
+    return replace(clock, stamped=stamped), columns, steps + more_steps
 
 
 def _on_this_clock(
@@ -81,31 +93,6 @@ def _changes(values: Sequence[Array], count: int) -> NDArray[np.bool_]:
     for x in values:
         changes[1:] |= np.diff(x) != 0
     return changes
-
-
-def _left_out(
-    file: str,
-    empty: NDArray[np.bool_],
-    again: NDArray[np.bool_],
-    between: NDArray[np.bool_],
-    sample_time: float,
-) -> list[ReadingStep]:
-    """Reading steps for rows that are not used; the masks cover all rows."""
-    steps = []
-    if empty.any():
-        reason = f"{count_of(int(empty.sum()), 'row')} with a cell that holds no number"
-        part = f"{100 * float(empty.mean()):.2g} % of the rows"
-        steps.append(ReadingStep(file, reason, "read as lost", part))
-    if again.any():
-        reason = f"{count_of(int(again.sum()), 'row')} the same as the one before"
-        part = f"{100 * float(again.mean()):.2g} % of the rows"
-        steps.append(ReadingStep(file, reason, "read as lost", part))
-    if between.any():
-        reason = "rows come faster than readings, which all channels change together"
-        rule = f"one row of each reading, {1 / sample_time:.4g} a second"
-        part = f"{100 * float(between.mean()):.2g} % of the rows say nothing new"
-        steps.append(ReadingStep(file, reason, rule, part))
-    return steps
 
 
 def _filled_rows(
@@ -145,10 +132,9 @@ def _rows_without_reading(
     every = [columns.values[c][filled] for c in _on_this_clock(columns, channels, APART)]
     if every and filled.any():
         again[filled] = repeated_rows(every, of("position"), of("interaction_force"))
-    # a row that repeats another one comes more than half of the usual step later
+    # a row that repeats another one earlier than that is this row once more
     steps = np.diff(stamps, prepend=stamps[:1])
-    forward = steps[steps > 0]
-    again &= steps > (0.5 * np.median(forward) if len(forward) else 0.0)
+    again &= steps > HALF * usual_step(steps)
     if len(every) > 1:  # one column alone has the rows of its log
         between[filled] = rows_between_readings(every, of("position"), stamps[filled])
     return again, between

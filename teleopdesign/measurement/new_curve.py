@@ -22,7 +22,7 @@ from .column_names import as_unit, likeness, unit_in_name
 from .doors._log import Log
 from .experiment import Experiment
 from .friction_curve import CHANNELS, CURVE, bodies_and_channels, curve_record
-from .new_folder import copy_logs, experiment_text, records_of
+from .new_folder import body_with_friction, copy_logs, experiment_text, records_of
 from .survey.content import Survey
 from .tables import LogColumns
 
@@ -142,7 +142,8 @@ def make_curve_folder(
     """
     copy_logs(logs, folder)
     records = records_of([log.name for log in logs])
-    text = experiment_text(curve, records, title=title, kind=CURVE)
+    body = body_with_friction(curve.axis)
+    text = experiment_text(curve, records, title=title, body=body, kind=CURVE)
     write_text(folder / "experiment.toml", text)
     return folder
 

@@ -7,10 +7,10 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..base.errors import ExperimentError
 from ..base.files import read_whole, write_text
 from ..base.toml import read_toml, string_text, texts_in
-from .new_folder import FitAndCheck, copy_logs, records_of, records_text
+from .new_folder import FitAndCheck, copy_logs, records_of
+from .saving import records_text
 
 _FILE = "experiment.toml"
 
@@ -33,12 +33,7 @@ def make_folder_like(
     """
     content = read_toml(source / _FILE, f"{source.name}/{_FILE}").content
     names = [log.name for log in logs]
-    records = records_of(names)
-    if spans is not None:
-        if len(names) > 1:
-            raise ExperimentError(f"{names[0]}: spans: found {len(names)} logs, expected one")
-        uses = zip(("fit", "check"), spans, strict=True)
-        records = [{"file": names[0], "use": use, "span": span} for use, span in uses]
+    records = records_of(names, spans)
     text = _without_records(read_whole(source / _FILE).decode("utf-8"))
     text = re.sub(r"(?m)^title\s*=.*$", lambda _: f"title = {string_text(title)}", text, count=1)
     copy_logs(logs, folder)

@@ -14,7 +14,7 @@ from ..base.files import follow_links
 from ..base.frozen import ByValue
 from ..base.shown import html_table
 from ..base.toml import Table, describe_toml_value
-from .channel import LogLayout, conversion_to_si
+from .channel import LogLayout
 from .doors._log import join_names
 from .doors.bag import is_bag
 from .log_clock import clock_of_log
@@ -147,13 +147,8 @@ def record_of(columns: LogColumns, name: str, entry: RecordEntry, layout: LogLay
     name: of the log in messages
     raises ExperimentError: too short, time that does not increase, too many cells without a number
     """
-    conversions = {
-        key: conversion_to_si(channel, layout.bodies, f"channels.{key}.unit")
-        for key, channel in layout.channels.items()
-        if channel.body is not None
-    }
     clock, columns, steps = clock_of_log(columns, layout, name, file=entry.file)
-    signals, more = signals_of_log(columns, layout.channels, conversions, clock, entry.file)
+    signals, more = signals_of_log(columns, layout.channels, clock, entry.file)
     return Record(
         entry.file,
         entry.use,

@@ -1,45 +1,44 @@
-"""The clock of a record: a line through the stamps over the places of their rows.
+"""The clock of a record: one line through the stamps of its rows.
 
     stamp of a row = start of its stretch + sample time * place of the row + deviation
 
-The places are whole numbers. Where each row follows the one before, they are the numbers of the
-rows; a lost row leaves a place empty, and a pause, or a clock that was set back, begins a stretch
-with a start of its own. What the line leaves are jitter and rounding. Stamps that follow no such
-line are uneven, and those that many rows share only tell the mean rate of the rows.
+The places are whole numbers. A lost row leaves a place empty; a pause, or a clock that was set
+back, begins a stretch with a start of its own. Where each step between two stamps is near a whole
+number of usual steps, these tell the places, however far the clock drifts. Else the line does that
+leaves least. What it leaves are jitter and rounding. Stamps that follow no such line are uneven,
+and those that many rows share only tell the mean rate of the rows.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
 from .encoder import LOST, Array, is_most
+from .limits import HALF
 from .reading import count_of
-from .row_places import (
-    GOES_ON,
-    UNEVEN,
-    RowNumbers,
-    places_of,
-    rows_in_order,
-    usual_step,
-    without_pauses,
-)
+from .usual_step import GOES_ON, are_set_back, usual_step
+
+RowNumbers = NDArray[np.intp]
 
 SHORTEST = 1.0  # s: least duration of all segments of a record together
-FEWEST = 64  # fewest samples of a record
+FEWEST = 64  # fewest samples of a record, and rows from which a line is fitted first
 #: rms jitter, of a sample time, below which stamps are those of an even clock
 EVEN = 0.01
 #: s: larger stamps are a date (counted from the year 1970), and the time of the record starts at
 #: its first stamp
 DATE = 1e8
-#: part of the rows that may share a stamp, and by which their mean step may differ from the usual
-#: one: with more, the stamps are too coarse to place rows; with less, odd steps are lost rows
+#: part of the rows that may share a stamp; of more, each is a reading of its own
 FEW = 0.02
+#: part of a sample time by which each step may be off, or stamps off their places (rms): random
+#: stamps have 0.29
+UNEVEN = 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +47,7 @@ class RecordClock:
 
     rows: (m,) used rows of the log, in order;  stamps: (m,) s, of these rows
     places: (m,) nearest sample of the record
-    time: (n,) s, even within each segment with step `sample_time`;  segments: of the n samples
+    time: (n,) s, even within each segment with step `sample_time` (s);  segments: of the n samples
     of_rows: the same stretches among the m rows
     jitter: rms of the stamps about the even clock, s; infinite where they follow none
     set_back: whether the clock was set back
@@ -103,7 +102,7 @@ def counted_clock(count: int, rate: float, segments: tuple[slice, ...], where: s
 
 
 def clock_of(
-    stamps: Array, segments: tuple[slice, ...], same_as_before: NDArray[np.bool_], where: str
+    stamps: Array, segments: Sequence[slice], same_as_before: NDArray[np.bool_], where: str
 ) -> RecordClock:
     """The clock of a log.
 
@@ -117,56 +116,45 @@ def clock_of(
         raise ExperimentError(
             f"{where}: found time that does not increase, expected increasing time"
         )
-    pieces = [np.arange(s.start, s.stop) for s in segments]
-    period = _step_of_rows_in_a_line([stamps[piece] for piece in pieces])
-    if period is not None:
-        places = [np.arange(len(piece)) for piece in pieces]
-        return _on_grid(stamps, pieces, places, period, where)
-    pieces, dropped, moved, restarts = rows_in_order(stamps, segments, same_as_before)
+    usual, anew = usual_step(steps), "hidden states start anew at each"
+    written = [np.arange(s.start, s.stop) for s in segments]
+    parts = _cut(written, lambda p: are_set_back(np.diff(stamps[p]), usual))
+    restarts = len(parts) - len(written)
+    in_order = [part[np.argsort(stamps[part], kind="stable")] for part in parts]
+    moved = sum(int(np.sum(a != b)) for a, b in zip(in_order, parts, strict=True))
+    # stamps of a repeated row may differ by rounding: an equal row far too early is one
+    least = np.where(same_as_before, HALF * usual, 0.0)
+    once = [p[~(np.diff(stamps[p], prepend=-math.inf) <= least[p])] for p in in_order]
+    dropped = len(stamps) - sum(map(len, once))
     if dropped > FEW * len(stamps):
         return _clock_of_shared_stamps(stamps, where)
-    count, stretches = sum(map(len, pieces)), len(pieces)
-    period = usual_step([stamps[piece] for piece in pieces])
-    pieces, longest = without_pauses(stamps, pieces, (GOES_ON + 1.5) * period)
-    placed = places_of([stamps[piece] for piece in pieces], period)
-    if placed is not None:
-        period, places = placed
-    else:  # no even clock: a grid of as many samples as there are rows
-        whole = sum(np.ptp(stamps[p]) for p in pieces)
-        period = float(f"{whole / max(count - len(pieces), 1):.12g}")
-        places = [np.rint((stamps[p] - stamps[p[0]]) / period).astype(np.intp) for p in pieces]
-    clock = _on_grid(
-        stamps, pieces, places, period, where, is_even=placed is not None, goes_on=restarts > 0
+    once = [part for part in once if len(part) > 1]
+    between = np.concatenate([np.diff(stamps[part]) for part in once])
+    pause = (GOES_ON + 1.5) * usual_step(between)
+    pieces = [p for p in _cut(once, lambda p: np.diff(stamps[p]) > pause) if len(p) > 1]
+    clock = _clock_of_stretches(stamps, pieces, where, goes_on=restarts > 0)
+    alone, gaps = len(stamps) - dropped - len(clock.rows), len(pieces) - len(once)
+    remarks = (
+        (dropped, "row", " with the stamp of another", "the first of each is used", "none"),
+        (moved, "row", " out of order", "sorted by their stamps", "none"),
+        (restarts, "time", "", "a new segment each time", anew),
+        (alone, "row", " with a pause or an end on both sides", "left out: one row tells no motion",
+         "none"),
+        (gaps, "pause", f", the longest {between.max():.3g} s", "a new segment after each", anew),
+    )  # fmt: skip
+    shown = (
+        (f"{'time set back ' * (noun == 'time')}{count_of(n, noun)}{more}", rule, effect)
+        for n, noun, more, rule, effect in remarks
+        if n > 0
     )
-    remarks = _remarks_on_order(
-        dropped=dropped,
-        moved=moved,
-        restarts=restarts,
-        alone=len(stamps) - dropped - len(clock.rows),
-        gaps=len(pieces) - stretches,
-        longest_gap=longest,
-    )
-    return replace(clock, set_back=restarts > 0, remarks=tuple(remarks))
+    return replace(clock, set_back=restarts > 0, remarks=tuple(shown))
 
 
-def _remarks_on_order(
-    *, dropped: int, moved: int, restarts: int, alone: int, gaps: int, longest_gap: float
-) -> Iterator[tuple[str, str, str]]:
-    """Remarks on repeated stamps, rows out of order, clocks set back, lone rows and pauses (s)."""
-    anew = "hidden states start anew at each"
-    if dropped:
-        text = f"{count_of(dropped, 'row')} with the stamp of another"
-        yield text, "the first of each is used", "none"
-    if moved:
-        yield f"{count_of(moved, 'row')} out of order", "sorted by their stamps", "none"
-    if restarts:
-        yield f"time set back {count_of(restarts, 'time')}", "a new segment each time", anew
-    if alone:
-        text = f"{count_of(alone, 'row')} with a pause or an end on both sides"
-        yield text, "left out: one row tells no motion", "none"
-    if gaps > 0:
-        text = f"{count_of(gaps, 'pause')}, the longest {longest_gap:.3g} s"
-        yield text, "a new segment after each", anew
+def _cut(
+    parts: Sequence[RowNumbers], is_cut: Callable[[RowNumbers], NDArray[np.bool_]]
+) -> list[RowNumbers]:
+    """The rows of each part, parted at some of the steps between them."""
+    return [p for part in parts for p in np.split(part, np.flatnonzero(is_cut(part)) + 1)]
 
 
 def _require_enough(count: int, period: float, where: str) -> None:
@@ -178,101 +166,112 @@ def _require_enough(count: int, period: float, where: str) -> None:
         )
 
 
-def _step_of_rows_in_a_line(pieces: Sequence[Array]) -> float | None:
-    """Sample time (s) where each row follows the one before, by least squares; None: else.
+def places_of(pieces: Sequence[Array]) -> list[RowNumbers] | None:
+    """The places of rows on an even clock, in each stretch from 0; None: they follow no such clock.
 
-    pieces: stamps of each stretch
+    pieces: stamps (m,) of each stretch, rising
     """
-    above = below = 0.0
-    for stamps in pieces:
-        index = np.arange(len(stamps)) - 0.5 * (len(stamps) - 1)
-        above += float(index @ (stamps - stamps[0]))
-        below += float(index @ index)
-    if below == 0 or not math.isfinite(above) or above <= 0:
-        return None
-    # rounded to 12 digits, finer than the error of any clock: 0.001 stays 0.001
-    period = float(f"{above / below:.12g}")
     steps = np.concatenate([np.diff(stamps) for stamps in pieces])
-    usual = float(np.quantile(steps, 0.5, method="higher"))  # a step that occurs, no mean of two
-    if np.all(np.abs(steps - usual) <= UNEVEN * usual):
-        return period
-    if abs(period - usual) <= FEW * usual:
-        return None
-    # steps that differ only by rounding: each stamp is next to its place
-    allowed = (0.5 + 1e-3) * _resolution(np.concatenate(pieces)) + UNEVEN * period
-    off = [stamps - period * np.arange(len(stamps)) for stamps in pieces]
-    return period if max(np.max(np.abs(x - x.mean())) for x in off) <= allowed else None
+    usual = usual_step(steps)
+    if np.all((np.abs(steps / usual - np.rint(steps / usual)) <= UNEVEN) & (steps > HALF * usual)):
+        return [
+            np.cumsum(np.rint(np.diff(stamps, prepend=stamps[0]) / usual)).astype(np.intp)
+            for stamps in pieces
+        ]
+    # coarse stamps: no step is the usual one
+    fits = [fit for step in (usual, float(np.mean(steps))) if (fit := _line_through(pieces, step))]
+    off, places = min(fits, key=lambda fit: fit[0], default=(math.inf, []))
+    return places if off <= UNEVEN else None
 
 
-def _resolution(stamps: Array) -> float:
-    """Power of ten in seconds to which the stamps are rounded; 1e-9 s if they are finer."""
-    some = stamps[:1000] - stamps[0]
-    digits = (10.0**-n for n in range(9))
-    return next(
-        (d for d in digits if np.all(np.abs(some - d * np.round(some / d)) < 1e-3 * d)), 1e-9
-    )
+def _line_through(pieces: Sequence[Array], step: float) -> tuple[float, list[RowNumbers]] | None:
+    """Rms distance from an even clock of about this step, in steps, and the places on it.
+
+    None: two rows have one place
+    """
+    longest = max(pieces, key=len)
+    start, count = float(longest[0]), FEWEST
+    while True:  # from few rows to all
+        some = longest[:count]
+        place = np.rint((some - start) / step)
+        if place[-1] < 1:
+            return None
+        step, start = map(float, np.polyfit(place, some, 1))
+        if count >= len(longest):
+            break
+        count *= 2
+    places, squares = [], 0.0
+    for stamps in pieces:
+        since = (stamps - stamps[0]) / step
+        # the phase of a stretch: the circular mean of its stamps
+        since -= float(np.angle(np.exp(2j * np.pi * since).mean()) / (2 * np.pi))
+        # a row that is late by half a row or more remains before the next row
+        number = np.arange(len(stamps))
+        place = np.minimum.accumulate((np.rint(since) - number)[::-1])[::-1] + number
+        squares += float(np.sum((since - place) ** 2))
+        places.append((place - place[0]).astype(np.intp))
+    return math.sqrt(squares / sum(map(len, pieces))), places
 
 
-def _on_grid(
-    stamps: Array,
-    pieces: Sequence[RowNumbers],
-    places: Sequence[RowNumbers],
-    period: float,
-    where: str,
-    *,
-    is_even: bool = True,
-    goes_on: bool = False,
+def slope_of(pieces: Sequence[Array], places: Sequence[RowNumbers]) -> float:
+    """Sample time (s) of one even clock through the stamps of all stretches, by least squares."""
+    centred = [place - place.mean() for place in places]
+    above = sum(float(c @ (s - s[0])) for c, s in zip(centred, pieces, strict=True))
+    # rounded to 12 digits, finer than the error of any clock: 0.001 stays 0.001
+    return float(f"{above / sum(float(c @ c) for c in centred):.12g}")
+
+
+def _clock_of_stretches(
+    stamps: Array, pieces: Sequence[RowNumbers], where: str, *, goes_on: bool
 ) -> RecordClock:
-    """The clock of rows whose places in each stretch are known.
+    """The clock of rows in order, in stretches without a pause.
 
-    is_even: the stamps follow an even clock, whose phase is their mean
     goes_on: a clock that was set back continues where the stretch before it ended
     """
+    of_each = [stamps[piece] for piece in pieces]
+    placed = places_of(of_each)
+    if placed is not None:
+        places, period = placed, slope_of(of_each, placed)
+    else:  # no even clock: a grid of as many samples as there are rows
+        period = float(f"{np.mean(np.concatenate([np.diff(s) for s in of_each])):.12g}")
+        places = [np.rint((s - s[0]) / period).astype(np.intp) for s in of_each]
     time: list[Array] = []
-    index: list[RowNumbers] = []
-    segments: list[slice] = []
-    of_rows: list[slice] = []
-    first = row = 0
     end = -math.inf
-    for piece, place in zip(pieces, places, strict=True):
-        length = int(place[-1]) + 1
-        start = float(np.mean(stamps[piece] - period * place) if is_even else stamps[piece[0]])
+    for s, place in zip(of_each, places, strict=True):
+        # the phase of an even clock is the mean of its stamps
+        start = float(np.mean(s - period * place)) if placed is not None else float(s[0])
         start = max(start, end + period) if goes_on else start
-        time.append(np.asarray(start + period * np.arange(length), dtype=np.float64))
+        time.append(start + period * np.arange(place[-1] + 1, dtype=np.float64))
         end = float(time[-1][-1])
-        index.append(first + place)
-        segments.append(slice(first, first + length))
-        of_rows.append(slice(row, row + len(piece)))
-        first, row = first + length, row + len(piece)
-    rows, at, whole = np.concatenate(pieces), np.concatenate(index), np.concatenate(time)
+    segments, of_rows = _slices(map(len, time)), _slices(map(len, pieces))
+    at = np.concatenate([s.start + place for s, place in zip(segments, places, strict=True)])
+    rows, whole = np.concatenate(pieces), np.concatenate(time)
     _require_enough(len(whole), period, where)
     off = stamps[rows] - whole[at]
     for stretch in of_rows:  # its clock may have been set
         off[stretch] -= off[stretch].mean()
-    return RecordClock(
-        rows,
-        stamps[rows],
-        at,
-        whole,
-        period,
-        tuple(segments),
-        tuple(of_rows),
-        jitter=float(np.sqrt(np.mean(off**2))) if is_even else math.inf,
-    )
+    jitter = math.inf if placed is None else float(np.sqrt(np.mean(off**2)))
+    return RecordClock(rows, stamps[rows], at, whole, period, segments, of_rows, jitter)
+
+
+def _slices(lengths: Iterable[int]) -> tuple[slice, ...]:
+    """Slices of these lengths, one after the other."""
+    ends = [0, *accumulate(lengths)]
+    return tuple(slice(a, b) for a, b in zip(ends, ends[1:], strict=False))
 
 
 def _clock_of_shared_stamps(stamps: Array, where: str) -> RecordClock:
-    """Rows at the mean rate between the first and the last change of a stamp.
+    """Rows at the rate of the line through the first row of each stamp but the first one.
 
-    The rows before the first change and after the last one share a stamp with rows that the log, or
-    its span, does not hold: over the whole log, whole seconds would give a wrong rate.
+    The rows before the first change share a stamp with rows that the log, or its span, does not
+    hold: over the whole log, whole seconds would give a wrong rate.
     """
     count = len(stamps)
     changes = np.flatnonzero(np.diff(stamps) > 0) + 1
-    first, last = (changes[0], changes[-1]) if len(changes) > 1 else (0, count - 1)
-    period = float(f"{(stamps[last] - stamps[first]) / (last - first):.12g}")
+    first = changes if len(changes) > 1 else np.array([0, count - 1])
+    period = slope_of([stamps[first]], [first])
     clock = counted_clock(count, 1 / period, (slice(0, count),), where)
-    time = stamps[first] + period * (clock.rows - first)
+    time = np.mean(stamps[first] - period * first) + np.arange(count) * period
     why = (
         "stamps that many rows share",
         "rows are counted at the mean rate",

@@ -8,7 +8,7 @@ may be a rest: these are lost rows only if a reading jumps afterwards by the mot
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 
 from .channel import Channel
 from .encoder import CHANGES, STEPS, Array, reading_step
-from .limits import HALF
+from .limits import HALF, SMALL
+from .record_clock import places_of, slope_of
 from .tables import LogColumns
+from .usual_step import usual_step
 
 #: probability by chance up to which all readings of a row repeat because it is lost, a channel is
 #: stuck, or a sample is an outlier. Rows count as lost only if they are more than this share of all
@@ -27,9 +29,6 @@ BESIDE = 25
 #: part of the rows that a log may lose. Where more of them repeat, or lack a number in some cell,
 #: the log or a column has a slower source
 MOST = 0.2
-#: part of the changes that must be in step with the slower source, and their largest distance from
-#: the step, in its periods: of rows that repeat at random, 0.6 lie as near
-IN_STEP, OFF_STEP = 0.95, 0.3
 #: samples to either side for the usual size of a change
 NEAR = 10
 #: change at the end of a constant stretch, in usual changes before it, that shows a stuck reading
@@ -76,16 +75,9 @@ def repeated_rows(
     unlikely = _chance_of_repeats([*positions, *forces], same, first, past) <= BY_CHANCE
     unlikely &= np.count_nonzero(unlikely & short) > BY_CHANCE * len(same)
     inside = short & (unlikely | bool(noisy) | stopped[past])
-    lasting = np.flatnonzero(past - first >= LASTING)
-    stuck = np.zeros(count, dtype=bool)
-    if len(lasting):
-        for x, step in zip(positions, steps, strict=True):
-            for a, b in stuck_stretches(x, step, "position"):
-                stuck[a + 1 : b] = True
-    for k in lasting:
-        a, b = int(first[k]), int(past[k])
-        inside[k] = bool(stuck[a + 1 : b + 1].all())
-        inside[k] |= any(_leaps(x, a, b, s) for x, s in zip(positions, steps, strict=True))
+    for k in np.flatnonzero(past - first >= LASTING).tolist():
+        ends = int(first[k]), int(past[k])
+        inside[k] = any(_leaps(x, *ends, s) for x, s in zip(positions, steps, strict=True))
     for a, b in zip(first[inside].tolist(), past[inside].tolist(), strict=True):
         out[a + 1 : b + 1] = True
     return out
@@ -110,28 +102,23 @@ def rows_between_readings(
     if len(changed) < CHANGES or len(changed) > (1.0 - MOST) * len(stamps):
         return none
     at = stamps[changed]
-    between = np.diff(at)
-    if not (between > 0).all():
-        return none
-    period = float(np.median(between))
-    if round(period / float(np.median(np.diff(stamps)))) < 2:  # a reading for each row, with rests
-        return none
-    count = np.concatenate([[0.0], np.cumsum(np.round(between / period))])
-    slope, start = np.polyfit(count, at, 1)
-    in_step = np.abs(at - start - slope * count) <= OFF_STEP * period
     leaps = [np.abs(x[changed] - x[changed - 1]) for x in positions]
     by_steps = any(
         np.median(leap[leap > 0]) > STEPS * reading_step(x)
         for x, leap in zip(positions, leaps, strict=True)
         if (leap > 0).any()
     )
-    if in_step.mean() < IN_STEP or not by_steps:
+    placed = places_of([at]) if by_steps and (np.diff(at) > 0).all() else None
+    if placed is None:
+        return none
+    period = slope_of([at], placed)
+    if round(period / usual_step(np.diff(stamps))) < 2:  # a reading for each row, with rests
         return none
     kept = none.copy()
     kept[changed] = True
-    for k in np.flatnonzero(np.round(between / period) > 1):  # a rest, or lost rows
+    for k in np.flatnonzero(np.diff(placed[0]) > 1):  # a rest, or lost rows
         first, past = changed[k], changed[k + 1]
-        nth = np.floor((stamps[first:past] - stamps[first]) / period + 0.1)
+        nth = np.floor((stamps[first:past] - stamps[first]) / period + SMALL)
         kept[first:past] |= np.diff(nth, prepend=0.0) > 0
     return ~kept
 
@@ -234,27 +221,17 @@ def with_slower_signals(
     usable = len(stamps) and np.isfinite(stamps).all()
     if not usable or _reads_slowly(columns, channels, stamps).any():
         return columns
-    values, slow_stamps = dict(columns.values), dict(columns.stamps)
-    for signals in _sources(columns, channels, stamps):
+    bodies = dict.fromkeys(ch.body for ch in channels if ch.body is not None)
+    sources = [[ch for ch in channels if ch.body == body] for body in bodies if len(bodies) > 1]
+    for signals in sources + [[ch] for ch in channels if ch.quantity in SENSED]:
         between = _reads_slowly(columns, signals, stamps)
         if between.any():
+            values, slow_stamps = dict(columns.values), dict(columns.stamps)
             for column in _columns(columns, signals):
                 values[column] = columns.values[column][~between]
                 slow_stamps[column] = stamps[~between]
-    return replace(columns, values=values, stamps=slow_stamps)
-
-
-def _sources(
-    columns: LogColumns, channels: Sequence[Channel], stamps: Array
-) -> Iterator[list[Channel]]:
-    """Channels that may have a clock of their own: of a slower body all, else each sensor."""
-    bodies = dict.fromkeys(ch.body for ch in channels if ch.body is not None)
-    for body in bodies:
-        signals = [ch for ch in channels if ch.body == body]
-        if len(bodies) > 1 and _reads_slowly(columns, signals, stamps).any():
-            yield signals
-        else:
-            yield from ([s] for s in signals if s.quantity in SENSED)
+            columns = replace(columns, values=values, stamps=slow_stamps)
+    return columns
 
 
 def _columns(columns: LogColumns, signals: Sequence[Channel]) -> list[str]:

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import gzip
 import io
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..base.errors import ExperimentError
 from ..base.files import write_beside, write_text
-from ..base.toml import comment_text, inline_text, string_text
+from ..base.toml import comment_text, inline_text, string_text, toml_text
 from ..base.units import unit_of
 from .channel import BODY_QUANTITIES
-from .description import BodyDescription, ModelValue
+from .description import BodyDescription, Effects, ModelValue
 from .reading import reading_table
 
 if TYPE_CHECKING:
@@ -74,10 +75,7 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
         values = experiment.environment.values
         lines += ["[model.environment]"]
         lines += [f"{n} = {_value(values[n])}" for n in _ENVIRONMENT if n in values]
-        lines += ["[model.environment.effects]"]
-        for name, parameters in experiment.environment.effects.items():
-            lines.append(f"{name} = {inline_text({k: _value(v) for k, v in parameters.items()})}")
-        lines.append("")
+        lines += ["[model.environment.effects]", *_effect_lines(experiment.environment.effects), ""]
     lines += [comment_text(line) for line in reading_table(experiment.reading)]
     lines += ["[channels]", *['time = { column = "t", unit = "s" }'] * (not experiment.is_curve)]
     one = tuple(experiment.bodies) == ("device",)
@@ -87,46 +85,51 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
         if channel.body is None or channel.quantity not in BODY_QUANTITIES:
             continue
         unit = unit_of(BODY_QUANTITIES[channel.quantity], experiment.axis(channel.body))
-        entry = {"column": string_text(key), "unit": string_text(unit)}
-        if channel.resolution is not None:
-            entry["resolution"] = repr(channel.resolution)
-        if channel.noise is not None:
-            entry["noise"] = repr(channel.noise)
-        if channel.measured:
-            entry["measured"] = "true"
+        stated = {n: getattr(channel, n) for n in ("resolution", "noise", "measured")}
+        entry = {"column": key, "unit": unit, **{n: v for n, v in stated.items() if v}}
         name = key.removeprefix("device.") if one else f'"{key}"'
-        lines.append(f"{name} = {inline_text(entry)}")
+        lines.append(f"{name} = {toml_text(entry)}")
     if any(len(r.segments) > 1 for r in experiment.records):
         lines.append('segment = { column = "segment" }')
     if experiment.bandwidth is not None:
         lines += ["", "[comparison]"]
         lines += [f'bandwidth = {{ value = {experiment.bandwidth!r}, unit = "Hz" }}']
     lines.append("")
-    for record, name in zip(experiment.records, names, strict=True):
-        lines += ["[[records]]", f"file = {string_text(name)}", f"use = {string_text(record.use)}"]
-        lines += [f'{offset} = "own"' for offset in sorted(record.offset_names)]
+    lines += records_text(
+        {"file": name, "use": record.use, **dict.fromkeys(sorted(record.offset_names), "own")}
+        for record, name in zip(experiment.records, names, strict=True)
+    )
     return "\n".join(lines) + "\n"
 
 
-def body_lines(body: BodyDescription) -> list[str]:
-    """The lines of [model.BODY] with its effects."""
-    lines = [f"[model.{body.name}]", f"axis = {string_text(body.axis)}"]
+def body_lines(body: BodyDescription, notes: Mapping[str, str] | None = None) -> list[str]:
+    """The lines of [model.BODY] with its effects;  notes: comments behind some of its keys."""
+    entries = {"axis": string_text(body.axis)}
     if body.inertia is not None:
-        lines.append(f"inertia = {_value(body.inertia)}")
-    lines.append(f"[model.{body.name}.effects]")
-    for name, values in body.effects.items():
-        lines.append(f"{name} = {inline_text({k: _value(v) for k, v in values.items()})}")
-    return [*lines, ""]
+        entries["inertia"] = _value(body.inertia)
+    lines = [f"[model.{body.name}]"]
+    for key, text in entries.items():
+        note = (notes or {}).get(key)
+        lines.append(f"{key} = {text}" if note is None else f"{key} = {text}".ljust(60) + note)
+    return [*lines, f"[model.{body.name}.effects]", *_effect_lines(body.effects), ""]
+
+
+def _effect_lines(effects: Effects) -> list[str]:
+    written = {n: {k: _value(v) for k, v in values.items()} for n, values in effects.items()}
+    return [f"{name} = {inline_text(values)}" for name, values in written.items()]
+
+
+def records_text(records: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Lines of the tables [[records]]."""
+    return [
+        line
+        for record in records
+        for line in ("[[records]]", *(f"{k} = {toml_text(v)}" for k, v in record.items()))
+    ]
 
 
 def _value(value: ModelValue) -> str:
-    entries = {"value": repr(float(value.value))}
-    if value.unit is not None:
-        entries["unit"] = string_text(value.unit)
-    if value.fixed:
-        entries["fixed"] = "true"
-    if value.stderr is not None:
-        entries["stderr"] = repr(float(value.stderr))
-    if value.unit is None and not value.fixed and value.stderr is None:
-        return entries["value"]
-    return inline_text(entries)
+    marks = {"unit": value.unit, "fixed": value.fixed or None, "stderr": value.stderr}
+    marks = {key: mark for key, mark in marks.items() if mark is not None}
+    number = float(value.value)
+    return toml_text({"value": number, **marks} if marks else number)

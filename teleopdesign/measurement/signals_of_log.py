@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from .channel import Channel
-from .conversion import Conversion
 from .encoder import Array, is_on_grid, reading_step
 from .reading import ReadingStep, count_of
 from .record_clock import RecordClock
@@ -15,36 +14,30 @@ from .repeated_rows import SLOWER
 from .resample import (
     Rule,
     filling_error,
-    interpolate_by_rule,
     resample_on_grid,
 )
 from .spikes import filled_spikes
 from .tables import LogColumns
 
-#: part of the steps between stamps that are usual, and times the longest of these that a pause
-#: lasts: stamps of a bus come in bursts, and some are lost
-USUAL, PAUSE = 0.9, 10.0
-
 
 def signals_of_log(
     columns: LogColumns,
     channels: Mapping[str, Channel],
-    conversions: Mapping[str, Conversion],
     clock: RecordClock,
     file: str,
 ) -> tuple[dict[str, Array], list[ReadingStep]]:
     """The signals (n,) by channel, and the reading steps that made them."""
     signals: dict[str, Array] = {}
-    readings, steps = _readings_of_log(columns, channels, conversions, clock, file)
-    for key, conversion in conversions.items():
-        channel = channels[key]
-        if conversion.columns[0] in columns.stamps:
-            signals[key], more = _resample_by_stamps(columns, key, channel, conversion, clock, file)
+    of_bodies = {key: ch for key, ch in channels.items() if ch.body is not None}
+    readings, steps = _readings_of_log(columns, of_bodies, clock, file)
+    for key, channel in of_bodies.items():
+        if channel.columns[0] in columns.stamps:
+            signals[key], more = _resample_by_stamps(columns, key, channel, clock, file)
             steps += more
             continue
         values = readings[key]
         rule, step = rule_of(channel), encoder_step(channel, values)
-        out = resample_on_grid(values, clock, rule, step=step, delay=conversion.delay)
+        out = resample_on_grid(values, clock, rule, step=step, delay=channel.delay)
         signals[key] = _restore_steps(out, values, channel, step)
     if clock.lost:
         steps.append(_describe_lost_rows(readings, channels, clock, file))
@@ -54,14 +47,14 @@ def signals_of_log(
 def _readings_of_log(
     columns: LogColumns,
     channels: Mapping[str, Channel],
-    conversions: Mapping[str, Conversion],
     clock: RecordClock,
     file: str,
 ) -> tuple[dict[str, Array], list[ReadingStep]]:
     """Readings in SI at the clock's rows, of the channels on this clock, with spikes filled."""
     readings: dict[str, Array] = {}
     steps: list[ReadingStep] = []
-    for key, conversion in conversions.items():
+    for key, channel in channels.items():
+        conversion = channel.conversion
         conversion.refuse_other_counts(columns.values, f"{file}: channels.{key}")
         name = key.removeprefix("device.")
         if wraps := conversion.wraps(columns.values):
@@ -70,10 +63,9 @@ def _readings_of_log(
         if conversion.delay:
             text = f"{name} logged {1e3 * conversion.delay:.3g} ms late, as stated"
             steps.append(ReadingStep(file, text, "moved back", "none"))
-        if conversion.columns[0] not in columns.stamps:
-            rows = clock.rows
-            values = {c: columns.values[c][rows] for c in conversion.columns}
-            readings[key] = conversion.signal(values)
+        if channel.columns[0] not in columns.stamps:
+            values = {c: columns.values[c][clock.rows] for c in channel.columns}
+            readings[key] = channel.signal(values)
     for key in sorted(readings, key=lambda k: channels[k].quantity != "position"):
         position = readings.get(f"{channels[key].body}.position")
         readings[key], more = _fill_spikes(
@@ -155,37 +147,23 @@ def _resample_by_stamps(
     columns: LogColumns,
     key: str,
     channel: Channel,
-    conversion: Conversion,
     clock: RecordClock,
     file: str,
 ) -> tuple[Array, list[ReadingStep]]:
     """A channel with separate time stamps, as those of a bag's topic, and its reading steps."""
-    stamps = columns.stamps[conversion.columns[0]] - conversion.delay
-    values = conversion.signal({c: columns.values[c] for c in conversion.columns})
+    stamps = columns.stamps[channel.columns[0]]
+    values = channel.signal(columns.values)
     fine = np.isfinite(values) & np.isfinite(stamps)
     order = np.argsort(stamps[fine], kind="stable")
     at, values = stamps[fine][order], values[fine][order]
     once = np.r_[True, np.diff(at) > 0]
     at, values = at[once], values[once]
     values, spikes = _fill_spikes(values, key, channel, [slice(None)], None, file)
-    h = clock.sample_time
     rule, step = rule_of(channel), encoder_step(channel, values)
-    rate = _rate_without_pauses(at)
-    if channel.quantity == "interaction_force" and rate * h < SLOWER:
+    rate = _rate_within(at, clock)
+    if channel.quantity == "interaction_force" and rate * clock.sample_time < SLOWER:
         rule = "position"  # a line between slow readings would weaken what changes fast
-    out = np.concatenate(
-        [
-            interpolate_by_rule(
-                values,
-                (at - clock.time[s.start]) / h,
-                np.arange(s.stop - s.start, dtype=np.float64),
-                rule,
-                step=step,
-                slower_clock=True,
-            )
-            for s in clock.segments
-        ]
-    )
+    out = resample_on_grid(values, clock, rule, step=step, delay=channel.delay, stamps=at)
     words = {"held": "held until its next", "position": "interpolated", "line": "interpolated"}
     text = f"{key.removeprefix('device.')} has stamps of its own, {rate:.4g} Hz"
     done = ReadingStep(
@@ -200,13 +178,12 @@ def _resample_by_stamps(
     return _restore_steps(out, values, channel, step), [*spikes, done]
 
 
-def _rate_without_pauses(stamps: Array) -> float:
-    """Stamps a second (Hz) but for the pauses of a log, which are no slow readings."""
-    steps = np.diff(stamps)
-    if len(steps) == 0:
-        return 0.0
-    steps = steps[steps <= PAUSE * np.quantile(steps, USUAL)]
-    return len(steps) / max(float(np.sum(steps)), 1e-300)
+def _rate_within(stamps: Array, clock: RecordClock) -> float:
+    """Stamps a second (Hz) within the segments of a record."""
+    ends = [clock.time[[s.start, s.stop - 1]] for s in clock.segments]
+    inside = [stamps[(stamps >= first) & (stamps <= last)] for first, last in ends]
+    lasting = sum(float(np.ptp(part)) for part in inside if len(part))
+    return sum(len(part) - 1 for part in inside if len(part)) / max(lasting, 1e-300)
 
 
 def _describe_lost_rows(

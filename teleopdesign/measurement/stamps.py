@@ -16,29 +16,29 @@ from numpy.typing import NDArray
 from ..base.units import si_factor
 from .encoder import SURELY, Array
 from .limits import HALF
-from .reading import ReadingStep
+from .reading import ReadingStep, count_of
 from .record_clock import EVEN, SHORTEST, RecordClock
-from .row_places import are_set_back
+from .usual_step import are_set_back, usual_step
 
 #: s in a day
 DAY = 86_400.0
-#: step of a counter of 16, 24 or 32 bits at its wrap -> the reason in words
-COUNTERS = {2.0**bits: f"a counter of {bits} bits wraps" for bits in (16, 24, 32)}
-#: s by which a clock steps back -> the reason in words: an hour in autumn, a twelve-hour dial, a
-#: day, a week of GPS
-CLOCKS = {
-    3600.0: "the clock goes back an hour",
-    43_200.0: "the time of day begins anew after twelve hours",
-    DAY: "the time of day begins anew at midnight",
-    604_800.0: "the week begins anew",
+#: units of stamps, as parts of a second
+_SECONDS = (1.0, 1e3, 1e6, 1e9)
+#: s after which a part of a clock turns -> its name, and why the clock then begins anew; "": it
+#: does not, but a part that is read by itself may turn late or early
+PARTS = {
+    1.0: ("second", ""),
+    60.0: ("minute", ""),
+    3600.0: ("hour", "the clock goes back an hour"),
+    43_200.0: ("half of the day", "the time of day begins anew after twelve hours"),
+    DAY: ("day", "the time of day begins anew at midnight"),
+    604_800.0: ("week", "the week begins anew"),
 }
-#: s of a part of a clock that is read by itself -> its name
-PARTS = {1.0: "second", 60.0: "minute", 3600.0: "hour", DAY: "day"}
+#: step of a counter of 16, 24 or 32 bits at its wrap -> as in `PARTS`
+COUNTERS = {2.0**n: ("upper half", f"a counter of {n} bits wraps") for n in (16, 24, 32)}
 #: part of that time which the rows that it displaces may last, and the steps beside them: only rows
 #: at its turn are displaced. Higher: a pause before a clock was set back passes for one
 TURN = 0.25
-#: units of stamps, as parts of a second
-_SECONDS = (1.0, 1e3, 1e6, 1e9)
 #: longest step over a wrap, in usual steps: a few rows may be lost there
 LONGEST_STEP = 20.0
 #: days between two rows: 0.2 s, as in seconds
@@ -56,47 +56,33 @@ def unwrap_stamps(stamps: Array) -> tuple[Array, tuple[str, ...]]:
     stamps: (n,) in any unit, NaN where there is none
     """
     rows = np.flatnonzero(np.isfinite(stamps))
-    shown = stamps[rows]
-    steps = np.diff(shown)
+    whole, notes = stamps[rows], []
+    steps = np.diff(whole)
     if not np.any(steps > 0) or not np.any(steps < 0):
         return stamps, ()
-    moved, notes = _turned_in_time(shown, steps)
-    steps = np.diff(shown + moved)
-    usual = float(np.median(steps[steps > 0]))
-    periods = dict(COUNTERS)
-    periods |= {unit * length: why for length, why in CLOCKS.items() for unit in _SECONDS}
-    count: dict[str, int] = {}
-    for row in np.flatnonzero(steps < 0).tolist():
-        for period, why in periods.items():
-            step = float(steps[row]) + period
-            if 0 < step <= LONGEST_STEP * usual:
-                moved[row + 1 :] += period
-                count[why] = count.get(why, 0) + 1
-                break
-    notes += [f"{why}{f' {n} times' if n > 1 else ''}: time counts on" for why, n in count.items()]
+    longest = LONGEST_STEP * float(np.median(steps[steps > 0]))
+    periods = {unit * length: words for length, words in PARTS.items() for unit in _SECONDS}
+    for period, (part, why) in {**periods, **COUNTERS}.items():
+        steps = np.diff(whole)
+        rest = steps - np.sign(steps) * period
+        near = (rest > 0) & (rest <= longest)
+        turns = np.flatnonzero(near & (rest <= TURN * period))
+        late = _displaced_rows(turns, steps, whole, TURN * period)
+        whole = whole + period * late
+        for shift, when, more in ((1, "late", "later"), (-1, "early", "earlier")):
+            if count := int(np.count_nonzero(late == shift)):
+                notes.append(
+                    f"the {part} turns {when} in {count_of(count, 'row')}: read a {part} {more}"
+                )
+        wraps = near & (steps < 0) & (np.diff(late) == 0)
+        if why and (count := int(np.count_nonzero(wraps))):
+            whole[1:] += period * np.cumsum(wraps)
+            notes.append(f"{why}{f' {count} times' if count > 1 else ''}: time counts on")
     if not notes:
         return stamps, ()
-    whole = stamps.copy()
-    whole[rows] += moved
-    return whole, tuple(notes)
-
-
-def _turned_in_time(stamps: Array, steps: Array) -> tuple[Array, list[str]]:
-    """Correction of stamps whose seconds, minutes, hours or days turn late or early; and notes."""
-    usual = float(np.median(steps[steps > 0]))
-    moved, notes = np.zeros(len(stamps)), []
-    for length, name in PARTS.items():
-        for period in (unit * length for unit in _SECONDS):
-            longest = min(LONGEST_STEP * usual, TURN * period)
-            rest = steps - np.sign(steps) * period
-            near = np.flatnonzero((rest > 0) & (rest <= longest))
-            late = _displaced_rows(near, steps, stamps, TURN * period)
-            for shift, when, more in ((1, "late", "later"), (-1, "early", "earlier")):
-                if count := int(np.count_nonzero(late == shift)):
-                    moved[late == shift] += shift * period
-                    of = "row" if count == 1 else "rows"
-                    notes.append(f"the {name} turns {when} in {count} {of}: read a {name} {more}")
-    return moved, notes
+    unwrapped = stamps.copy()
+    unwrapped[rows] = whole
+    return unwrapped, tuple(notes)
 
 
 def _displaced_rows(
@@ -128,7 +114,7 @@ def seconds_since_first(stamps: Array) -> Array:
     steps = np.diff(since[rows])
     if not np.any(steps > 0):
         return np.asarray(since)
-    usual = float(np.median(steps[steps > 0]))
+    usual = usual_step(steps)
     set_back = are_set_back(steps, usual)
     since[rows[1:]] += np.cumsum(np.where(set_back, usual - steps, 0.0))
     return np.asarray(since)
@@ -173,45 +159,38 @@ def read_at_stamps(
 
     positions: (m,) each, of the clock's rows
     """
-    h = clock.sample_time
+    h, rule = clock.sample_time, "positions interpolated, commands held"
     if clock.counted or clock.jitter <= EVEN * h:
         return False, []
-    rule = "positions interpolated, commands held"
+    numbers: dict[str, float] = {"rate": 1.0 / h}
     if math.isinf(clock.jitter):
         steps = np.diff(clock.stamps) / h
-        shortest, longest = float(steps.min()), float(steps.max())
-        text = f"uneven stamps, steps of {shortest:.2g} to {longest:.2g} times {h:.3g} s"
-        numbers = (("rate", 1.0 / h), ("shortest", shortest), ("longest", longest))
-        rule, effect = f"each row at its own stamp: {rule}", effect_of_even_stamps(clock, positions)
-        return True, [_step(file, text, rule, effect, numbers, stamped=True)]
-    slope, error = stamps_are_true(clock, positions)
-    off = float(f"{100 * clock.jitter / h:.2g}")
-    text = f"stamps {off:g} % of a row off an even clock"
-    share = f"{slope:.2f} +- {error:.1g} of what they say"
-    stamped, effect = slope > HALF and math.isfinite(error), "none"
-    if stamped:
-        rule = f"the position was read at its stamps ({share}): {rule}"
-        effect = effect_of_even_stamps(clock, positions)
+        numbers |= {"shortest": float(steps.min()), "longest": float(steps.max())}
+        between = " to ".join(f"{numbers[key]:.2g}" for key in ("shortest", "longest"))
+        text, stamped = f"uneven stamps, steps of {between} times {h:.3g} s", True
+        rule = f"each row at its own stamp: {rule}"
     else:
-        rule = f"read on an even clock, for the position does not follow the stamps ({share})"
-    if not abs(slope - 0.5) > SURELY * error:
+        slope, error = stamps_are_true(clock, positions)
+        numbers |= {"jitter": clock.jitter, "followed": slope}
+        text = f"stamps {float(f'{100 * clock.jitter / h:.2g}'):g} % of a row off an even clock"
+        share = f"({slope:.2f} +- {error:.1g} of what they say)"
+        stamped = slope > HALF and math.isfinite(error)
+        rule = f"the position was read at its stamps {share}: {rule}"
+        if not stamped:
+            rule = f"read on an even clock, for the position does not follow the stamps {share}"
+    effect = effect_of_even_stamps(clock, positions) if stamped else "none"
+    if "followed" in numbers and not abs(slope - 0.5) > SURELY * error:
         effect = "the position hardly tells, so that it makes little difference"
-    numbers = (("jitter", clock.jitter), ("rate", 1.0 / h), ("followed", slope))
-    return stamped, [_step(file, text, rule, effect, numbers, stamped=stamped)]
-
-
-def _step(
-    file: str,
-    text: str,
-    rule: str,
-    effect: str,
-    numbers: tuple[tuple[str, float], ...],
-    *,
-    stamped: bool,
-) -> ReadingStep:
-    return ReadingStep(
-        file, text, rule, effect, topic="sample clock", numbers=numbers, interpolates=stamped
+    step = ReadingStep(
+        file,
+        text,
+        rule,
+        effect,
+        topic="sample clock",
+        numbers=tuple(numbers.items()),
+        interpolates=stamped,
     )
+    return stamped, [step]
 
 
 def stamps_are_true(clock: RecordClock, positions: Sequence[Array]) -> tuple[float, float]:

@@ -5,9 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
+from teleopdesign.base.units import si_factor
 from teleopdesign.check import CHECKS, CheckedRecording, look_at
 from teleopdesign.check._recording import Signal
 from teleopdesign.measurement.channel import Channel
+from teleopdesign.measurement.conversion import Conversion
 from teleopdesign.measurement.experiment import Experiment
 from teleopdesign.measurement.record import Record
 
@@ -24,7 +26,12 @@ def channel(values, quantity="position", *, step=0.0, name=None, segments=None, 
     """A channel of one record as the checks get it."""
     unit = more.pop("unit", UNITS.get(quantity, "N"))
     described = {"resolution": None, "noise": None, **more}
-    made = Channel(quantity, "device", "x", described.pop("written", unit), **described)
+    written = described.pop("written", unit)
+    if written != unit:  # of a prismatic axis
+        kind = "force" if quantity.endswith("force") else quantity
+        factor = si_factor(written, quantity=kind)
+        described["conversion"] = Conversion(("x",), (1.0,), factor=factor)
+    made = Channel(quantity, "device", "x", written, **described)
     y = np.asarray(values, dtype=float)
     return Signal(name or quantity, unit, made, record_of(len(y), segments), y, step)
 

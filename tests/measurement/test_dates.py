@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from teleopdesign.measurement.doors._cells import stamps_of
+from teleopdesign.measurement.tables import open_log, read_columns
 
 DATES = [
     "%Y-%m-%d", "%Y/%m/%d", "%Y.%m.%d", "%d.%m.%Y", "%d-%m-%Y", "%d/%m/%Y", "%m/%d/%Y",
@@ -119,3 +120,19 @@ def test_of_a_date_with_slashes_the_reading_with_the_fewest_days_is_taken():
 )  # fmt: skip
 def test_what_no_calendar_or_clock_writes_is_no_time(cells):
     assert stamps_of(cells) is None
+
+
+@pytest.mark.parametrize("separator", ["\t", ",", ";", "|"])
+def test_a_blank_between_date_and_time_is_no_separator(separator, tmp_path):
+    """Beside tabs, the position was read as the time of day."""
+    begin = datetime(2026, 11, 20, 23, 59, 58)
+    stamps = [begin + timedelta(milliseconds=20 * k) for k in range(200)]
+    rows = [separator.join((f"{s:%Y-%m-%d %H:%M:%S.%f}", f"{k / 8}", "2")) for k, s in
+            enumerate(stamps)]  # fmt: skip
+    path = tmp_path / "log.txt"
+    path.write_text("\n".join([separator.join(("Time", "Pos", "F")), *rows]) + "\n")
+    log = open_log(path, "log.txt")
+    assert log.names == ("Time", "Pos", "F") and dict(log.units) == {"Time": "s"}
+    values = read_columns(path, "log.txt", {"Time": "channels.time", "Pos": ""}).values
+    assert np.diff(values["Time"]) == pytest.approx(0.02)
+    assert np.array_equal(values["Pos"], np.arange(200) / 8)

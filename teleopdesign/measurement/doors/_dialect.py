@@ -173,7 +173,8 @@ def separator_of(lines: Sequence[str]) -> tuple[str, bool]:
             cells = [c for row in rows for c in row if c]
             good = sum(is_value(c, comma) for c in cells) / max(len(cells), 1)
             even = widths.count(width) / max(len(widths), 1)
-            score = (round(good * even, 3), width)
+            # of equally good readings, blanks are within cells: "2026-11-20 21:03:04.5"
+            score = (round(good * even, 3), width if separator != " " else 1)
             # a table has two columns or more
             if width > 1 and score > best:
                 best, chosen = score, (separator, comma)

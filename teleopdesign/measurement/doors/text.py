@@ -42,26 +42,34 @@ _ROWS = 200_000
 
 @dataclass(frozen=True)
 class _Text:
-    """A text table: its file, how lines become rows, and how the rows are written."""
+    """A text table: its source, how lines become rows, and how the rows are written.
 
-    path: Path
+    source: the path of a file, or all lines
+    """
+
+    source: Path | Sequence[str]
     file: str
     shape: LineShape
     dialect: Dialect
 
     @contextmanager
     def lines(self) -> Iterator[Iterable[str]]:
+        if not isinstance(self.source, Path):
+            yield self.shape.edit(self.source)
+            return
         with (
-            open_bytes(self.path) as raw,
+            open_bytes(self.source) as raw,
             io.TextIOWrapper(raw, self.dialect.encoding, errors="replace") as stream,
         ):
             yield self.shape.edit(stream)
 
     def last_lines(self) -> list[str]:
         """The last lines with text, the first of them perhaps in part; none of a packed file."""
-        if self.path.name.lower().endswith(".gz"):
+        if not isinstance(self.source, Path):
+            return [*self.shape.edit(self.source[-MOST_ROWS:])]
+        if self.source.name.lower().endswith(".gz"):
             return []
-        with self.path.open("rb") as stream:
+        with self.source.open("rb") as stream:
             size = stream.seek(0, 2)
             stream.seek(max(0, size - LOOKED_AT) & ~1)  # letters of UTF-16 have two bytes
             encoding = self.dialect.encoding.removesuffix("-sig")
@@ -74,6 +82,18 @@ class _Text:
 def open_text(path: Path, file: str) -> Log:
     """Open a csv file, packed or not; raises ExperimentError: no text, no rows."""
     encoding, lines, whole = first_lines(path, file)
+    return _open(path, lines, encoding, file, whole=whole)
+
+
+def open_lines(lines: Sequence[str], file: str) -> Log:
+    """Open the lines of a table; raises ExperimentError: no rows."""
+    return _open(lines, lines[:MOST_ROWS], "utf-8", file, whole=len(lines) <= MOST_ROWS)
+
+
+def _open(
+    source: Path | Sequence[str], lines: Sequence[str], encoding: str, file: str, *, whole: bool
+) -> Log:
+    """Open a text;  lines: the first ones;  whole: whether these are all."""
     best: tuple[float, _Text, Mapping[str, Any]] | None = None
     problems: list[ExperimentError] = []
     shapes = [s for shape in LINE_SHAPES if (s := shape(lines, file)) is not None]
@@ -84,7 +104,7 @@ def open_text(path: Path, file: str) -> Log:
         except ExperimentError as problem:
             problems.append(problem)
             continue
-        text = _Text(path, file, shape, dialect)
+        text = _Text(source, file, shape, dialect)
         some = edited[dialect.first :]
         if not whole and shape == LineShape():  # the last lines too: a signal may begin late
             some += text.last_lines()[1:]
@@ -111,8 +131,8 @@ def _log_of(text: _Text, sample: Mapping[str, Any]) -> Log:
         return (f"{lines}, the first one before row {strays[0]}: left out",) if strays else ()
 
     notes = [text.shape.note] if text.shape.note else []
-    plain = text.shape == LineShape()
-    if dialect.separator != "," and (plain or text.shape.units) or dialect.comma:
+    separated = text.shape == LineShape() and isinstance(text.source, Path)
+    if dialect.separator != "," and (separated or text.shape.units) or dialect.comma:
         comma = ", decimal comma" if dialect.comma else ""
         notes.append(f"{SEPARATORS[dialect.separator]} between columns{comma}")
     if dialect.encoding not in ("utf-8", "utf-8-sig"):

@@ -15,9 +15,10 @@ from ..encoder import Array, is_most
 from ..log_clock import OF_ANOTHER_CLOCK
 from ..numbers_in_cells import holds_dates, numbers_of
 from ..record_clock import clock_of
+from ..repeated_rows import rows_between_readings
 from ..signed_numbers import sign_code_of
 from ..stamps import seconds_since_first, unit_in_place_of, unit_of_steps
-from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, reasons, unit_in_log
+from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, reasons, rises, unit_in_log
 from .remarks import sample_rate_in
 from .time_role import (
     busiest_clock,
@@ -153,6 +154,8 @@ def interpolate_columns(
     beside_time = {n: x for n, x in raw.items() if len(x) == len(stamps)}
     rows = np.flatnonzero(np.isfinite(stamps))[:MOST]
     origin = stamps[rows[0]]
+    signals = [x[rows] for n, x in beside_time.items() if n != time_name and not rises(x[rows])]
+    rows = rows[~rows_between_readings(signals, signals, stamps[rows])]
     clock = clock_of(
         stamps[rows] - origin, (slice(0, len(rows)),), np.zeros(len(rows), dtype=bool), file
     )

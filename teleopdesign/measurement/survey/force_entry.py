@@ -17,7 +17,7 @@ from ...base.toml import Table
 from ...base.units import is_unit, measures, unit_of
 from ..column_names import is_wanted, unit_in_name, why_no_unit
 from ..conversion import conversion_of
-from ..encoder import CHANGES_OF_FORCE, Array, reading_noise, update_period
+from ..encoder import Array, reading_noise
 from ..signed_numbers import SIGN_BIT
 from .content import Choices, Survey
 from .remarks import torque_constant_in
@@ -180,7 +180,7 @@ def state_scatter(survey: Survey, name: str) -> None:
     is_estimated = entry.get("measured") or not position.keys() & {"resolution", "counts_per_turn"}
     if is_command or is_estimated:
         return
-    values = _read_anew(survey.columns[name].values, survey.columns[position["column"]].values)
+    values = survey.columns[name].values
     scatter = reading_noise(values)
     if not LEAST < scatter / max(float(np.std(values)), 1e-300) < MOST:
         return
@@ -189,13 +189,3 @@ def state_scatter(survey: Survey, name: str) -> None:
         f"{name!r} scatters by {entry['noise']:g} {entry['unit']} from row to row, stated as "
         "noise: delete it if the column holds the exact command"
     )
-
-
-def _read_anew(force: Array, position: Array) -> Array:
-    """The readings of a force (n,), without the rows that repeat it together with the position."""
-    columns = (force, position)
-    if min(update_period(x, fewest=CHANGES_OF_FORCE) for x in columns) < 2:
-        return force
-    changed = (np.diff(force) != 0) | (np.diff(position) != 0)
-    read: Array = force[np.concatenate([[True], changed])]
-    return read

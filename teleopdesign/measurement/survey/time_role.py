@@ -14,8 +14,8 @@ from ..doors._log import Log
 from ..encoder import Array
 from ..limits import HALF, SEVERAL, SMALL
 from ..record_clock import FEWEST
-from ..row_places import are_out_of_order
 from ..stamps import unit_of_steps, unwrap_stamps
+from ..usual_step import are_out_of_order, step_deviations
 from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, is_unit_of, rises, unit_in_log
 from .derivative import DERIVATIVE, derivative_factor, has_both_signs, unwrap_column, wrap_of
 from .remarks import sample_rate_in
@@ -43,7 +43,7 @@ def rate_without_time(
         if not says(name, "step of time") or len(steps) < 2 or steps.min() < 0:
             continue
         usual = float(np.median(steps))
-        if not usual > 0 or float(np.median(np.abs(steps - usual))) > HALF * usual:
+        if not usual > 0 or np.median(np.abs(steps - usual)) > HALF * usual:
             continue
         unit = choices.units.get(name) or unit_of_time(name, log)
         if unit is None or not measures(unit, "time"):
@@ -64,7 +64,7 @@ def score_times(raw: Mapping[str, Array], log: Log, choices: Choices) -> dict[st
         scores[name] = score_of(
             "time",
             SurveyedColumn(name, stamps, stamps, choices.units.get(name)),
-            left=1.0 if is_called else _unevenness(stamps),
+            left=1.0 if is_called else float(np.median(step_deviations(stamps))),
             is_called_a_clock=_is_called_clock(name),
             is_called_a_signal=not is_called and _names_signal(name, log, choices),
             counts_the_rows=counts_rows(stamps),
@@ -102,13 +102,6 @@ def why_time(name: str, columns: Sequence[str], raw: Mapping[str, Array], choice
 
 def is_called_time(name: str) -> bool:
     return likeness(name, "time") > 0 or _is_called_clock(name)
-
-
-def _unevenness(x: Array) -> float:
-    """Median deviation of a column's steps from their median, over it; 1 where that is zero."""
-    steps = np.diff(x)
-    usual = float(np.median(steps))
-    return float(np.median(np.abs(steps - usual))) / usual if usual > 0 else 1.0
 
 
 def _is_coarse_time(name: str, values: Array, log: Log) -> bool:

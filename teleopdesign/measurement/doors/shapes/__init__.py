@@ -22,6 +22,7 @@ from ...limits import HALF
 from ...numbers_in_cells import holds_dates, numbers_of
 from ...record_clock import DATE, FEWEST
 from ...stamps import unit_of_steps, unwrap_stamps
+from ...usual_step import step_deviations
 from .._cells import is_column_of_texts
 from .._log import Log, join_names
 from ._table import CellTable, LongSignal, LongTable, as_text, rises, time_of
@@ -169,7 +170,6 @@ def _apart_in_time(long: LongTable) -> bool:
 
 
 def _regularity(times: Array) -> float:
-    """Part of the steps of a clock that go forward by its usual step, up to twice as long."""
-    steps = np.diff(times[np.isfinite(times)])
-    usual = float(np.median(steps)) if len(steps) else 0.0
-    return float(np.mean((steps > 0) & (steps <= 2.0 * usual))) if usual > 0 else 0.0
+    """Part of the steps of a clock that go forward, by less than twice its usual step."""
+    off = step_deviations(times[np.isfinite(times)])
+    return float(np.mean(off < 1.0)) if len(off) else 0.0

@@ -16,7 +16,7 @@ import numpy as np
 
 from ....base.units import measures
 from ...column_names import likeness, unit_of_text
-from ...encoder import Array
+from ...usual_step import step_deviations
 from .._log import bare_column, join_names
 from ._table import AS_EVEN_AS_A_CLOCK, CellTable, LongSignal, LongTable, rises
 
@@ -57,7 +57,10 @@ def _clocks_before(table: CellTable) -> dict[str, str]:
         return {}
     unit = unit_of_text(word)
     timed = unit is not None and unit != "counts" and measures(unit, "time")
-    alternate = names[::2] == clocks and all(_is_even(numeric[c]) for c in clocks)
+    alternate = names[::2] == clocks and all(
+        np.all(step_deviations(x[np.isfinite(x)]) <= AS_EVEN_AS_A_CLOCK)
+        for x in (numeric[clock] for clock in clocks)
+    )
     if likeness(word, "time") == 0.0 and not timed and not alternate:
         return {}
     places = [names.index(clock) for clock in clocks]
@@ -75,9 +78,3 @@ def _short_names(clock_of: Mapping[str, str]) -> dict[str, str]:
     if len(ends) == 1 and len(titles) == len(clock_of) == len({*titles.values()}):
         return titles
     return {signal: signal for signal in clock_of}
-
-
-def _is_even(column: Array) -> bool:
-    steps = np.diff(column[np.isfinite(column)])
-    usual = float(np.median(steps))
-    return bool(np.all(np.abs(steps - usual) <= AS_EVEN_AS_A_CLOCK * usual))

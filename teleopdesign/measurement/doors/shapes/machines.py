@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ...column_names import words_of
 from ...encoder import Array
 from ...limits import HALF, SEVERAL
-from ...row_places import GOES_ON, are_out_of_order
+from ...usual_step import GOES_ON, are_out_of_order
 from .._log import MOST_PARTS, join_names
 from ._table import FEWEST_ROWS, CellTable, LongSignal, LongTable, as_text, time_of
 
