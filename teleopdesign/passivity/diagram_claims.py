@@ -17,15 +17,15 @@ from ..base.arguments import check_types
 from ..base.errors import ModelError
 from ..base.frozen import ByValue
 from ..base.shown import Shown
-from ..blocks import Body, Value
-from ..controllers import Controller, Stage
-from ..diagrams import Control, Diagram, Moving
+from ..blocks import Body
+from ..diagrams import Diagram
+from ..effects import SIGNALS
 from .claims.claim import Claim, Proof, Unknown
-from .identified import IdentifiedDevice, identify_device, restate_for_device
+from .declarations import is_shipped
+from .friction_pairs import FrictionPair, friction_pairs, pair_claims, proof_of
 from .linear_diagrams import WHOLE, linear_claims
 from .ports import (
     Port,
-    drives_alone,
     drop_absent_effects,
     is_spanned,
     nonlinear_parts,
@@ -141,21 +141,23 @@ def composed_claim(
     """
     rest, proofs = diagram, []
     for pair in pairs:
-        # damping that a theorem has used is still in the linear rest, and cannot be used twice
-        answers = pair_claims(pair, simulated=False)
-        claims = [one.claim for one in answers if not one.spends_damping]
+        claims = pair_claims(pair, simulated=False)
+        proof = proof_of(claims)
         if pair.device.set_aside or not pair.is_constant:
             return None
         if not is_spanned(pair.body.motion, all_ports):
             return None
         if pair.cancellation is None and pair.device.presliding is not None:
             return None  # no theorem about friction alone is called here
-        proved = any(isinstance(c.verdict, Proof) for c in claims)
-        if not proved and (claims or pair.cancellation is not None):
+        if proof is None and (claims or pair.cancellation is not None):
             return None
-        proofs += [c for c in claims if isinstance(c.verdict, Proof)][:1]
+        proofs += [proof.claim] if proof else []
         gone = [pair.cancellation.name] if pair.cancellation else []
         rest = without_friction(rest, pair.body.motion, *gone)
+        if proof is not None and proof.spends_damping:  # it leaves none to the linear rest
+            if (spent := _without_damping(rest, pair.body.name)) is None:
+                return None
+            rest = spent
     if not pairs or nonlinear_parts(rest):
         return None
     if not all(rest.is_position(c.input) for c in rest.controls):
@@ -172,6 +174,18 @@ def composed_claim(
     )
     certificates = tuple(c for claim in parts for c in claim.certificates)
     return TopicClaim(WHOLE[0], Claim(statement, Proof(method, certificates)))
+
+
+def _without_damping(diagram: Diagram, name: str) -> Diagram | None:
+    """The diagram with all damping of a body taken away; None where it has other than `viscous`."""
+    (body,) = (part.body for part in diagram.moving if part.name == name)
+    assert isinstance(body, Body)
+    damping = [e for e in body.effects if e.expression().has(SIGNALS["velocity"])]
+    if any(e.name != "viscous" or not is_shipped(e) for e in damping):
+        return None
+    for effect in damping:
+        body = body.without_effect(effect.name)
+    return diagram.with_block(name, body)
 
 
 def _search_claim(
@@ -206,100 +220,3 @@ def _search_claim(
         give=shortest / 100,
         tries=search.tries,
     )
-
-
-@dataclass(frozen=True)
-class FrictionPair:
-    """A body with friction, and the one controller that cancels this friction.
-
-    cancellation: None where no controller cancels;  device: bounds of the friction
-    """
-
-    body: Moving
-    cancellation: Control | None
-    device: IdentifiedDevice
-
-    @property
-    def stage(self) -> Stage | None:
-        """The law that cancels friction, with its values; None where no controller does."""
-        if self.cancellation is None:
-            return None
-        assert isinstance(self.cancellation.controller, Controller)
-        return self.cancellation.controller.stages[0]
-
-    @property
-    def question(self) -> Question:
-        """The question for the theorems.
-
-        Values are exact, so estimates and intervals are the same, and only intervals are asked.
-        """
-        return Question(self.device, self.stage, estimates=False)
-
-    @property
-    def is_constant(self) -> bool:
-        """Whether the friction level does not depend on the motion."""
-        assert isinstance(self.body.body, Body)
-        parameters = set(self.body.body.symbols().values())
-        return not self.body.body.level().free_symbols - parameters
-
-    @property
-    def lengths(self) -> list[float]:
-        """Travels over which friction, and the cancelling force, build up, m or rad."""
-        lengths = []
-        if self.device.presliding is not None:
-            lengths.append(self.device.lowest.estimate / self.device.presliding.estimate)
-        if (bristle := self.question.bristle) is not None:
-            lengths.append(bristle[0] / bristle[1])
-        return lengths
-
-
-def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
-    """A pair for each body with friction whose cancellation, if any, acts on it alone.
-
-    A cancellation is a controller whose input is the motion of the body, and whose force acts
-    unchanged on this body and on nothing else. A body whose friction level may be zero has no pair.
-    """
-    pairs = []
-    for part in diagram.moving:
-        if not isinstance(part.body, Body) or part.body.level() == 0:
-            continue
-        along = [c for c in diagram.controls if c.input == c.motion == part.motion]
-        if len(along) > 1 or not all(_acts_alone(c, part, diagram) for c in along):
-            continue
-        try:
-            # exact values have no standard errors
-            values = {
-                n: replace(v, fixed=True, stderr=0.0) for n, v in part.body.parameters.items()
-            }
-            device = identify_device(part.body.with_values(dict[str, float | Value](values)))
-        except ModelError:
-            continue
-        pairs.append(FrictionPair(part, along[0] if along else None, device))
-    return pairs
-
-
-def _acts_alone(control: Control, part: Moving, diagram: Diagram) -> bool:
-    if len(control.stages) != 1:
-        return False
-    acts = not any(e.role == "actuation" for e in getattr(part.body, "effects", ()))
-    return acts and drives_alone(diagram, control.output, part)
-
-
-def pair_claims(pair: FrictionPair, *, simulated: bool = True) -> list[TopicClaim]:
-    """Claims about friction with its cancellation, by the theorems for a diagnosed device.
-
-    simulated: whether simulations replay the motions of refutations
-    returns: empty where no controller cancels the friction; one unknown claim where no theorem
-        applies
-    """
-    if pair.stage is None or pair.cancellation is None:
-        return []
-    topic = f"friction of {pair.body.name} with {pair.cancellation.name}"
-    if claims := settle(pair.question, simulated=simulated):
-        return [replace(one, topic=topic) for one in claims]
-    law = f"{pair.cancellation.name} ({pair.stage.law.name})"
-    statement = f"friction of {pair.body.name} with {law} is passive"
-    why = pair.question.law.missing or (
-        "no limit is known for such a law on a contact that gives before it slides"
-    )
-    return [TopicClaim(topic, restate_for_device(pair.device, Claim(statement, Unknown(why))))]

@@ -22,7 +22,8 @@ from teleopdesign.passivity.declarations import (
     falsely_linear,
     is_shipped,
 )
-from teleopdesign.passivity.diagram_claims import composed_claim, friction_pairs, pair_claims
+from teleopdesign.passivity.diagram_claims import composed_claim
+from teleopdesign.passivity.friction_pairs import friction_pairs, pair_claims
 from teleopdesign.passivity.theorems.wave_channel import wave_claim
 
 DAHL = controller("dahl", {"level": 0.4, "stiffness": 1e4})

@@ -9,7 +9,7 @@ from teleopdesign.controllers import Controller, controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
 from teleopdesign.passivity.device_claims import Compensator, margins
-from teleopdesign.passivity.diagram_claims import friction_pairs, pair_claims
+from teleopdesign.passivity.friction_pairs import friction_pairs, pair_claims
 from teleopdesign.passivity.identified import DIGITS, identify_device
 from teleopdesign.passivity.theorems import Question, Wall, settle
 from teleopdesign.realise.friction_interval import friction_interval

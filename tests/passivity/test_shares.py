@@ -8,7 +8,8 @@ from devices import body
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.passivity import ports
-from teleopdesign.passivity.diagram_claims import composed_claim, friction_pairs
+from teleopdesign.passivity.diagram_claims import composed_claim
+from teleopdesign.passivity.friction_pairs import friction_pairs
 
 RUBBING = body(0.3, viscous__damping=2.0, coulomb__level=0.4)
 PLAIN = body(0.3, viscous__damping=2.0)

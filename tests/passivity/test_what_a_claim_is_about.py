@@ -14,9 +14,12 @@ from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_int
 from teleopdesign.effects import EFFECTS, Effect, Parameter, State, delayed
 from teleopdesign.frequency import loop_gain
 from teleopdesign.passivity import claim_over_intervals
+from teleopdesign.passivity.diagram_claims import composed_claim
+from teleopdesign.passivity.friction_pairs import friction_pairs
 from teleopdesign.passivity.identified import identify_device
 from teleopdesign.passivity.intervals.late import slowest_decay
 from teleopdesign.passivity.law_facts import ANY_TIME, law_facts
+from teleopdesign.passivity.ports import ports
 from teleopdesign.passivity.theorems import Question, Wall, settle
 from teleopdesign.realise.reach import Reach
 
@@ -117,10 +120,25 @@ def smoothed():
     return controller("smoothed_coulomb", {"level": 0.6, "smoothing_velocity": 0.05})
 
 
-@pytest.mark.parametrize(("law", "status"), [(brake, "unknown"), (smoothed, "unknown")])
+@pytest.mark.parametrize(("law", "status"), [(brake, "unknown"), (smoothed, "evidence")])
 def test_what_another_law_of_the_bound_releases_refutes_no_box(law, status):
     diagram = haptic_interface(ROD, cancellation=law())
     assert claim_over_intervals(diagram, {"Z_M.inertia": (0.1, 0.2)}).status == status
+
+
+@pytest.mark.parametrize(("spent", "proved"), [(0.0, True), (9.0, True), (-1.0, False)])
+def test_a_proof_that_spends_the_damping_leaves_none_to_the_rest(spent, proved):
+    """The law of velocity needs damping of the body; a further damper of -1 N s/m needs it, too."""
+    damper = controller("spring_damper", {"stiffness": 0.0, "damping": spent})
+    blocks = (
+        Moving("M", ROD, "x", "u", {"f": 1}, "f"),
+        Control("C", smoothed(), "x", "F1", "x"),
+        Control("D", damper, "y", "F2", "y"),
+    )
+    sums = Junction("u", {"F1": 1, "F2": -1}), Junction("y", {"x": 1})
+    diagram = Diagram("damped", blocks, sums, {"f": "force"}, ("x",))
+    claim = composed_claim(diagram, ports(diagram), friction_pairs(diagram))
+    assert (claim is not None) == proved
 
 
 def test_a_law_that_releases_energy_is_refuted_over_a_box_unless_another_one_brakes():

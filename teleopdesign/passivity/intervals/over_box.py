@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import Any
 
 from ...base.arguments import check_types
@@ -26,7 +27,8 @@ from ...diagrams import Diagram
 from ...diagrams.units import first_axis, unit_of_value
 from ..claims.claim import use_rotary_units
 from ..declarations import is_shipped
-from ..diagram_claims import FrictionPair, composed_claim, friction_pairs, pair_claims
+from ..diagram_claims import composed_claim
+from ..friction_pairs import FrictionPair, friction_pairs, pair_claims, proof_of
 from ..linear.conditions import is_shown
 from ..linear.family import family_of_states
 from ..linear.impedance import decimal, exact
@@ -125,13 +127,14 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> IntervalClaim:
     claim: "passive" or "absolutely stable"
     """
     points = [*box.vertices(), box.centre]
-    answers = []
+    answers, spends_damping = [], False
     for point in points:
         here = drop_absent_effects(middle.with_values(box.named(point)))
         pairs = friction_pairs(here)
         composed = composed_claim(here, ports(here), pairs)
-        others = [one for pair in pairs for one in pair_claims(pair, simulated=False)]
-        others = others if _is_all_friction(here, pairs) else []
+        by_pair = [pair_claims(pair, simulated=False) for pair in pairs]
+        spends_damping |= any(p.spends_damping for p in map(proof_of, by_pair) if p is not None)
+        others = list(chain(*by_pair)) if _is_all_friction(here, pairs) else []
         answers.append((point, composed.claim if composed else None, others))
     worst = Worst(box.centre, float("nan"), len(points))
     statement = f"its ports are {'together ' * (claim == 'passive')}{claim}"
@@ -145,7 +148,9 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> IntervalClaim:
     if any(whole is None for _, whole, _ in answers):
         why = "at some vertex neither a theorem nor a motion settles friction with its cancellation"
         return interval_claim(statement, "unknown", worst, box, "", why)
-    if _vertices_decide(middle, box) and _rest_is_passive(middle, box):
+    # over the box the linear rest is judged with all of its damping
+    decided = not spends_damping and _vertices_decide(middle, box)
+    if decided and _rest_is_passive(middle, box):
         how = (
             "each condition on friction and cancellation is monotone in each value, so that the "
             f"{len(points) - 1} vertices decide; the linear rest by Bernstein coefficients"

@@ -17,7 +17,8 @@ from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.passivity import ports
-from teleopdesign.passivity.diagram_claims import composed_claim, friction_pairs
+from teleopdesign.passivity.diagram_claims import composed_claim
+from teleopdesign.passivity.friction_pairs import friction_pairs
 from teleopdesign.passivity.ports import drives_alone, shares_of
 
 #: of what is turned over, that rounding may leave

@@ -15,7 +15,7 @@ from passivity.attacks.budget import attacked, climbed
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import Effect, Parameter, State, delayed
-from teleopdesign.passivity.diagram_claims import friction_pairs, pair_claims
+from teleopdesign.passivity.friction_pairs import friction_pairs, pair_claims
 
 DAHL = controller("dahl", {"level": 0.4, "stiffness": 1e4})
 LATE = 0.2

@@ -17,7 +17,7 @@ from passivity.attacks.budget import attacked, climbed
 from teleopdesign.controllers import ControlLaw, ControllerState, controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import Parameter
-from teleopdesign.passivity.diagram_claims import friction_pairs, pair_claims
+from teleopdesign.passivity.friction_pairs import friction_pairs, pair_claims
 from teleopdesign.passivity.law_facts import law_facts
 
 LEVEL, EDGE = 0.4, 0.01
