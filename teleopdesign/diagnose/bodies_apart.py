@@ -39,8 +39,8 @@ class Apart:
         parts = relative_residuals(model, self.stretches, names)
         roots = [np.sqrt(s.weight) for s in self.stretches]
         residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
-        slopes = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])
-        return residual, slopes
+        slopes = np.concatenate([w * d for w, (_, d) in zip(roots, parts, strict=True)], axis=1)
+        return residual, slopes.T
 
 
 def separate_bodies(stretches: Sequence[Stretch]) -> tuple[Apart, ...]:
@@ -113,7 +113,7 @@ class BodyByBody:
 
     def both(self, model: Model, x: Array, units: Array) -> tuple[Array, Array]:
         """Residual and Jacobian."""
-        residual, jacobian = np.empty(self._rows), np.zeros((self._rows, len(self._names)))
+        residual, jacobian = np.empty(self._rows), np.zeros((len(self._names), self._rows)).T
         for i, (part, mine) in enumerate(zip(self._parts, self._columns, strict=True)):
             followed, point = self._at(i, model, x[mine], units[mine], slopes=True)
             residual[part.rows] = followed

@@ -9,18 +9,17 @@ derivatives, and are then starts like others.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .bodies_apart import select_bodies
 from .candidates import Candidate, make_starts
 from .cores import map_on_cores
 from .fit import Fit, fit_squares, free_parameters
-from .linear_start import span_of
+from .linear_start import Promises
 from .search import Base, estimate_best_start, is_rugged
 from .search_plan import PLAN
 
@@ -45,60 +44,41 @@ def search_among_draws(
             return attempt
         new = base.coarse.model.with_effect(candidate.effect, at=candidate.at)
         starts = best_draws(new, prepared.coarse, base.coarse)
+        if not starts:
+            return attempt
         best = estimate_best_start(starts, [candidate.key], prepared)
         return candidate, min((fit, best), key=order)
 
-    least = min((fit_squares(fit) for _, fit in attempts), default=0.0)
-    if least < PLAN.unexplained * fit_squares(base.fit):
-        return list(attempts)
-    return map_on_cores(search, attempts)
+    return list(attempts) if explain_records(attempts, base) else map_on_cores(search, attempts)
 
 
-def best_draws(
-    model: Model,
-    prepared: Prepared,
-    base: Fit,
-) -> list[Model]:
+def explain_records(attempts: Sequence[tuple[Candidate, Fit]], base: Base) -> bool:
+    """Whether one of these candidates leaves so little that others need no further starts."""
+    least = min((fit_squares(fit) for _, fit in attempts), default=math.inf)
+    return least < PLAN.unexplained * fit_squares(base.fit)
+
+
+def best_draws(model: Model, prepared: Prepared, base: Fit) -> list[Model]:
     """The best few starts of the absent effects of a model, among draws of their free parameters.
 
-    returns: the best draws, and the values near them that leave less; the model itself where no
-        parameter is free
+    returns: the best draws, and the values near them that leave less; none where no draw leaves
+        less than the base, or no parameter is free
     base: the fit of the model without these effects, on the same samples
     """
     names, ranges = _ranges_of(model, prepared)
     if not names:
-        return [model]
-    places = {place for _, place in model.absent}
-    squares = _Squares(prepared, base, {model.holder(place) for place in places})
+        return []
+    promises = Promises(prepared, base)
     draws = []
     for i, point in enumerate(_spread_evenly(PLAN.draws, len(names))):
         x = ranges[0] + point * (ranges[1] - ranges[0])
-        draws.append((squares.of(_with_logarithms(model, names, x)), i, x))
+        draws.append((promises.left(_with_logarithms(model, names, x)), i, x))
     best = sorted(draws, key=lambda draw: draw[:2])[: 2 * PLAN.followed]
-    improved = [_improve(model, names, x, squares) for _, _, x in best]
+    # of twelve wide gaps, the best draw left 15 to 71 % of the base's squares
+    if not best[0][0] < fit_squares(base):
+        return []
+    improved = [_improve(model, names, x, promises) for _, _, x in best]
     return [*(_with_logarithms(model, names, x) for _, _, x in best), *improved]
-
-
-class _Squares:
-    """Squares that a model leaves with the parameters of a base at their linear best.
-
-    bodies: those at which the model may differ from the base
-    Derivatives by the parameters of the base are those at the base.
-    """
-
-    def __init__(self, prepared: Prepared, base: Fit, bodies: Collection[str]) -> None:
-        self._changed = select_bodies(prepared.of("fit"), bodies)
-        self._residual = base.fit_residual
-        self._basis = span_of(base)
-
-    def of(self, model: Model) -> float:
-        """Sum of squares; inf where a motion grows beyond all numbers."""
-        residual = self._residual.copy()
-        residual[self._changed.rows], _ = self._changed.relative(model, ())
-        if not np.isfinite(residual).all():
-            return math.inf
-        left = residual - self._basis @ (self._basis.T @ residual)
-        return float(left @ left)
 
 
 def _ranges_of(model: Model, prepared: Prepared) -> tuple[list[str], tuple[Array, Array]]:
@@ -142,12 +122,12 @@ def _with_logarithms(model: Model, names: Sequence[str], logarithms: Array) -> M
     return model.with_values(values)
 
 
-def _improve(model: Model, names: Sequence[str], x: Array, squares: _Squares) -> Model:
+def _improve(model: Model, names: Sequence[str], x: Array, promises: Promises) -> Model:
     """The model at the best values near a draw, by the simplex of Nelder and Mead (1965)."""
     from scipy.optimize import minimize  # takes half a second: imported only for a gap or a gear
 
     def left(logarithms: Array) -> float:
-        return squares.of(_with_logarithms(model, names, logarithms))
+        return promises.left(_with_logarithms(model, names, logarithms))
 
     corners = np.vstack([x, x + PLAN.simplex * np.eye(len(x))])
     best = minimize(

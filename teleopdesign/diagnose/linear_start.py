@@ -157,7 +157,7 @@ class Promises:
     """
 
     def __init__(self, prepared: Prepared, base: Fit) -> None:
-        self._base, self._scales = base, prepared.scales
+        self._base, self._scales, self._basis = base, prepared.scales, span_of(base)
         self._parts = separate_bodies(prepared.of("fit"))
         self._known: dict[Hashable, tuple[Array, Array]] = {}
 
@@ -169,16 +169,35 @@ class Promises:
         places = [model.locate(n)[0] for n in wanted]
         size = np.array([self._scales[model.declared(n).quantity] for n in wanted])
         residual = base.fit_residual.copy()
-        columns = np.zeros((len(residual), len(wanted)))
+        columns = np.zeros((len(wanted), len(residual))).T
         for part in self._parts:
             mine = np.flatnonzero([place in part.bodies for place in places])
             if len(mine) or not wanted:
                 here = self._along(part, model, [wanted[i] for i in mine])
                 residual[part.rows] = here[0]
                 columns[np.ix_(part.rows, mine)] = here[1] * size[mine]
-        whole = np.hstack([base.jacobian, base.by_shift, columns]) if same else columns
-        is_number = np.isfinite(whole).all() and np.isfinite(residual).all()
-        return _remaining_squares(whole, residual) if is_number else math.inf
+        if not (np.isfinite(columns).all() and np.isfinite(residual).all()):
+            return math.inf
+        unit = column_sizes(columns)
+        if same:  # the base's parameters remove their part, with the same columns at each start
+            residual -= self._basis @ (self._basis.T @ residual)
+            columns -= self._basis @ (self._basis.T @ columns)
+        return _remaining_squares(columns, residual, unit)
+
+    def left(self, model: Model) -> float:
+        """Sum of squares that a model leaves with the base's parameters at their linear best.
+
+        returns: inf where a motion grows beyond all numbers
+        """
+        new = set(model.effects) - set(self._base.model.effects)
+        changed = {model.holder(place) for _, place in new}
+        residual = self._base.fit_residual.copy()
+        for part in self._parts:
+            if part.bodies & changed:
+                residual[part.rows], _ = part.relative(model, ())
+        if not np.isfinite(residual).all():
+            return math.inf
+        return sum_of_squares(residual - self._basis @ (self._basis.T @ residual))
 
     def _along(self, part: Apart, model: Model, names: Sequence[str]) -> tuple[Array, Array]:
         """Residual and derivatives of some bodies, computed once for equal parameters of theirs."""
@@ -190,12 +209,16 @@ class Promises:
         return self._known[start]
 
 
-def _remaining_squares(columns: Array, residual: Array) -> float:
-    """Squares of the residual that no combination of these columns removes."""
+def _remaining_squares(columns: Array, residual: Array, unit: Array) -> float:
+    """Squares of the residual that no combination of these columns removes.
+
+    unit: of each column: a column that is far smaller hardly differs from others, and stays out
+    """
     size, triangle, target = reduce_to_triangle(columns, residual)
     if not np.isfinite(size).all():
         return math.inf
-    rows, right = add_damping(triangle, target, RIDGE)
+    of_unit = size / np.where(unit > 0.0, unit, 1.0)
+    rows, right = add_damping(triangle * of_unit, target, RIDGE)
     step = np.linalg.lstsq(rows, right, rcond=None)[0]
     # least squares: the step is at right angles to what it leaves
     return sum_of_squares(residual) - float(right @ (rows @ step))

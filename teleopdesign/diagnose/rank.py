@@ -6,8 +6,9 @@ Candidates that count come first, in the order of their errors on the check reco
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
+from functools import partial
 
 from ..base.errors import ModelError
 from ..effects import Effect
@@ -17,7 +18,7 @@ from .candidates import Candidate, bodies_with_measured_force, candidates, make_
 from .cores import map_on_cores, one_thread_of_algebra
 from .criteria import CRITERIA
 from .decision import find_superfluous_effect, lowers_check_squares, rank_key, refusal
-from .draws import search_among_draws
+from .draws import explain_records, search_among_draws
 from .evidence import check_score, check_squares, whole_score
 from .fit import Fit, estimate, fit_squares
 from .identifiability import OpenWidths, is_identifiable
@@ -66,31 +67,39 @@ def _fit_each(
     worth: part of the base's squares on the fit records below which a gain is not pursued
     progress: called before each candidate
     """
+    made: list[tuple[Candidate, Fit]] = []
+    linear = [c for c in possible if c.effect.strength is not None]
     # effects with hidden states take longest, so they begin first
-    ordered = sorted(possible, key=lambda c: not c.effect.states)
+    others = sorted((c for c in possible if c not in linear), key=lambda c: not c.effect.states)
 
-    def fit_candidate(candidate: Candidate) -> Fit:
-        added = base.fit.model.with_effect(candidate.effect, at=candidate.at)
-        return estimate_from_starts(added, prepared, base, worth=worth)
+    def fit_all(wanted: Sequence[Candidate], base: Base) -> None:
+        def fit_candidate(candidate: Candidate) -> Fit:
+            added = base.fit.model.with_effect(candidate.effect, at=candidate.at)
+            return estimate_from_starts(added, prepared, base, worth=worth)
 
-    def begun(i: int) -> None:
-        if progress is not None:
-            progress(ProgressLine(str(ordered[i]), begun=i + 1, total=len(ordered)))
+        def begun(i: int) -> None:
+            if progress is not None:
+                line, number = str(wanted[i]), len(made) + i + 1
+                progress(ProgressLine(line, begun=number, total=len(possible)))
 
-    def derive_laws() -> None:
-        for candidate in ordered:
-            _derive_law(candidate, base, prepared.coarse)
+        before = partial(_derive_laws, wanted, base, prepared.coarse)
+        fits = map_on_cores(fit_candidate, wanted, begun=begun, before=before)
+        made.extend(zip(wanted, fits, strict=True))
 
-    fits = map_on_cores(fit_candidate, ordered, begun=begun, before=derive_laws)
-    return sorted(zip(ordered, fits, strict=True), key=lambda cf: possible.index(cf[0]))
+    fit_all(linear, base)
+    # the lack of one that explains the records is what led the base away from the user's values
+    fit_all(others, replace(base, stated=None) if explain_records(made, base) else base)
+    return sorted(made, key=lambda cf: possible.index(cf[0]))
 
 
-def _derive_law(candidate: Candidate, base: Base, prepared: Prepared) -> None:
-    """Derive and compile the law of a candidate, once in this process, by using it."""
-    if candidate.effect not in _with_laws:
-        _with_laws.add(candidate.effect)
-        added = base.coarse.model.with_effect(candidate.effect, at=candidate.at)
-        Promises(prepared, base.coarse).squares(make_starts(added, prepared.scales)[0])
+def _derive_laws(possible: Sequence[Candidate], base: Base, prepared: Prepared) -> None:
+    """Derive and compile the laws of candidates, once in this process, by using them."""
+    promises = Promises(prepared, base.coarse)
+    for candidate in possible:
+        if candidate.effect not in _with_laws:
+            _with_laws.add(candidate.effect)
+            added = base.coarse.model.with_effect(candidate.effect, at=candidate.at)
+            promises.squares(make_starts(added, prepared.scales)[0])
 
 
 _with_laws: set[Effect] = set()
@@ -241,18 +250,9 @@ def _implausible(base: Fit, candidate: Candidate, fit: Fit, prepared: Prepared) 
     stands_for = implausible_effects(fit.model, prepared)
     if candidate.key in stands_for:
         return stands_for[candidate.key]
-    new = _select_new(stands_for, base, prepared)
-    for (name, _), reason in new.items():
-        return f"with it, {name} is implausible: {reason}"
-    return ""
-
-
-def _select_new(
-    stands_for: Mapping[tuple[str, str], str], base: Fit, prepared: Prepared
-) -> dict[tuple[str, str], str]:
-    """The implausible effects of a fit that were plausible in the base."""
     before = implausible_effects(base.model, prepared) if stands_for else {}
-    return {key: reason for key, reason in stands_for.items() if key not in before}
+    new = (key for key in stands_for if key not in before)
+    return next((f"with it, {key[0]} is implausible: {stands_for[key]}" for key in new), "")
 
 
 def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], widths: OpenWidths) -> Ranked:

@@ -89,8 +89,7 @@ def estimate_from_starts(
         model = with_parameters_of(model, base.coarse.model)
     models, new = make_starts(model, prepared.scales), model.absent
     absent = [model.body(at).effect(name) for name, at in model.absent]
-    rugged = any(is_rugged(e) for e in absent)
-    wide = rugged or any(len(e.parameters) > 2 * PLAN.followed for e in absent)
+    wide = any(is_rugged(e) or len(e.parameters) > 2 * PLAN.followed for e in absent)
     kept = PLAN.wide if wide else PLAN.followed
     if base is not None:
         curved = strength_of_new(model) is None
@@ -267,13 +266,10 @@ def _best_stepped(
     promised: whether the first start promised most; it is kept too, because after a few steps it
         may still leave more than a start that stays at the base
     """
-    solutions = []
-    for i, model in enumerate(models):
-        solution = follow_start(model, prepared, EFFORTS.first_steps)
-        solutions.append((squares_of(solution), i, solution.model))
-    solutions.sort(key=lambda f: f[:2])
-    best = solutions[:kept] + [f for f in solutions[kept:] if promised and f[1] == 0]
-    return [there for _, _, there in best]
+    stepped = [follow_start(model, prepared, EFFORTS.first_steps) for model in models]
+    order = sorted(range(len(models)), key=lambda i: squares_of(stepped[i]))
+    best = order[:kept] + [i for i in order[kept:] if promised and i == 0]
+    return [stepped[i].model for i in best]
 
 
 def _jolt(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) -> Solution:

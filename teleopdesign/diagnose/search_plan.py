@@ -54,8 +54,9 @@ class SearchPlan:
     jolts: tuple[float, ...] = (0.85, 1.18)
     #: part of the squares that a sweep of such jolts must take away for another to follow
     onward: float = 0.1
-    #: part of the squares before that the best candidate leaves at least where a gap is also sought
-    #: among draws: there nothing explains the records. A lower limit searches more records twice
+    #: part of the squares before that the best candidate leaves at least where nothing explains the
+    #: records: there a gap is also sought among draws, and effects that are linear in no strength
+    #: from the user's values. A lower limit searches more records twice
     unexplained: float = 0.1
     #: draws of the parameters of a gap, and evaluations that improve each of those followed. Of
     #: eight wide gaps four ended above 1.4 times the error of a fit from the true values, with 200

@@ -7,9 +7,11 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.diagnose.candidates import make_starts
-from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.linear_start import linear_starts
+from teleopdesign.diagnose.fit import estimate, fit_squares, free_parameters
+from teleopdesign.diagnose.linear_start import Promises, linear_starts
 from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.diagnose.search_plan import EFFORTS
+from teleopdesign.diagnose.solve import solve
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.experiment import Experiment
 from teleopdesign.measurement.prepare import prepare
@@ -69,3 +71,18 @@ def test_the_start_of_a_linear_effect_is_where_the_search_ends(cogged, base):
     assert start.model.parameters["device.bias.force"].value == pytest.approx(
         exact.value, abs=3 * exact.stderr
     )
+
+
+def test_a_promise_is_what_one_step_leaves(cogged, base):
+    """A step by the base's parameters, at the base, and by those of the effect, at the start."""
+    prepared = prepare(cogged)
+    starts = make_starts(base.model.with_effect("presliding"), prepared.scales)
+    promises = Promises(prepared, base)
+    for start in (starts[0], starts[-1]):
+        free = free_parameters(start)
+        there = solve(start, free, prepared, prepared.of("fit"), EFFORTS.stay)
+        new = [i for i, name in enumerate(free) if name not in base.free]
+        columns = np.hstack([base.jacobian, base.by_shift, there.jacobian[:, new]])
+        step = np.linalg.lstsq(columns, -there.residual, rcond=None)[0]
+        left = there.residual + columns @ step
+        assert promises.squares(start) == pytest.approx(float(left @ left), rel=1e-6)
