@@ -26,7 +26,14 @@ from ._controller import (
     Stage,
     parameter_symbol,
 )
-from ._declarations import broken_declarations, equation_of, has_shape, symbols_of, unknown_symbols
+from ._declarations import (
+    broken_declarations,
+    equation_of,
+    has_shape,
+    require_kept,
+    symbols_of,
+    unknown_symbols,
+)
 from ._exact import exact_decimal, make_exact, resolvent
 from ._from_control import (
     from_control,
@@ -74,6 +81,7 @@ __all__ = [
     "parameter_symbol",
     "resolvent",
     "scheduled_force_feedback",
+    "require_kept",
     "symbols_of",
     "unit_state",
     "why_not_cancelled",

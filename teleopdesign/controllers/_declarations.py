@@ -7,7 +7,7 @@ force of a law (`bound`) is a matter of intervals: see `passivity.declarations`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 
 import sympy as sp
@@ -82,6 +82,16 @@ def broken_declarations(law: ControlLaw, stage: Stage | None = None) -> tuple[st
     if law.shift is not None and not _keeps_shift(stage):
         broken.append("shift, but its steps have another transfer function in z")
     return tuple(broken)
+
+
+def require_kept(stages: Iterable[Stage]) -> None:
+    """Refuse a law whose linear form would be one that it declares and does not have.
+
+    raises ModelError: with the declaration that its equations do not keep at these values
+    """
+    for stage in stages:
+        if broken := broken_declarations(stage.law, stage):
+            raise ModelError(f"{stage.name}: at these values it declares {broken[0]}")
 
 
 def unknown_symbols(law: ControlLaw) -> list[sp.Symbol]:

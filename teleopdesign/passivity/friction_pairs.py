@@ -104,8 +104,8 @@ def pair_claims(pair: FrictionPair, *, simulated: bool = True) -> list[TopicClai
     topic = f"friction of {pair.body.name} with {pair.cancellation.name}"
     claims = settle(pair.question, simulated=simulated)
     # another law of the same bound may refute what holds for any law, which says nothing of this
-    if own := [one for one in claims if not one.of_any_law or one.claim.status != "refuted"]:
-        return [replace(one, topic=topic) for one in own]
+    if of_law := [one for one in claims if not one.of_any_law or one.claim.status != "refuted"]:
+        return [replace(one, topic=topic) for one in of_law]
     law = f"{pair.cancellation.name} ({pair.stage.law.name})"
     statement = f"friction of {pair.body.name} with {law} is passive"
     why = pair.question.law.missing or (

@@ -17,7 +17,7 @@ from sympy.core.function import AppliedUndef
 
 from ..base.errors import ModelError
 from ..blocks import Body
-from ..controllers import Controller, exact_decimal, make_exact, parameter_symbol
+from ..controllers import Controller, exact_decimal, make_exact, parameter_symbol, require_kept
 from ..diagrams import Control, Diagram, Linked, Moving
 from ..diagrams.wiring import acts_along_another, without_motion
 
@@ -58,13 +58,14 @@ def linear_blocks(
     held: whether discrete-time controllers are included, as H(e^(s T)) (1 - e^(-s T))/(s T). This
         is a frequency response below half the sampling rate, and no basis for a proof
     raises ModelError: a block is known by its name only, a plant as code only, or a law uses a
-        velocity without a motion
+        velocity without a motion, or declares what its equations do not keep
     """
     along: dict[str, sp.Expr] = {}
     blocks: dict[str, sp.Expr] = {}
     actuation: dict[str, sp.Expr] = {}
     left_out: list[str] = []
     sampled: list[str] = []
+    require_kept(s for c in diagram.controls for s in c.stages)
     times = {
         c.name: exact_decimal(c.dead_time) for c in diagram.controls if c.dead_time is not None
     }

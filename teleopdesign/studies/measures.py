@@ -179,8 +179,8 @@ def _passivity(point: Point, *, stroke: float, speed: float, tries: int) -> Any:
     order = ("refuted", "unknown", "evidence", "proved")
     settling = [*whole, *searched] if whole else claims
     # what refutes any law of a bound need not refute this one
-    own = (s.claim for s in settling if s.refutes or s.claim.status != "refuted")
-    chosen = min(own, key=lambda claim: order.index(claim.status))
+    of_law = (s.claim for s in settling if s.refutes or s.claim.status != "refuted")
+    chosen = min(of_law, key=lambda claim: order.index(claim.status))
     return _amounts_of_claim(chosen, "passivity")
 
 
