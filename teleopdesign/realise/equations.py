@@ -251,12 +251,26 @@ class _Builder:
             force = sp.Symbol(f"{part.name}_acting", real=True)
             self.acting[force], acting = acting, force
         here[SIGNALS["acting_force"]] = acting
-        total = equation.inertia * SIGNALS["acceleration"] + equation.force + equation.friction
+        held = _held_at_stops(part.body)
+        friction = equation.friction.xreplace(held)
+        total = equation.inertia * SIGNALS["acceleration"] + equation.force.xreplace(held)
+        total += friction
         for state, rate in equation.rates.items():
             self.rates[hidden[state]] = replace_delays(part.name, rate.xreplace(here), self.late)
         if equation.friction != 0:
-            self.friction[f"{part.name}_friction"] = equation.friction.xreplace(here)
+            self.friction[f"{part.name}_friction"] = friction.xreplace(here)
         return (total.xreplace(here) - acting).xreplace({_NO_COMMAND: sp.S(0)})
+
+
+def _held_at_stops(body: Body) -> dict[sp.Symbol, sp.Expr]:
+    """Hidden state -> the state within its stop: a step may carry it beyond, its force never."""
+    held = {}
+    for effect in body.effects:
+        for name, (_, stop) in effect.stops().items():
+            z, stop = effect.state_symbols()[name], stop.xreplace({SIGNALS["level"]: body.level()})
+            # not evaluated: sympy would compare the two at length, and cannot decide
+            held[z] = sp.Max(-stop, sp.Min(z, stop, evaluate=False), evaluate=False)
+    return held
 
 
 @dataclass(frozen=True)
