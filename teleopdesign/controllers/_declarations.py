@@ -94,6 +94,24 @@ def require_kept(stages: Iterable[Stage]) -> None:
             raise ModelError(f"{stage.name}: at these values it declares {broken[0]}")
 
 
+def require_exact_steps(stages: Iterable[Stage]) -> None:
+    """Refuse a law whose rates have no exact step in a computer that holds its inputs.
+
+    raises ModelError: with the state, whose rate must be affine in it and in no other rate's state
+    """
+    for stage in stages:
+        made = equation_of(stage.law, SAMPLED)
+        rates = {} if made is None else made.rates
+        for z, rate in rates.items():
+            others = rate.free_symbols & (rates.keys() - {z})
+            if others or sp.diff(rate, z).has(z):
+                why = "depends on other states" if others else "is not affine in it"
+                raise ModelError(
+                    f"{stage.name}: {z} has no exact step in a computer, for its rate {why}: give "
+                    "its ControllerState a step, or a linear law by `from_control`"
+                )
+
+
 def unknown_symbols(law: ControlLaw) -> list[sp.Symbol]:
     """Symbols in the equations of a law that are no signal, state or parameter of it."""
     used: set[sp.Symbol] = set()

@@ -106,6 +106,9 @@ class ControlLaw:
     text: str = ""
 
     def __post_init__(self) -> None:
+        if hidden := set(self.states) & {"input", "command", "period"}:
+            name = self.name or "control law"
+            raise ModelError(f"{name}: state {min(hidden)} has the name of a signal of laws")
         for ability in get_args(Ability):
             parameter = getattr(self, ability)
             if parameter and parameter not in self.parameters:

@@ -2,28 +2,37 @@
 
     output = input at a sample that arrives, else the output before;   of the first: 0
 
-A share of the samples is lost, by a sequence that looks random and is the same in each run: x' = 4
-x (1 - x) with x between 0 and 1. A sample is lost where x < sin^2(pi share/2). Behind a delay the
-lossy hold makes delays that jitter. In continuous time nothing is lost.
+A share of the samples is lost, by a sequence that looks random and is the same in each run: whole
+numbers x' = 16807 x mod (2^31 - 1), exact in floats. A sample is lost where x is below that share
+of 2^31 - 1. The seed gives the first number. Behind a delay the lossy hold makes delays that
+jitter. In continuous time nothing is lost.
 """
 
-from sympy import Piecewise, pi, sin
+from sympy import Integer, Piecewise, floor
 
 from ..effects import Parameter
 from ._controller import ControlLaw, ControllerState
 from ._law import zero_rate
 
+_MANY, _FACTOR = Integer(2**31 - 1), Integer(16807)
+
+
+def start(p):
+    """The first number, from 1 on: the sequence of 0 would stay at 0."""
+    return 1 + floor((_MANY - 2) * p.seed)
+
 
 def law(now, p):
     if now.period == 0:
         return now.input
-    arrives = p.seed + now.chance >= sin(pi * p.share / 2) ** 2
+    arrives = start(p) + now.chance >= p.share * _MANY
     return Piecewise((now.input, arrives), (now.held, True))
 
 
 def chance(now, p):
-    x = p.seed + now.chance
-    return 4 * x * (1 - x) - p.seed
+    """The next number, less the first one: a state begins at zero."""
+    x = _FACTOR * (start(p) + now.chance)
+    return x - _MANY * floor(x / _MANY) - start(p)
 
 
 CONTROLLER = ControlLaw(
@@ -36,5 +45,5 @@ CONTROLLER = ControlLaw(
         "share": Parameter("dimensionless", "share of the samples that are lost", upper=1.0),
         "seed": Parameter("dimensionless", "start of the sequence, 0 to 1", upper=1.0),
     },
-    source="zero-order hold of a lossy channel; Ulam, von Neumann (1947) for the sequence",
+    source="zero-order hold of a lossy channel; Park, Miller, Commun. ACM 31 (1988) 1192",
 )

@@ -177,10 +177,13 @@ def feedback_claim(body: Body, force_feedback: Controller) -> Claim:
     """
     plain = without_friction(body)
     beside = [e for e in plain.effects if e.role in ("actuation", "structure", "contact")]
-    gone = [e.name for e in beside if not e.linear or e.expression().atoms(delayed)]
+    laws = {e.name: (e.expression(), *e.rates().values()) for e in beside}
+    late = {n for n, of_effect in laws.items() if any(x.atoms(delayed) for x in of_effect)}
+    gone = [e.name for e in beside if not e.linear or e.name in late]
     for name in gone:
         plain = plain.without_effect(name)
-    port, _ = hand_port(haptic_interface(plain, force_feedback=force_feedback))
+    port, left_out = hand_port(haptic_interface(plain, force_feedback=force_feedback))
+    gone += [name.rpartition(".")[2] for name in left_out]
     above, below = (
         sp.Poly([exact(round_near(float(c), digits=6)) for c in poly.all_coeffs()], S)
         for poly in (port.p, port.q)

@@ -75,7 +75,7 @@ def conclude(
         learnable=trees,
         near_reversals=error_near_reversals(last.model, whole) if timed else None,
         repeats=repeats,
-        undetermined=find_undetermined(rungs, whole),
+        undetermined=find_undetermined(rungs, whole, estimated_on=prepared),
         set_aside=_select_left_out(state.set_aside, rungs),
         on_all_records=check_error_on_all(last, prepared) if records_differ(last) else None,
         silence=why_silent(whole, rungs[0].fit.model),

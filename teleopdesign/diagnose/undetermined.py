@@ -22,8 +22,13 @@ from .rung import Rung
 from .statements import Undetermined
 
 
-def find_undetermined(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Undetermined, ...]:
-    """Parameters of the effects of a ladder that the records do not determine, by the last fit."""
+def find_undetermined(
+    rungs: Sequence[Rung], prepared: Prepared, *, estimated_on: Prepared
+) -> tuple[Undetermined, ...]:
+    """Parameters of the effects of a ladder that the records do not determine, by the last fit.
+
+    prepared: the whole records;  estimated_on: their part on which the fits were made
+    """
     fit, sentences = rungs[-1].fit, []
     for rung in rungs[1:]:
         added = rung.added
@@ -32,7 +37,7 @@ def find_undetermined(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Undete
             continue
         by_effect = undetermined_of(added.effect, added.at, fit.model, prepared)
         statements = [
-            by_effect or alike_on_records(fit, rung, prepared),
+            by_effect or alike_on_records(fit, rung, estimated_on),
             known_together(fit, added),
         ]
         sentences += [Undetermined(added, one) for one in statements if one]

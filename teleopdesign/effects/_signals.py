@@ -19,18 +19,6 @@ def parameter_symbol(effect: str, parameter: str) -> sp.Symbol:
     return sp.Symbol(f"{effect}_{parameter}", real=True)
 
 
-def require_distinct(names: Iterable[str], where: str) -> None:
-    """Refuse names that make one symbol, such as "my.load_size" and "my_load.size".
-
-    raises ModelError: with the two
-    """
-    known: dict[str, str] = {}
-    for name in names:
-        other = known.setdefault(name.replace(".", "_"), name)
-        if other != name:
-            raise ModelError(f"{where}: {other} and {name} have one symbol: give one another name")
-
-
 #: symbols that a law may use; `direction` is sgn(velocity), `command` the input of an actuation
 #: stage, `acting_force` the output of the last, `level` the friction level, `interaction_force`
 #: the force of hand or environment on the body, `carried_force` the force that the transmission
@@ -57,3 +45,17 @@ FURTHER = {
 INERTIA, UNEXPLAINED = sp.symbols("inertia unexplained", real=True)
 #: delayed(signal, delay): the signal a fixed time earlier
 delayed = sp.Function("delayed", real=True)
+
+
+def require_distinct(names: Iterable[str], where: str) -> None:
+    """Refuse names that make one symbol, as "my.load_size" and "my_load.size", or that of a signal.
+
+    raises ModelError: with the two
+    """
+    known = {signal: f"the signal {signal}" for signal in (*SIGNALS, "inertia", "unexplained")}
+    for name in names:
+        symbol = name.replace(".", "_")
+        if symbol in known:
+            both = f"{known[symbol]} and {name}"
+            raise ModelError(f"{where}: {both} have one symbol: give one another name")
+        known[symbol] = name

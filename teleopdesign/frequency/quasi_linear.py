@@ -110,6 +110,11 @@ class QuasiLinearForm:
             assert isinstance(part.body, Body)
             if part.motion == self.motion:
                 made[block_symbol(part.name)] = np.asarray(describing_function(part.body, **at))
+                continue
+            raise ModelError(
+                f"{self.diagram.name}: {part.name} moves by {part.motion}, not by {self.motion}, "
+                "and its amplitude is not known: `measured_impedance` simulates it"
+            )
         driven = {}
         for name, (law, drive) in self.controls.items():
             if drive is None:

@@ -11,7 +11,7 @@ from ..controllers import Controller, Stage
 from ..diagrams import Control, Diagram, Moving
 from .claims.claim import Claim, Proof, Unknown
 from .identified import IdentifiedDevice, identify_device, restate_for_device
-from .ports import drives_alone
+from .ports import drives_alone, nonlinear_parts, ports, without_friction
 from .theorems import Question, TopicClaim, settle
 
 
@@ -120,3 +120,23 @@ def proof_of(claims: Sequence[TopicClaim]) -> TopicClaim | None:
     """The claim that proves a pair passive, one that spends no damping if there is one; or None."""
     shown = [one for one in claims if isinstance(one.claim.verdict, Proof)]
     return min(shown, key=lambda one: one.spends_damping, default=None)
+
+
+def refuting(diagram: Diagram, pairs: Sequence[FrictionPair]) -> list[Claim]:
+    """Claims about pairs whose refuting motions take energy out of the ports of the diagram.
+
+    A port moves slowly, and the others stand still. So every friction must act at a port and have a
+    constant level, and the rest must be linear. A law of velocity is refuted at some speed: there
+    nothing else may damp.
+    """
+    rest, moved = diagram, [port.motion for port in ports(diagram)]
+    for pair in pairs:
+        gone = [pair.cancellation.name] if pair.cancellation else []
+        if pair.body.motion not in moved or not pair.is_constant:
+            return []
+        rest = without_friction(rest, pair.body.motion, *gone)
+    if nonlinear_parts(rest):
+        return []
+    claims = [one for pair in pairs for one in pair_claims(pair, simulated=False)]
+    alone = len(diagram.blocks) <= 2
+    return [one.claim for one in claims if one.refutes and (alone or not one.spends_damping)]

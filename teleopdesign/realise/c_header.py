@@ -15,7 +15,7 @@ import sympy as sp
 from sympy.printing.c import C99CodePrinter
 
 from ..base.errors import ModelError
-from ..controllers import SIGNALS, Controller, parameter_symbol
+from ..controllers import SIGNALS, Controller, parameter_symbol, require_exact_steps
 from .signal_symbols import LateSignals, delay_in_samples, without_delays
 from .simulated import without_no_delay
 
@@ -109,6 +109,7 @@ def as_c_header(controller: Controller, *, period: float, name: str = "controlle
     if not 0 < period < float("inf"):
         raise ModelError(f"as_c_header: period: expected a time > 0 s, found {period:g}")
     made = without_no_delay(controller).sampled(period)
+    require_exact_steps(made.stages)
     signals = {n: SIGNALS[n] for n in SIGNALS} | {"period": sp.Float(period)}
     late: LateSignals = {}
     equation = without_delays(made.equation("law", signals), "law", late)

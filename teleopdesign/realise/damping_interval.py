@@ -106,7 +106,8 @@ def largest_acting_force(
             if not all(stays_within(effect, s, box | within) for s in states):
                 return math.inf
             # a delayed signal is another value of its range
-            for one in sorted(law.atoms(delayed), key=sp.count_ops):
+            while earlier := law.atoms(delayed):  # the innermost first
+                one = min(earlier, key=lambda x: (sp.count_ops(x), str(x)))
                 size, late = largest_of(one.args[0]), sp.Dummy(real=True)
                 law, within = law.subs(one, late), {**within, late: (-size, size)}
             largest = largest_of(law, within)

@@ -194,7 +194,7 @@ def stays_within(effect: Effect, state: sp.Symbol, ranges: Ranges) -> bool:
         here = {**ranges, state: (end, end)}
         slowest = _least_either_way(inward * rate, here)[0].bound
         fastest = -_least_either_way(-inward * rate, here)[0].bound
-        rounding = 1e-9 * abs(fastest) if math.isfinite(fastest) else 0.0
+        rounding = 1e-13 * abs(fastest) if math.isfinite(fastest) else 0.0
         if not slowest >= -rounding:
             return False
     return True

@@ -7,6 +7,7 @@ written: terms that cancel on paper cancel here.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -92,6 +93,10 @@ def linear_blocks(
             continue
         if not isinstance(part.body, Body):
             raise ModelError(f"{diagram.name}: {part.name} is known by its name only, no values")
+        for name, value in part.body.parameters.items():
+            if math.isinf(value.value):
+                where = f"{diagram.name}: {part.name}.{name}"
+                raise ModelError(f"{where} is infinite: leave its effect out of a linear form")
         impedance, gone = part.body.impedance(S)
         blocks[part.name] = _insert_numbers(impedance, part.body.numbers())
         left_out += [f"{part.name}.{name}" for name in gone]

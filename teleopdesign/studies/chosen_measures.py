@@ -98,6 +98,21 @@ def _check_option(where: str, content: Any, *, is_text: bool) -> None:
             number(value, where)
 
 
+def require_one_meaning(measures: Iterable[Measure]) -> None:
+    """Refuse two measures with one name: the values of one would stand for those of the other.
+
+    raises ModelError: with the name
+    """
+    known: dict[str, Measure] = {}
+    for one in measures:
+        other = known.setdefault(one.name, one)
+        if (other.function, dict(other.options)) != (one.function, dict(one.options)):
+            raise ModelError(
+                f'two different measures are called "{one.name}": make one of them a function with '
+                "a name of its own"
+            )
+
+
 def measures_of(content: Any) -> tuple[Measure, ...]:
     """One measure or several; a mapping gives their names.
 

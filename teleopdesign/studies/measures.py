@@ -168,7 +168,9 @@ def _passivity(point: Point, *, stroke: float, speed: float, tries: int) -> Any:
     computer that samples these are proofs in continuous time and a search with its samples
     """
     from ..passivity.diagram_claims import SEARCHED, Search, diagram_claims
+    from ..passivity.friction_pairs import friction_pairs, refuting
     from ..passivity.linear_diagrams import WHOLE
+    from ..passivity.ports import drop_absent_effects, without_holders
 
     case = point.case
     search = Search(stroke, speed, tries, case.computer)
@@ -178,9 +180,15 @@ def _passivity(point: Point, *, stroke: float, speed: float, tries: int) -> Any:
     whole = [s for s in claims if s.topic in WHOLE]
     order = ("refuted", "unknown", "evidence", "proved")
     settling = [*whole, *searched] if whole else claims
-    # what refutes any law of a bound need not refute this one
-    of_law = (s.claim for s in settling if s.refutes or s.claim.status != "refuted")
-    chosen = min(of_law, key=lambda claim: order.index(claim.status))
+    # what refutes a law beside friction need not refute the diagram
+    alone = without_holders(drop_absent_effects(case.diagram))
+    against = {c.statement for c in refuting(alone, friction_pairs(alone))}
+    counted = (
+        s.claim
+        for s in settling
+        if s in (*whole, *searched) or s.claim.status != "refuted" or s.claim.statement in against
+    )
+    chosen = min(counted, key=lambda claim: order.index(claim.status))
     return _amounts_of_claim(chosen, "passivity")
 
 

@@ -31,7 +31,7 @@ from ..diagrams import Diagram
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from ..studies.case import SimulatedCase, case_of
-from ..studies.chosen_measures import measures_of
+from ..studies.chosen_measures import measures_of, require_one_meaning
 from .limits import limit_of
 from .problem import AT_END, Problem, TrialPoint, box_of_parameters, shares_of, unit_box, values_at
 from .recheck import CheckedLimit, recheck
@@ -152,6 +152,7 @@ def problem_of(
     box = box_of_parameters(parameters)
     measures = tuple(measures_of([one])[0] for one in objectives)
     limits = tuple(map(limit_of, subject_to))
+    require_one_meaning([*measures, *(one.measure for one in limits if one.measure is not None)])
     for one in limits:
         if both := set(one.over) & set(parameters):
             raise ModelError(

@@ -221,3 +221,53 @@ def test_two_parameters_with_one_symbol_are_refused():
         haptic_interface(device)
     with pytest.raises(ModelError, match="have one symbol"):
         device.numbers()
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"stribeck__extra_static_level": 0.5, "stribeck__stribeck_velocity": 0.01},
+        {
+            "position_dependent_friction__amplitude": 0.5,
+            "position_dependent_friction__period": 1e-3,
+            "position_dependent_friction__phase": 0.0,
+        },
+    ],
+)
+def test_a_cycle_at_the_least_level_refutes_no_friction_whose_level_varies(more):
+    device = body(coulomb__level=0.5, viscous__damping=50.0, **more)
+    diagram = haptic_interface(device, cancellation=DAHL)
+    assert claim_over_intervals(diagram, {"Z_M.inertia": (0.1, 0.2)}).status == "unknown"
+
+
+@pytest.mark.parametrize(("damping", "status"), [(10.0, "evidence"), (0.01, "refuted")])
+def test_a_study_tells_a_law_of_velocity_that_releases_energy(damping, status):
+    whole = haptic_interface(
+        body(coulomb__level=0.5, viscous__damping=damping), cancellation=smoothed()
+    )
+    made = td.study(whole, {"Z_M.inertia": [0.15]}, measures="passivity", duration=0.01, workers=1)
+    assert str(made.data["passivity_status"].values.item()) == status
+
+
+def test_two_laws_at_two_ports_are_refuted_by_a_motion_of_one():
+    link = controller("spring_damper", {"stiffness": 200.0, "damping": 3.0})
+    side = body(coulomb__level=0.5, viscous__damping=2.0)
+    diagram = td.teleoperator(
+        side, side, coupling=link, master_cancellation=DAHL, slave_cancellation=DAHL
+    )
+    assert claim_over_intervals(diagram, {"Z_m.inertia": (0.1, 0.2)}).status == "refuted"
+
+
+def test_a_parameter_has_no_symbol_of_a_signal_or_of_a_state():
+    loaded = Effect(
+        role="friction_level", absent={"force": 0.0},
+        parameters={"force": Parameter("dimensionless", "share")},
+        law=lambda now, p: p.force * sp.Abs(now.interaction_force),
+    ).named("interaction", "x")  # fmt: skip
+    twice = Effect(
+        role="force", absent={"z": 0.0}, parameters={"z": Parameter("damping", "c")},
+        states={"z": State("velocity", lambda now, p: -now.z)}, law=lambda now, p: now.z,
+    ).named("mine", "x")  # fmt: skip
+    for effect, value in ((loaded, {"force": 0.6}), (twice, {"z": 3.0})):
+        with pytest.raises(ModelError, match="have one symbol"):
+            body(coulomb__level=0.5).with_effect(effect, value).numbers()

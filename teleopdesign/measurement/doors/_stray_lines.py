@@ -13,6 +13,8 @@ from ._log import MOST_BYTES, join_names, refuse_size
 #: most lines that are no rows (messages of a logger that restarts, a garbled row), as a number and
 #: as a part of the rows, that are left out. More such lines mean that the table has another form
 FEW_STRAYS, MOST_STRAYS = 10, 0.01
+#: columns from which on a word in each is no message of a logger
+FEWEST_OF_A_HEADER = 3
 #: lines that are looked at together, and with what a row of plain numbers begins
 _BLOCK, _BEGINS_A_ROW = 5_000, frozenset("0123456789+-.")
 #: what stands for bytes that are no letter, as at the end of a file that was cut within a letter
@@ -51,6 +53,11 @@ def rows_of_numbers(
             if line[-1] == CUT_LETTER:  # without an end of line: the last one of the file
                 return
             line = without_end(line, separator)
+            if is_another_header(line, dialect):
+                raise ExperimentError(
+                    f"{file}: after row {count}: found other names or units of columns, "
+                    f"{quote(line.strip())}: give each table a file of its own"
+                )
             if dialect.labels and is_header_again(line, dialect):
                 strays.append(count + 1)
                 again, cut = again + 1, False
@@ -97,6 +104,22 @@ def is_header_again(line: str, dialect: Dialect) -> bool:
     if line.lstrip()[:1] in _BEGINS_A_NUMBER:
         return False
     return cells_of(line, dialect.separator)[0] in dialect.labels
+
+
+def is_another_header(line: str, dialect: Dialect) -> bool:
+    """Whether a line gives each column a word, and is none of the lines above the table.
+
+    Of two columns, a message of the logger may do that too.
+    """
+    width = len(dialect.header)
+    if not dialect.named or dialect.separator == " " or width < FEWEST_OF_A_HEADER:
+        return False
+    if line.lstrip()[:1] in _BEGINS_A_NUMBER:
+        return False
+    cells = cells_of(line, dialect.separator)
+    if len(cells) != width or any(is_empty(c) or is_value(c, dialect.comma) for c in cells):
+        return False
+    return not any(cells == cells_of(above, dialect.separator) for above in dialect.remarks)
 
 
 def ragged_row_error(

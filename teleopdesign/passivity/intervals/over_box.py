@@ -12,9 +12,8 @@ middle.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from itertools import chain
 from typing import Any
 
 from ...base.arguments import check_types
@@ -28,7 +27,7 @@ from ...diagrams.units import first_axis, unit_of_value
 from ..claims.claim import use_rotary_units
 from ..declarations import is_shipped
 from ..diagram_claims import composed_claim
-from ..friction_pairs import FrictionPair, friction_pairs, pair_claims, proof_of
+from ..friction_pairs import FrictionPair, friction_pairs, pair_claims, proof_of, refuting
 from ..linear.conditions import is_shown
 from ..linear.family import family_of_states
 from ..linear.impedance import decimal, exact
@@ -134,13 +133,13 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> IntervalClaim:
         composed = composed_claim(here, ports(here), pairs)
         by_pair = [pair_claims(pair, simulated=False) for pair in pairs]
         spends_damping |= any(p.spends_damping for p in map(proof_of, by_pair) if p is not None)
-        others = list(chain(*by_pair)) if _is_all_friction(here, pairs) else []
+        others = refuting(here, pairs)
         answers.append((point, composed.claim if composed else None, others))
     worst = Worst(box.centre, float("nan"), len(points))
     statement = f"its ports are {'together ' * (claim == 'passive')}{claim}"
     for point, whole, others in answers:
         # what takes energy out of friction at one port need not make any termination unstable
-        against = [one.claim for one in others if one.refutes and claim == "passive"]
+        against = others if claim == "passive" else []
         if whole is None and against:
             how = f"{against[0].statement}: {against[0].verdict}"
             there = replace(worst, point=point)
@@ -158,14 +157,6 @@ def judge_friction(middle: Diagram, box: ValueBox, claim: str) -> IntervalClaim:
         return interval_claim(statement, "proved", worst, box, "", how, at_worst=answers[-1][1])
     how = "proved at each of these points alone"
     return interval_claim(statement, "evidence", worst, box, "", how, at_worst=answers[-1][1])
-
-
-def _is_all_friction(diagram: Diagram, pairs: Sequence[FrictionPair]) -> bool:
-    """Whether a slow motion of one port loses energy in one pair of friction alone."""
-    if len(pairs) != 1 or all(p.motion != pairs[0].body.motion for p in ports(diagram)):
-        return False
-    gone = [c.name for c in (pairs[0].cancellation,) if c is not None]
-    return not nonlinear_parts(without_friction(diagram, pairs[0].body.motion, *gone))
 
 
 def _vertices_decide(middle: Diagram, box: ValueBox) -> bool:

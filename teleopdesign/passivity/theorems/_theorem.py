@@ -117,8 +117,8 @@ class TopicClaim(ByValue):
 
     @property
     def refutes(self) -> bool:
-        """Whether what refutes the claim is the law of its question, whatever else damps."""
-        return self.claim.status == "refuted" and not (self.of_any_law or self.spends_damping)
+        """Whether what refutes the claim is the law of its question."""
+        return self.claim.status == "refuted" and not self.of_any_law
 
     @classmethod
     def from_search(
