@@ -134,7 +134,7 @@ def _levels_by_load(body: Body) -> tuple[float, float]:
 
 @lru_cache(maxsize=16)
 def _level_in_motion(body: Body) -> float:
-    """Largest friction level within 1 m or rad and up to 1 m/s or rad/s, unloaded; 0: as at rest."""
+    """Largest friction level within 1 m or rad, and 1 m/s or rad/s, unloaded; 0: as at rest."""
     equation = body.equation()
     signals = [SIGNALS[n] for n in ("position", "velocity", "direction")]
     if not equation.level.has(*signals, *equation.rates):
