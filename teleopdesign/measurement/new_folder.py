@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from ..base.errors import ExperimentError
+from ..base.errors import ExperimentError, quote
 from ..base.files import write_beside, write_text
 from ..base.toml import Table, comment_text, string_text, toml_text
 from ..base.units import unit_of
 from .channel import LogLayout, layout_from
 from .description import BodyDescription, ModelValue, bodies_from, with_first_values
+from .doors._log import Log
 from .encoder import reading_step, rests
 from .first_guess import guess_from
 from .limits import SMALL
@@ -25,6 +26,8 @@ from .record_clock import SHORTEST
 from .reversals import runs_one_way
 from .saving import body_lines, records_text
 from .survey import Survey, spans_of
+from .survey.remarks import STATEMENTS
+from .tables import open_log
 
 #: (begin, end) of the fit record and of the check record, s from the first row of a log
 FitAndCheck = tuple[tuple[float, float], tuple[float, float]]
@@ -49,7 +52,7 @@ def make_folder(
 
     overwrite: replace an existing experiment.toml
     raises ExperimentError: the folder holds an experiment already, or cannot be written; spans that
-        overlap, lie outside of the log or belong to several logs
+        overlap, lie outside of the log or belong to several logs; logs that state other units
     """
     names = [log.name for log in logs]
     records = records_of(names, spans)
@@ -57,6 +60,7 @@ def make_folder(
         check_spans(spans, survey.duration, names[0])
     if not overwrite:
         require_new(folder)
+    require_same_statements(logs, counted="time" not in survey.channels)
     copy_logs(logs, folder)
     layout = _layout_of(survey)
     if len(names) == 1 and spans is None and (parts := _usual_cut(survey, folder, layout, names)):
@@ -101,6 +105,30 @@ def _layout_of(survey: Survey) -> LogLayout:
     content = {"channels": survey.channels, "model": {"device": {"axis": survey.axis}}}
     table = Table(content, _FILE)
     return layout_from(table, bodies_from(table.table("model")))
+
+
+def require_same_statements(logs: Sequence[Path], *, counted: bool) -> None:
+    """Refuse a log that states another unit, rate or constant of the machine than the first one.
+
+    All logs of an experiment are read by one table of channels, which holds what the first states.
+    counted: rows are counted at a rate; where each log has its times, the rates may differ
+    raises ExperimentError: with the two statements
+    """
+    opened = [(log.name, open_log(log, log.name)) for log in logs if log.is_file()]
+    first = opened[0] if opened else ("", Log((), dict))
+    for name, log in opened[1:]:
+        for stated in STATEMENTS if counted else STATEMENTS[1:]:
+            here, there = stated(log.remarks), stated(first[1].remarks)
+            if here is not None and here[:-1] != (there and there[:-1]):
+                words = f"{name} states {quote(here[-1])}, and {first[0]} "
+                words += f"states {quote(there[-1])}" if there else "does not"
+                raise ExperimentError(f"{words}: make an experiment of each")
+        for column, unit in log.units.items():
+            if (known := first[1].units.get(column, unit)) != unit:
+                raise ExperimentError(
+                    f"{name}: column {quote(column)} is in {unit}, and in {known} in {first[0]}: "
+                    "make an experiment of each"
+                )
 
 
 def copy_logs(logs: Sequence[Path], folder: Path) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..base.files import read_whole, write_text
 from ..base.toml import read_toml, string_text, texts_in
-from .new_folder import FitAndCheck, copy_logs, records_of
+from .new_folder import FitAndCheck, copy_logs, records_of, require_same_statements
 from .saving import records_text
 
 _FILE = "experiment.toml"
@@ -34,6 +34,9 @@ def make_folder_like(
     content = read_toml(source / _FILE, f"{source.name}/{_FILE}").content
     names = [log.name for log in logs]
     records = records_of(names, spans)
+    known = [source / str(one["file"]) for one in content.get("records", [])[:1] if "file" in one]
+    counted = "time" not in content.get("channels", {})
+    require_same_statements([*known, *logs], counted=counted)
     text = _without_records(read_whole(source / _FILE).decode("utf-8"))
     text = re.sub(r"(?m)^title\s*=.*$", lambda _: f"title = {string_text(title)}", text, count=1)
     copy_logs(logs, folder)

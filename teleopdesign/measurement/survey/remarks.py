@@ -103,3 +103,7 @@ def gear_ratio_in(remarks: Sequence[str]) -> tuple[float, str] | None:
         if (match := _GEAR_RATIO.search(line[:500])) is not None:
             return float(match[1].replace(",", ".")), line[:100].lstrip("#%; ")
     return None
+
+
+#: what a log may state of its clock and of the machine: its lines -> values, then the line
+STATEMENTS = (sample_rate_in, counts_per_turn_in, torque_constant_in, gear_ratio_in)
