@@ -72,7 +72,7 @@ def best_draws(model: Model, prepared: Prepared, base: Fit) -> list[Model]:
     draws = []
     for i, point in enumerate(_spread_evenly(PLAN.draws, len(names))):
         x = ranges[0] + point * (ranges[1] - ranges[0])
-        draws.append((promises.left(_with_logarithms(model, names, x)), i, x))
+        draws.append((promises.squares_beside(_with_logarithms(model, names, x)), i, x))
     best = sorted(draws, key=lambda draw: draw[:2])[: 2 * PLAN.followed]
     # of twelve wide gaps, the best draw left 15 to 71 % of the base's squares
     if not best[0][0] < fit_squares(base):
@@ -127,7 +127,7 @@ def _improve(model: Model, names: Sequence[str], x: Array, promises: Promises) -
     from scipy.optimize import minimize  # takes half a second: imported only for a gap or a gear
 
     def left(logarithms: Array) -> float:
-        return promises.left(_with_logarithms(model, names, logarithms))
+        return promises.squares_beside(_with_logarithms(model, names, logarithms))
 
     corners = np.vstack([x, x + PLAN.simplex * np.eye(len(x))])
     best = minimize(

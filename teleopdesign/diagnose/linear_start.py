@@ -184,7 +184,7 @@ class Promises:
             columns -= self._basis @ (self._basis.T @ columns)
         return _remaining_squares(columns, residual, unit)
 
-    def left(self, model: Model) -> float:
+    def squares_beside(self, model: Model) -> float:
         """Sum of squares that a model leaves with the base's parameters at their linear best.
 
         returns: inf where a motion grows beyond all numbers

@@ -130,7 +130,8 @@ def _fit_both(
     for one in (transmission, friction):
         model = model.with_effect(one.effect, at=one.at)
     starts = [m for fit in fitted for m in _starts_from_kin(model, transmission, fit, search)]
-    starts = starts or best_draws(model, search.prepared.coarse, coarse)
+    # where no draw leaves less than the base, the pair stays where it is absent
+    starts = starts or best_draws(model, search.prepared.coarse, coarse) or [model]
     new = (transmission.key, friction.key)
     return estimate_best_start(starts, new, search.prepared)
 
