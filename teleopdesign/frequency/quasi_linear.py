@@ -108,13 +108,12 @@ class QuasiLinearForm:
         at = {"amplitude": amplitude, "frequency": frequency}
         for part in self.diagram.bodies:
             assert isinstance(part.body, Body)
-            if part.motion == self.motion:
-                made[block_symbol(part.name)] = np.asarray(describing_function(part.body, **at))
-                continue
-            raise ModelError(
-                f"{self.diagram.name}: {part.name} moves by {part.motion}, not by {self.motion}, "
-                "and its amplitude is not known: `measured_impedance` simulates it"
-            )
+            if part.motion != self.motion:
+                raise ModelError(
+                    f"{self.diagram.name}: {part.name} moves by {part.motion}, not by "
+                    f"{self.motion}, and how far is not known: `measured_impedance` simulates it"
+                )
+            made[block_symbol(part.name)] = np.asarray(describing_function(part.body, **at))
         driven = {}
         for name, (law, drive) in self.controls.items():
             if drive is None:

@@ -13,6 +13,7 @@ import sympy as sp
 
 from ..base.errors import ModelError
 from ..blocks import Body, MatrixImpedance
+from ..blocks.body_equation import body_symbols, compose_equation, friction_level
 from ..controllers import Controller, require_exact_steps
 from ..diagrams import Attached, Block, Control, Diagram, Linked, Moving, with_shared_states
 from ..effects import EFFECTS, SIGNALS, Effect
@@ -34,8 +35,8 @@ STEADY = 0.2
 #: along records: with a level of zero the bristle has no stiffness there, and a simulated servo
 #: left its record by 0.4 rad rms. Levels are known less well than to a part so small
 LEAST = 0.002
-#: m or rad: places at which the size of a friction level is looked at, spread over any period
-_PLACES = np.sin(np.arange(512.0))
+#: place, speed (m, m/s; rad) and direction at which the size of a friction level is looked at
+_ALONG = np.sin(np.arange(512.0)), np.array([[-1.0], [0.0], [1.0]]), np.array([[-1], [0], [1]])
 #: forces in proportion to which a friction level may grow
 _LOADS = SIGNALS["acting_force"], SIGNALS["carried_force"]
 
@@ -105,8 +106,10 @@ def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -
     if unloaded < STEADY * level:
         damping_ratio = min(damping_ratio, UNDAMPED)
     lugre = _bristle(bool(body.lacks(EFFECTS["presliding"])))
-    # by the largest level: where it is small, the bristle would be far too soft elsewhere
-    stiffness = max(level, _level_in_motion(body)) / deflection
+    if (law := _level_in_motion(body.effects)) is not None:
+        # where the level is small, the bristle would be far too soft elsewhere
+        level = max(level, float(np.nanmax(law(*_ALONG, *body.numbers().values()))))
+    stiffness = level / deflection
     if not damping_ratio:
         return body.with_effect(lugre.without("bristle_damping"), {"stiffness": stiffness})
     damping = 2.0 * damping_ratio * (stiffness * body.parameters["inertia"].value) ** 0.5
@@ -128,23 +131,21 @@ def _levels_by_load(body: Body) -> tuple[float, float]:
     law = equation.level.subs(body.numbers())
     at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(equation.rates, 0)
     unloaded = float(law.subs(at_rest))
-    loaded = at_rest | dict.fromkeys(_LOADS, _typical_load(body) if law.has(*_LOADS) else 0)
+    if not law.has(*_LOADS):
+        return unloaded, unloaded
+    loaded = at_rest | dict.fromkeys(_LOADS, _typical_load(body))
     return unloaded, float(law.subs(loaded))
 
 
-@lru_cache(maxsize=16)
-def _level_in_motion(body: Body) -> float:
-    """Largest friction level within 1 m or rad, and 1 m/s or rad/s, unloaded; 0: as at rest."""
-    equation = body.equation()
+@lru_cache(maxsize=64)  # compiled once for all values of a fit
+def _level_in_motion(effects: tuple[Effect, ...]) -> Any:
+    """Unloaded friction level, by place, speed, direction, parameters; None: that at rest."""
+    level, lagging = friction_level(effects), compose_equation(effects).rates
     signals = [SIGNALS[n] for n in ("position", "velocity", "direction")]
-    if not equation.level.has(*signals, *equation.rates):
-        return 0.0
-    still = dict.fromkeys(set(SIGNALS.values()) - set(signals), 0)
-    lagging = dict.fromkeys(equation.rates, sp.Abs(SIGNALS["velocity"]))
-    law = equation.level.subs(body.numbers()).subs(lagging).subs(still)
-    place, speed = np.meshgrid(_PLACES, [-1.0, 0.0, 1.0], indexing="ij")
-    levels = sp.lambdify(signals, for_numpy(law), "numpy")(place, speed, np.sign(speed))
-    return float(np.nanmax(np.broadcast_to(levels, place.shape)))
+    fixed = dict.fromkeys(set(SIGNALS.values()) - set(signals), sp.S(0))
+    law = for_numpy(level.xreplace(fixed | dict.fromkeys(lagging, sp.Abs(SIGNALS["velocity"]))))
+    varies, symbols = level.has(*signals, *lagging), body_symbols(effects).values()
+    return sp.lambdify([*signals, *symbols], law, "numpy") if varies else None
 
 
 def _typical_load(body: Body) -> float:
