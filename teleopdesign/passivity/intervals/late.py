@@ -137,17 +137,18 @@ def slowest_decay(terms: Terms) -> float:
         return -np.inf
     if np.isinf(rate):  # the search reached no zero: how far from the axis is the first?
         rate = _first_zero_within(terms)
-    low, high = 0.0, rate
-    while np.isfinite(high) and high - low > (1 - _SHARE) * high:
+    low, high = (0.0, rate) if np.isfinite(rate) else (rate, rate)
+    # halves of a share: the first zero may be at 0.7 of the rate
+    while low < high and high - low > (1 - _SHARE) / 2 * rate:
         middle = (low + high) / 2
         low, high = (low, middle) if count_growing(_move_axis(terms, middle)) else (middle, high)
     return low
 
 
 def _first_zero_within(terms: Terms) -> float:
-    """A distance from the axis within which there is a zero, 1/s; inf: within _REACH there is none.
+    """A distance from the axis within which there is a zero, 1/s, or the largest that is searched.
 
-    Only a polynomial of degree 0 without dead times has no zero at all.
+    returns: inf for a polynomial of degree 0 without dead times, which has no zero at all
     """
     if max(map(len, terms.values())) == 1 and not any(terms):
         return np.inf
@@ -155,7 +156,7 @@ def _first_zero_within(terms: Terms) -> float:
     for rate in np.geomspace(1e-6, _REACH, 60) / shortest:
         if count_growing(_move_axis(terms, float(rate))):
             return float(rate)
-    return np.inf
+    return _REACH / shortest
 
 
 def _move_axis(terms: Terms, right: float) -> Terms:
