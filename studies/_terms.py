@@ -218,7 +218,7 @@ def _absent(experiment: Experiment, body: str, now: Signals) -> list[str]:
     free = described.inertia is None or not described.inertia.fixed
     skip = set(described.effects) | ({"added_inertia"} if free else set())
     skip |= set() if now.depth.any() else CONTACT
-    skip |= {n for n in TERMS if described.axis in EFFECTS[n].elsewhere}
+    skip |= {n for n in TERMS if described.axis in EFFECTS[n].counterparts}
     if f"{body}.interaction_force" not in experiment.channels:
         # command and inertia would then explain each other and all of the target
         skip.add("actuator_gain")

@@ -78,7 +78,7 @@ def body_with(name, axis, number=0.3):
 
 
 @pytest.mark.parametrize(
-    ("name", "axis"), [(n, a) for n in sorted(ALL) for a in AXES if a not in ALL[n].elsewhere]
+    ("name", "axis"), [(n, a) for n in sorted(ALL) for a in AXES if a not in ALL[n].counterparts]
 )
 def test_what_is_written_of_a_body_is_read_as_the_same_body(name, axis, tmp_path):
     body = body_with(name, axis)
@@ -152,7 +152,7 @@ def test_open_parameters_are_for_experiments_alone(tmp_path):
 
 PARAMETERS = [
     (name, key, axis) for name in sorted(EFFECTS) for key in EFFECTS[name].parameters
-    for axis in AXES if axis not in EFFECTS[name].elsewhere
+    for axis in AXES if axis not in EFFECTS[name].counterparts
 ]  # fmt: skip
 
 

@@ -224,7 +224,7 @@ def _with_probabilities(step: ComputerStep, ladder: ComputerLadder) -> ComputerS
         # effects stand in for another one
         ends = ladder.base.error("check"), ladder.last.error("check")
         explains = ladder.with_body or ends[1] <= _EXPLAINED * ends[0]
-        trusted = removed_share(ends, floor) ** CRITERIA.believing if explains else 0.0
+        trusted = removed_share(ends, floor) ** CRITERIA.belief_power if explains else 0.0
         blind = [one for one in step.attempts if one.refused == BLIND]
         if any(one.fit.error("check") < accepted.fit.error("check") for one in blind):
             trusted = 0.0  # a form that does not count explains more

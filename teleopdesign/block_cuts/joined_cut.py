@@ -97,7 +97,7 @@ class JoinedData(ControlRows):
     def _estimate_body(self, placed: Sequence[Placed], start: Model) -> _Body:
         here = body_experiment(self.experiment, self.cut, placed)
         prepared = prepare(here, bandwidth=self._bandwidth)
-        return _Body(tuple(placed), prepared, estimate(start, prepared, effort=EFFORTS.near))
+        return _Body(tuple(placed), prepared, estimate(start, prepared, effort=EFFORTS.continued))
 
     def floors(self, seed: int = 0) -> dict[str, float]:
         """The cut -> error that its sensors alone leave beside the body and the stated laws."""
@@ -126,7 +126,7 @@ class JoinedData(ControlRows):
         promised = sorted(starts, key=lambda one: self._squares_along(here, one))[:_FOLLOWED]
         first = [self._solve(here, one, here.fit.model, EFFORTS.first_steps) for one in promised]
         placed, rough = min(first, key=lambda one: sum_of_squares(one[1].residual))
-        placed, best = self._solve(here, placed, rough.model, EFFORTS.near)
+        placed, best = self._solve(here, placed, rough.model, EFFORTS.continued)
         errors = standard_errors(best.jacobian, best.residual, self.blocks["fit"])
         stderr = errors[: len(placed)] * self.coordinates(placed).unit
         return self._fit(self._estimate_body(placed, best.model), stderr.tolist())

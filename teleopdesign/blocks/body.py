@@ -284,10 +284,10 @@ def _check_effects(effects: tuple[Effect, ...], axis: str) -> None:
     for effect in effects:
         if missing := _list_missing_parts(effects, effect):
             raise ModelError(f'body: "{effect.name}" needs "{missing[0]}" beside it')
-        if axis in effect.elsewhere:
+        if axis in effect.counterparts:
             raise ModelError(
                 f'body: "{effect.name}" holds on no {axis} axis: there it is '
-                f'"{effect.elsewhere[axis]}"'
+                f'"{effect.counterparts[axis]}"'
             )
 
 

@@ -85,7 +85,7 @@ def candidates(
                 continue
             if model.holder(place) in measured and _acts_before_what_is_measured(effect):
                 continue
-            if body.has(effect.name) or effect.role in roles or body.axis in effect.elsewhere:
+            if body.has(effect.name) or effect.role in roles or body.axis in effect.counterparts:
                 continue
             if body.lacks(effect) or comes_too_early(effect, place, model):
                 continue
@@ -120,15 +120,15 @@ def list_look_alikes(candidate: Candidate, model: Model) -> list[Candidate]:
     """Effects that the model lacks and that look like the candidate, at the same place.
 
     One of the two is the commoner by its file (`Effect.commoner`), or the candidate is what the
-    other one is on another axis (`Effect.elsewhere`), as a constant force is for gravity.
+    other one is on another axis (`Effect.counterparts`), as a constant force is for gravity.
     """
     body, at = model.body(candidate.at), candidate.at
     return [
         Candidate(e, at)
         for e in model.known.values()
-        if (are_alike(candidate.effect, e) or candidate.effect.name in e.elsewhere.values())
+        if (are_alike(candidate.effect, e) or candidate.effect.name in e.counterparts.values())
         and not body.has(e.name)
-        and body.axis not in e.elsewhere
+        and body.axis not in e.counterparts
     ]
 
 

@@ -53,7 +53,7 @@ def with_late_starts(fit: Fit, stated: Model, prepared: Prepared) -> Fit:
         for part in PLAN.late_starts:
             shifts = {**fit.model.record_shift, shift.at: Value(part * shift.latest)}
             rough = rough_fit(start.with_record_shift(shifts), prepared)
-            if fit_squares(rough) < (1.0 - PLAN.elsewhere) * fit_squares(fit):
+            if fit_squares(rough) < (1.0 - PLAN.distinct_minimum) * fit_squares(fit):
                 fit = min((fit, estimate(rough.model, prepared)), key=fit_squares)
     return fit
 
@@ -133,7 +133,7 @@ def _with_dead_time(model: Model, place: str, prepared: Prepared) -> Model | Non
     if dead_times(body) or place in bodies_with_measured_force(prepared.experiment):
         return None
     for effect in model.known.values():
-        if effect.role != "actuation" or body.lacks(effect) or body.axis in effect.elsewhere:
+        if effect.role != "actuation" or body.lacks(effect) or body.axis in effect.counterparts:
             continue
         late = model.with_effect(effect, at=place)
         names = dead_times(late.body(place))

@@ -99,7 +99,7 @@ def _beliefs(rungs: Sequence[Rung], prepared: Prepared) -> dict[tuple[str, str],
         model = _without_effect_of(rung, rungs)
         if model is None or rung.added is None:
             continue
-        without = estimate(model, prepared, effort=EFFORTS.near)
+        without = estimate(model, prepared, effort=EFFORTS.continued)
         beliefs[rung.added.key] = belief(without, last, rung.added.at, prepared)
     return beliefs
 

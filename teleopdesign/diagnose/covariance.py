@@ -59,7 +59,7 @@ def covariance_in_blocks(
     for place in blocks.values():
         if place not in places:
             raise ModelError(f"covariance: {unknown('body', place, places)}")
-    along = replace(estimate(model, prepared, effort=EFFORTS.stay), model=model)
+    along = replace(estimate(model, prepared, effort=EFFORTS.evaluation), model=model)
     matrix = covariance_of(along)
     of_blocks = {
         f"{block}.{model.locate(name)[1]}": k

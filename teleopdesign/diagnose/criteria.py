@@ -72,12 +72,12 @@ class Criteria:
     #: (0.97 x 0.72^2 = 0.5). Of 165 steps on simulated cases and recordings, 0.7 to 0.9 did nearly
     #: the same; with three, documented friction of an industrial joint (0.77) has no name. Lower:
     #: what stands in for something unknown is named; higher: true effects are not
-    believing: float = 2.0
+    belief_power: float = 2.0
     #: weight of an effect beside a commoner one that explains as much. Of public recordings of
     #: revolute axes whose torque follows the place over less than a turn gravity is documented on
     #: eight, a spring or a cable's pull on two: (2 + 1)/(8 + 1). Higher: undecided more often;
     #: lower: a spring is called gravity more surely
-    rarer: float = 0.3
+    rarity_weight: float = 0.3
     #: rms difference of two motions, of the position over that of the motion about its mean and of
     #: the velocity over the velocity, up to which they are one motion that is made again. Passes of
     #: position-controlled machines differ by 0.0006 to 0.04, different parts of one multisine by

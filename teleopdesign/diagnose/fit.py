@@ -168,7 +168,7 @@ def rough_fit(model: Model, prepared: Prepared) -> Fit:
     if coarse is prepared:
         return estimate(model, prepared, effort=EFFORTS.rough)
     there = solve(model, free, coarse, coarse.of("fit"), EFFORTS.rough)
-    return estimate(there.model, prepared, effort=EFFORTS.near)
+    return estimate(there.model, prepared, effort=EFFORTS.continued)
 
 
 def with_errors(solution: Solution, free: tuple[str, ...], blocks: NDArray[np.intp]) -> Model:

@@ -65,7 +65,7 @@ class CandidateEvidence:
         trusted = 1.0
         if self.left > CRITERIA.adequate:
             # more than noise is left: is the form of the effect right?
-            trusted = 0.0 if self.belief is None else self.belief.share**CRITERIA.believing
+            trusted = 0.0 if self.belief is None else self.belief.share**CRITERIA.belief_power
         if self.from_noise:  # a true effect explains nearly all force above the noise
             trusted *= self.explained
         alone = max(CRITERIA.true_of_accepted * real * trusted, 0.0)
@@ -177,7 +177,7 @@ def shares(ranking: Ranking, rung: Rung | None) -> dict[tuple[str, str], float]:
         driven = set(r.fit.at_bound) - bound
         # an accepted effect may have a parameter at its bound, because it was supported with it
         serious = r.counts and r.candidate.key in alike | rarer and (accepted or not driven)
-        weight = CRITERIA.rarer if r.candidate.key in rarer else 1.0
+        weight = CRITERIA.rarity_weight if r.candidate.key in rarer else 1.0
         weights[r.candidate.key] = (
             weight * math.exp(-0.5 * max(r.behind - first, 0.0) ** 2) if serious else 0.0
         )

@@ -210,7 +210,7 @@ def with_reading_error(
     better, moved = fit, np.zeros(len(fit.free), dtype=bool)
     if adequate(fit):
         error, model, shifted = _converge(fit, error, prepared, generator)
-        again = estimate(model, prepared, effort=EFFORTS.stay)
+        again = estimate(model, prepared, effort=EFFORTS.evaluation)
         if adequate(again):
             better, moved = again, shifted
     more = np.hypot(error.spread, np.where(moved, 0.0, error.shift))

@@ -139,7 +139,7 @@ class DiagnosedRecording:
 
         Without check records, the held-out blocks are fitted from these values, as by `estimate`.
         """
-        return replace(estimate(model, self.searched, effort=EFFORTS.stay), model=model)
+        return replace(estimate(model, self.searched, effort=EFFORTS.evaluation), model=model)
 
     def of_joint(self, joint: str, model: Model | None) -> DiagnosedRecording:
         """The recording of one joint of an arm; model: the final model of the joint."""

@@ -109,7 +109,7 @@ def _needs_time(experiment: Experiment) -> tuple[str, ...]:
     names = [
         n
         for n, e in EFFECTS.items()
-        if not (is_static(e) or e.free or e.role in CONTACT_ROLES or axis in e.elsewhere)
+        if not (is_static(e) or e.free or e.role in CONTACT_ROLES or axis in e.counterparts)
     ]
     return (f"not tested, because a friction curve has no time: {', '.join(names)}",)
 

@@ -116,7 +116,9 @@ def estimate_from_starts(
     best = _sort_elements(best, coarse)
     if base is not None and coarse is prepared:
         return fit_of(best, prepared)
-    return estimate(best.model, prepared, effort=EFFORTS.fine if base is None else EFFORTS.near)
+    return estimate(
+        best.model, prepared, effort=EFFORTS.fine if base is None else EFFORTS.continued
+    )
 
 
 def estimate_best_start(
@@ -129,7 +131,7 @@ def estimate_best_start(
     """
     coarse = prepared.coarse
     best = min((follow_start(m, coarse, EFFORTS.rough) for m in models), key=squares_of)
-    return estimate(_jolt(best, new, coarse).model, prepared, effort=EFFORTS.near)
+    return estimate(_local_restart(best, new, coarse).model, prepared, effort=EFFORTS.continued)
 
 
 def is_rugged(effect: Effect) -> bool:
@@ -146,7 +148,7 @@ def _sort_elements(best: Solution, prepared: Prepared) -> Solution:
     if model is best.model:
         return best
     there = follow_start(model, prepared, EFFORTS.rough)
-    return there if squares_of(there) <= (1.0 + PLAN.elsewhere) * squares_of(best) else best
+    return there if squares_of(there) <= (1.0 + PLAN.distinct_minimum) * squares_of(best) else best
 
 
 def with_parameters_of(model: Model, other: Model) -> Model:
@@ -272,7 +274,7 @@ def _best_stepped(
     return [stepped[i].model for i in best]
 
 
-def _jolt(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) -> Solution:
+def _local_restart(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) -> Solution:
     """The best solution nearby, where the sum of squares has many shallow minima.
 
     new: (effect, place) whose parameters are changed by factors, one at a time
@@ -281,11 +283,11 @@ def _jolt(best: Solution, new: Sequence[tuple[str, str]], prepared: Prepared) ->
     names = [n for effect, at in new for n in free if n.startswith(f"{at}.{effect}.")]
     model, least = best.model, squares_of(best)
     before = math.inf
-    while least < (1.0 - PLAN.onward) * before:
+    while least < (1.0 - PLAN.restart_gain) * before:
         before = least
-        for name, factor in product(names, PLAN.jolts):
-            jolted = model.with_values({name: model.parameters[name].value * factor})
-            solution = follow_start(jolted, prepared, EFFORTS.first_steps)
+        for name, factor in product(names, PLAN.restart_factors):
+            moved = model.with_values({name: model.parameters[name].value * factor})
+            solution = follow_start(moved, prepared, EFFORTS.first_steps)
             if squares_of(solution) < least:
                 least, model = squares_of(solution), solution.model
     return best if model is best.model else follow_start(model, prepared, EFFORTS.rough)

@@ -51,9 +51,9 @@ class SearchPlan:
     moved: float = 0.25
     #: factors on each parameter of an effect with rugged squares, from which a better place is
     #: sought
-    jolts: tuple[float, ...] = (0.85, 1.18)
-    #: part of the squares that a sweep of such jolts must take away for another to follow
-    onward: float = 0.1
+    restart_factors: tuple[float, ...] = (0.85, 1.18)
+    #: part of the squares that a sweep of such restarts must take away for another to follow
+    restart_gain: float = 0.1
     #: part of the squares before that the best candidate leaves at least where nothing explains the
     #: records: there a gap is also sought among draws, and effects that are linear in no strength
     #: from the user's values. A lower limit searches more records twice
@@ -80,7 +80,7 @@ class SearchPlan:
     rivals: int = 4
 
     @property
-    def elsewhere(self) -> float:
+    def distinct_minimum(self) -> float:
         """Part of the squares by which two fits must differ to count as two places.
 
         Ten times what a rough fit leaves open.
@@ -154,13 +154,13 @@ class Efforts:
     rough: Effort = Effort(1e-4, 12)
     #: candidates that were followed to the optimum on few samples: what all samples move is less
     #: than that; those that contend are fitted finely afterwards
-    near: Effort = Effort(1e-3, 6)
+    continued: Effort = Effort(1e-3, 6)
     #: readings of a simulated motion: closer than their spread
     again: Effort = Effort(1e-5, 12)
     #: what is reported: far below standard errors
     fine: Effort = Effort(1e-7, 60)
     #: residuals and derivatives alone: the values stay where they are
-    stay: Effort = Effort(1.0, 1)
+    evaluation: Effort = Effort(1.0, 1)
     #: squares of what a body's residual changes by, over the squares themselves and over the
     #: tolerance, up to
     #: which the residual follows its tangents: what they miss is of higher order. More: faster, and

@@ -100,7 +100,7 @@ class Effect:
     always: properties for any values of its parameters, such as "even in velocity"
     commoner: name of the effect that gives nearly the same force where `undetermined` says so, and
         acts on far more machines; "" for none
-    elsewhere: axis where the law does not hold ("prismatic" or "revolute") -> the effect of the
+    counterparts: axis where the law does not hold ("prismatic" or "revolute") -> the effect of the
         same physics there
     led: inertia(p) of a hidden body whose position is corrected; the force of this correction is
         left unexplained as well
@@ -121,7 +121,7 @@ class Effect:
     linear: bool = False
     needs: frozenset[str] = frozenset()
     counts_as: frozenset[str] = frozenset()
-    elsewhere: Mapping[str, str] = field(default_factory=dict)
+    counterparts: Mapping[str, str] = field(default_factory=dict)
     always: frozenset[str] = frozenset()
     commoner: str = ""
     free: bool = False

@@ -42,7 +42,7 @@ EFFECT = Effect(
     role="force",
     energy="stores",
     law=law,
-    elsewhere={"prismatic": "bias"},
+    counterparts={"prismatic": "bias"},
     parameters={
         "amplitude": Parameter("force", "A: torque with the link horizontal", lower=-float("inf")),
         "phase": Parameter(

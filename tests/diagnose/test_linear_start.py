@@ -80,7 +80,7 @@ def test_a_promise_is_what_one_step_leaves(cogged, base):
     promises = Promises(prepared, base)
     for start in (starts[0], starts[-1]):
         free = free_parameters(start)
-        there = solve(start, free, prepared, prepared.of("fit"), EFFORTS.stay)
+        there = solve(start, free, prepared, prepared.of("fit"), EFFORTS.evaluation)
         new = [i for i, name in enumerate(free) if name not in base.free]
         columns = np.hstack([base.jacobian, base.by_shift, there.jacobian[:, new]])
         step = np.linalg.lstsq(columns, -there.residual, rcond=None)[0]

@@ -78,7 +78,7 @@ def typical(name, parameter):
 
 def axis_of(*names):
     """An axis that all of these effects hold on: prismatic where they do."""
-    return next(a for a in AXES if not any(a in KNOWN[n].elsewhere for n in names))
+    return next(a for a in AXES if not any(a in KNOWN[n].counterparts for n in names))
 
 
 def body_of(*names, absent=(), values=(), axis=None):

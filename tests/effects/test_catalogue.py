@@ -92,8 +92,8 @@ def test_what_an_effect_names_exists(name):
     effect = EFFECTS[name]
     assert effect.role in ROLES
     assert effect.needs <= set(KNOWN) - {name}
-    assert set(effect.elsewhere) < set(AXES)
-    assert set(effect.elsewhere.values()) <= set(KNOWN) - {name}
+    assert set(effect.counterparts) < set(AXES)
+    assert set(effect.counterparts.values()) <= set(KNOWN) - {name}
     assert effect.always <= set(CLAIMS), "a claim that no test checks"
     assert effect.absent, "without absent values an effect cannot be added at no change"
     for parameter, value in effect.absent.items():
@@ -181,10 +181,10 @@ def test_the_level_is_never_below_zero(name, data, velocity):
 
 
 @pytest.mark.parametrize(
-    ("name", "axis"), [(n, a) for n in NAMES for a in EFFECTS[n].elsewhere], ids=str
+    ("name", "axis"), [(n, a) for n in NAMES for a in EFFECTS[n].counterparts], ids=str
 )
 def test_an_effect_on_an_axis_that_it_does_not_hold_on_is_refused_with_what_to_write(name, axis):
-    other = EFFECTS[name].elsewhere[axis]
+    other = EFFECTS[name].counterparts[axis]
     with pytest.raises(
         ModelError, match=f'"{name}" holds on no {axis} axis: there it is "{other}"'
     ):

@@ -173,7 +173,7 @@ def factors(force, position, time):
 @pytest.mark.parametrize("name", NAMES)
 def test_an_effect_gives_the_same_answer_in_other_units(name, force, position, time):
     """Every parameter has the quantity that its law needs: the residual scales like a force."""
-    if EFFECTS[name].elsewhere:
+    if EFFECTS[name].counterparts:
         position = 1.0  # an angle has no other unit
     if name == "shear_thinning":
         position = time  # a force at the unit of speed, whatever that is

@@ -206,8 +206,8 @@ def _excluded_effects(diagnosis: Diagnosis) -> list[Finding]:
     for place in model.places:
         body = model.body(place)
         for name, effect in model.known.items():
-            elsewhere = (place in model.bodies) == (effect.role in CONTACT_ROLES)
-            if elsewhere or body.has(name) or (name, place) in fitted:
+            of_another_kind = (place in model.bodies) == (effect.role in CONTACT_ROLES)
+            if of_another_kind or body.has(name) or (name, place) in fitted:
                 continue
             needs = list(body.lacks(effect))
             because = f" (needs {join_names(needs)} beside it)" if needs else ""
