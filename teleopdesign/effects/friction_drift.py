@@ -1,6 +1,6 @@
 """Friction drift: the level changes slowly as the device warms up.
 
-    level = F_C (1 - d (1 - exp(-t / tau))),   t from the start of each record, which starts cold
+    level = F_C (1 - d (1 - exp(-t / tau))),   t from the first row of each log, which starts cold
 
 Causes are grease and seals. Only F_C drifts. Records shorter than tau show no more than a trend.
 """

@@ -34,7 +34,8 @@ class Record(ByValue):
 
     offset_names: those of "position_zero", "bias" and "friction_level" in which this record may
         differ from the others
-    time: s, shape (n,), uniform within each segment with step `sample_time` (s)
+    time: s from the first row of the log, shape (n,), uniform within each segment with step
+        `sample_time` (s)
     segments: stretches without interruption; hidden states start anew at each
     signals: "device.position", "master.actuator_force" ... -> shape (n,), SI, signs of the format
     reading: corrections of the log, each with its effect; empty: the log is used unchanged
@@ -138,7 +139,8 @@ def cut_to(
         name: column if name in columns.stamps else column[inside]
         for name, column in columns.values.items()
     }
-    return LogColumns(values, columns.stamps, columns.notes)
+    begin = float(np.nanmin(since[inside]))
+    return LogColumns(values, columns.stamps, columns.notes, begin)
 
 
 def record_of(columns: LogColumns, name: str, entry: RecordEntry, layout: LogLayout) -> Record:
@@ -153,7 +155,7 @@ def record_of(columns: LogColumns, name: str, entry: RecordEntry, layout: LogLay
         entry.file,
         entry.use,
         entry.offset_names,
-        clock.time,
+        clock.time - clock.time[0] + columns.begin,
         clock.sample_time,
         clock.segments,
         signals,

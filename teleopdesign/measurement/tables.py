@@ -60,12 +60,13 @@ class LogColumns:
     """Columns of one log as numbers, NaN where a cell holds none.
 
     values: column -> (n,);  stamps: column with a separate clock -> its stamps (n,), s
-    notes: remarks on the file
+    notes: remarks on the file;  begin: s from the first row of the log to that of these columns
     """
 
     values: Mapping[str, Array]
     stamps: Mapping[str, Array] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    begin: float = 0.0
 
     def steps(self, file: str) -> tuple[ReadingStep, ...]:
         """Remarks on the file, as steps of reading."""

@@ -96,6 +96,16 @@ def test_spans_are_records_and_all_rows_are_one_where_there_are_none():
     made(inertia=1.0, fit=[(0, 5), (4, 8)], check=(8, 12))
 
 
+@pytest.mark.parametrize("stamps", [T, T + 1000.0, T + 1.7e9, None], ids=str)
+def test_a_record_counts_its_time_from_the_first_row_of_its_log(stamps):
+    """A warm-up begins there, whatever the clock shows and whichever span is read."""
+    data = {"x": X, "u": FORCE} | ({} if stamps is None else {"t": stamps})
+    rate = {"sample_rate": 200.0} if stamps is None else {}
+    records = made(data, inertia=1.0, fit=(0, 5), check=(12, 20), **rate).records
+    assert [r.time[0] for r in records] == pytest.approx([0.0, 12.0], abs=1e-5)
+    assert [r.time[-1] for r in records] == pytest.approx([4.995, 19.995], abs=1e-5)
+
+
 @pytest.mark.parametrize(
     ("spans", "message"),
     [
