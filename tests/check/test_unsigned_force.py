@@ -50,6 +50,21 @@ def test_a_force_that_is_kept_from_zero_by_a_load_has_its_sign(load):
     assert not ask("unsigned_force", log(force))
 
 
+@pytest.mark.parametrize(
+    "push",
+    [
+        PUSH,
+        PUSH + 0.4 * np.gradient(SPEED, T),
+        PUSH + 2.0 * (X - X.mean()),
+        2.0 * SPEED + 0.1 * PUSH,
+    ],
+    ids=["friction", "inertia", "spring", "damping"],
+)
+def test_the_size_of_any_force_that_takes_both_signs_is_no_force(push):
+    """Its sign follows from the model itself: near its zeros the size has a corner."""
+    assert ask("unsigned_force", log(np.abs(push + NOISE)))[0].stops
+
+
 def test_a_force_beside_a_second_one_or_with_both_signs_has_its_sign():
     size = 0.1 + np.abs(PUSH) + np.abs(NOISE)
     assert ask("unsigned_force", log(size))[0].stops
