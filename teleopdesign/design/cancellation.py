@@ -72,7 +72,8 @@ def acting_gain(body: Body, reach: Reach, *, errors: float) -> float:
 
     raises ModelError: no bound is known for an effect of the actuation
     """
-    command = 1e-3 * reach.command  # a small one: saturation only takes from it
+    # a small one: saturation only takes from it; any, where the motor was off
+    command = 1e-3 * (reach.command or 1.0)
     gain = largest_acting_force(body, command, reach, errors=errors) / command
     if not math.isfinite(gain):
         raise ModelError("design: no bound is known of the force that the actuation makes")

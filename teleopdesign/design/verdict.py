@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import sympy as sp
 
-from ..base.errors import ModelError
+from ..base.errors import GrowsWithoutBound, ModelError
 from ..base.sentences import join_names, round_down, round_near, round_up
 from ..base.units import unit_of
 from ..blocks import Body, Value
@@ -27,6 +27,7 @@ from ..frequency.frozen_friction import without_friction
 from ..passivity import (
     Claim,
     Evidence,
+    Unknown,
     any_environment,
     bounded_compensation,
     dahl_compensation,
@@ -221,12 +222,14 @@ def motions_around(motion: StatedMotion, reach: Reach) -> Iterator[StatedMotion]
                 yield one
 
 
-def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> CycleEnergy:
-    """Energy that the hand puts in over a steady cycle, from a simulation."""
+def energy_taken(diagram: Diagram, motion: StatedMotion, sampling: Sampling) -> CycleEnergy | None:
+    """Energy that the hand puts in over a steady cycle, from a simulation; None: it has no step."""
     try:
         cycle = steady_cycle(diagram, motion, sampling)
-    except ModelError:
+    except GrowsWithoutBound:
         return CycleEnergy(motion, float("-inf"))
+    except ModelError:
+        return None
     power = cycle["E"].values * cycle[f"{led_motion(diagram, 'L')}_velocity"].values
     return CycleEnergy(motion, float(np.mean(power) / motion.frequency))
 
@@ -235,22 +238,30 @@ def energy_claim(
     diagram: Diagram, motion: StatedMotion, reach: Reach, sampling: Sampling, *, axis: str
 ) -> Claim:
     """Evidence, not proof, on whether the device takes energy along every simulated motion."""
-    trials = [energy_taken(diagram, m, sampling) for m in motions_around(motion, reach)]
+    tested = [energy_taken(diagram, m, sampling) for m in motions_around(motion, reach)]
+    trials = [t for t in tested if t is not None]
+    statement = "the device takes energy from the hand"
+    if not trials:
+        return Claim(statement, Unknown("no step of a simulation resolves any of the motions"))
     supplying = [t for t in trials if t.energy < 0]
     # where it releases energy, the slowest such motion says from where on
     shown = min(supplying, key=lambda t: t.motion.frequency) if supplying else _least_energy(trials)
     size, unit = shown.motion.amplitude, unit_of("position", axis)
     frequencies = [t.motion.frequency for t in trials]
     words = "releases energy along" if supplying else "takes least along"
+    if np.isinf(shown.energy):
+        words = "lets signals grow beyond all bounds along"
     searched = (
         f"{len(trials)} sinusoids, {min(frequencies):.3g} to {max(frequencies):.3g} Hz, simulated "
         f"with sampling, delay and encoder; it {words} {size:.3g} {unit} at "
         f"{shown.motion.frequency:.3g} Hz"
     )
-    if supplying:
+    if len(supplying) > 1:
         searched += f" and {len(supplying) - 1} more"
-    statement = "the device takes energy from the hand"
-    return Claim(statement, Evidence(not supplying, searched, shown.energy, "J a cycle"))
+    if len(trials) < len(tested):
+        searched += f"; no step resolves {len(tested) - len(trials)} more"
+    margin = shown.energy if np.isfinite(shown.energy) else float("nan")
+    return Claim(statement, Evidence(not supplying, searched, margin, "J a cycle"))
 
 
 def _least_energy(trials: list[CycleEnergy]) -> CycleEnergy:

@@ -20,6 +20,7 @@ from ..figures.diagnosis import (
     draw_over_time,
     force_axes,
     label_of,
+    share_scale,
 )
 from ..figures.friction_curve import draw_friction_curve
 from ..figures.style import AFTER, BEFORE, MEASURED, TWO_COLUMNS
@@ -80,12 +81,11 @@ def _plot_change(before: Comparison, after: Comparison) -> Figure:
     force_axes(axes["f"], rows[0])
     axes["t"].set(xlabel=label_of(rows[0], "time"), ylabel=label_of(rows[0], "residual"))
     axes["t"].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
-    ends = [axes[name].get_ylim() for name in "ba"]
+    share_scale(axes["b"], axes["a"])
     direction_legend(axes["b"])
     for one, name in ((before, "b"), (after, "a")):
         errors = {"check error": one.check_error, "fit error": one.fit_error}
         word, error = next((w, e) for w, e in errors.items() if e == e)
-        axes[name].set_ylim(min(e[0] for e in ends), max(e[1] for e in ends))
         axes[name].set_title(f"{word} {100 * error:.2f} %", loc="left", fontsize=7, pad=3)
     return figure
 

@@ -101,6 +101,13 @@ def direction_legend(ax: Axes) -> None:
     )
 
 
+def share_scale(*panels: Axes) -> None:
+    """One vertical scale for panels, on which all of their points are seen."""
+    low, high = zip(*(ax.get_ylim() for ax in panels), strict=True)
+    for ax in panels:
+        ax.set_ylim(min(low), max(high))
+
+
 def force_axes(ax: Axes, data: Any) -> None:
     """Labels and legend of a panel with measured and modelled force over time."""
     force = label_of(data, "measured").replace("measured", "force")
@@ -182,7 +189,7 @@ def _plot_friction_curve(diagnosis: Diagnosis) -> Figure:
         ax.set_ylabel(label_of(data, "residual").replace("residual", f"residual {word}"))
         for points in ax.lines:
             points.set_markersize(3.0)
-    axes["v1"].set_ylim(axes["v0"].get_ylim())
+    share_scale(axes["v0"], axes["v1"])
     draw_ladder(axes["ladder"], diagnosis, of="the measured force")
     return figure
 
@@ -253,7 +260,7 @@ def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None
         axes[first].set_ylabel(label_of(before, "residual").replace("residual", "residual before"))
         if changed:
             draw_by_direction(axes[second], after, over)
-            axes[second].set_ylim(axes[first].get_ylim())
+            share_scale(axes[first], axes[second])
             left = label_of(after, "residual").replace("residual", "residual after")
             axes[second].set_ylabel(left)
         else:
