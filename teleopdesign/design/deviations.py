@@ -215,20 +215,21 @@ def _apart(
 def _lateness_of_log(on: SecondRecording, blocks: NDArray[np.intp]) -> float:
     """Whether the command was logged as computed (0) or as applied (the delay), s.
 
-    The force says when the command acts. Where that is too little to see, the command decides,
-    which another filter makes late as well.
+    The command decides where one of the two is as designed and the other is not. Else the force
+    says when the command acts, and where that is too little to see, the nearer command counts.
     """
     recorded = [on.low(i, s.motion.command) for i, s in enumerate(on.stretches)]
+    same, ends = _SAME * _rms(np.concatenate(recorded)), (0.0, on.sampling.delay)
+    missed = {late: _rms(np.concatenate(_apart(on, recorded, {}, late))) for late in ends}
+    nearer = min(missed, key=lambda late: missed[late])
+    if missed[nearer] <= same < max(missed.values()):
+        return nearer
     written = [s.motion.command for s in on.stretches]
-    delay = on.sampling.delay
-    now, later = (np.concatenate(on.left_by(written, late=late)) for late in (0.0, delay))
-    if (
-        abs(gain_score(now, later, blocks) - gain_score(later, now, blocks))
-        >= CRITERIA.significance
-    ):
-        return 0.0 if _rms(later) < _rms(now) else delay
-    ends = (0.0, delay)
-    return min(ends, key=lambda late: _rms(np.concatenate(_apart(on, recorded, {}, late))))
+    now, later = (np.concatenate(on.left_by(written, late=late)) for late in ends)
+    apart = abs(gain_score(now, later, blocks) - gain_score(later, now, blocks))
+    if apart >= CRITERIA.significance:
+        return 0.0 if _rms(later) < _rms(now) else on.sampling.delay
+    return nearer
 
 
 def _force_delay(on: SecondRecording) -> Key:

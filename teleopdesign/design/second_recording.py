@@ -16,7 +16,7 @@ from ..block_cuts.computer import ComputerPart, Passes
 from ..block_cuts.cuts import COMPUTER, Cut
 from ..block_cuts.diagram_experiment import StatedComputer
 from ..blocks import Body
-from ..controllers import Controller
+from ..controllers import Controller, controller
 from ..diagrams import Diagram, Moving
 from ..effects import Parameter
 from ..measurement.experiment import Experiment
@@ -143,14 +143,11 @@ class SecondRecording:
         return [self.low(i, s.motion.interaction) for i, s in enumerate(self.stretches)]
 
 
-def _with_changes(controller: Controller, new: Mapping[str, float]) -> Controller:
+def _with_changes(changed: Controller, new: Mapping[str, float]) -> Controller:
     """The controller with other numbers, and all that it commands times a gain."""
-    gain = new.get(GAIN, 1.0)
-    values = controller.names() | {n: v for n, v in new.items() if n != GAIN}
-    for stage in controller.stages:
-        for n in (n for n, p in stage.law.parameters.items() if force_like(p)):
-            values[f"{stage.name}.{n}"] *= gain
-    return controller.with_values(values)
+    values = {n: v for n, v in new.items() if n != GAIN}
+    changed = changed.with_values(changed.names() | values)
+    return changed.then(controller("gain", {"gain": new[GAIN]})) if GAIN in new else changed
 
 
 def _rows(diagram: Diagram, experiment: Experiment, place: str, motion: Motion) -> Passes:
