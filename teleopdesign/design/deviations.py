@@ -24,11 +24,22 @@ from ..diagnose.evidence import gain_score
 from ..diagnose.fit import block_numbers, standard_errors
 from ..effects import Parameter
 from ..measurement.filtering import Array
-from .second_recording import DELAY, FILTER, GAIN, SHAPE, Key, SecondRecording, force_like
+from .second_recording import (
+    DELAY,
+    FILTER,
+    GAIN,
+    SENSOR,
+    SHAPE,
+    Key,
+    SecondRecording,
+    force_like,
+)
 
 #: most numbers that are named: more than three at once were never told apart
 _MOST = 3
 ZERO = "zero"
+#: least scale of a force sensor that a fit tries: a tenth is another unit
+_LEAST_SCALE = 0.05
 #: part of a command by which another is the same: what a reader sees as the same figure
 _SAME = 0.02
 #: parts of the shortest period, or of the travel, at which a fit of a zero starts
@@ -173,7 +184,7 @@ def deviations_of(
     """
     blocks = block_numbers(on.stretches)
     if on.has_command:
-        logged = _lateness_of_log(on, blocks)
+        logged = _lateness_of_log(on, blocks, enough)
         recorded = [on.low(i, s.motion.command) for i, s in enumerate(on.stretches)]
         size = _rms(np.concatenate(recorded))
 
@@ -191,10 +202,11 @@ def deviations_of(
         commands = [s.motion.command for s in on.stretches] if on.has_command else None
         if commands is None:
             late, commands = values.get(_force_delay(on), 0.0), on.commands(values)
-        parts = on.left_by(commands, body, late=late)
+        scale = values.get(SENSOR, 1.0)
+        parts = on.left_by(commands, body, late=late, scale=scale)
         if without is not None:
             off = [s.motion.command for s in without.stretches]
-            parts += without.left_by(off, body, late=on.sampling.delay)
+            parts += without.left_by(off, body, late=on.sampling.delay, scale=scale)
         return np.concatenate(parts)
 
     if without is not None:
@@ -212,24 +224,24 @@ def _apart(
     return [z - on.low(i, u) for i, (z, u) in enumerate(zip(recorded, made, strict=True))]
 
 
-def _lateness_of_log(on: SecondRecording, blocks: NDArray[np.intp]) -> float:
+def _lateness_of_log(on: SecondRecording, blocks: NDArray[np.intp], enough: float) -> float:
     """Whether the command was logged as computed (0) or as applied (the delay), s.
 
-    The command decides where one of the two is as designed and the other is not. Else the force
-    says when the command acts, and where that is too little to see, the nearer command counts.
+    The force says when the command acts. Where it leaves more than enough, something else differs,
+    which may move this moment: then the command decides if one of the two is as designed. Where
+    the force is too little to see, the nearer command counts.
     """
     recorded = [on.low(i, s.motion.command) for i, s in enumerate(on.stretches)]
     same, ends = _SAME * _rms(np.concatenate(recorded)), (0.0, on.sampling.delay)
     missed = {late: _rms(np.concatenate(_apart(on, recorded, {}, late))) for late in ends}
     nearer = min(missed, key=lambda late: missed[late])
-    if missed[nearer] <= same < max(missed.values()):
-        return nearer
     written = [s.motion.command for s in on.stretches]
     now, later = (np.concatenate(on.left_by(written, late=late)) for late in ends)
     apart = abs(gain_score(now, later, blocks) - gain_score(later, now, blocks))
-    if apart >= CRITERIA.significance:
-        return 0.0 if _rms(later) < _rms(now) else on.sampling.delay
-    return nearer
+    is_designed = missed[nearer] <= same < max(missed.values())
+    if apart < CRITERIA.significance or (is_designed and min(_rms(now), _rms(later)) > enough):
+        return nearer
+    return 0.0 if _rms(later) < _rms(now) else on.sampling.delay
 
 
 def _force_delay(on: SecondRecording) -> Key:
@@ -262,8 +274,8 @@ def _of_computer(on: SecondRecording) -> tuple[_Number, ...]:
 
 
 def _of_device(on: SecondRecording) -> tuple[_Number, ...]:
-    """Strengths of the device, and a delay of the force."""
-    numbers = []
+    """Strengths of the device, a delay of the force, and the scale of the hand's force sensor."""
+    numbers = [_Number(SENSOR, 1.0, (1.0,), 1.0, _LEAST_SCALE, "")]
     for name, known in on.body.parameters.items():
         declared = on.body.parameter(name)
         if declared.quantity not in SHAPE and known.value:

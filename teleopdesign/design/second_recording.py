@@ -31,6 +31,8 @@ Key = tuple[str, str]
 DELAY, FILTER = (COMPUTER, "delay"), (COMPUTER, "velocity_bandwidth")
 #: name of a factor of all that a controller commands
 GAIN = "gain"
+#: scale of the sensor of the hand's force
+SENSOR = ("force sensor", "scale")
 
 
 #: quantities of parameters that give a law its shape; all others are strengths
@@ -126,15 +128,22 @@ class SecondRecording:
         return stretch.motion.lowpassed(samples)[stretch.keep]
 
     def left_by(
-        self, commands: list[Array], body: Body | None = None, *, late: float = 0.0
+        self,
+        commands: list[Array],
+        body: Body | None = None,
+        *,
+        late: float = 0.0,
+        scale: float = 1.0,
     ) -> list[Array]:
         """Force that body and command leave unexplained, low-passed, on the samples that count.
 
-        late: s from the rows of the commands to the force
+        late: s from the rows of the commands to the force;  scale: of the sensor of the hand
         """
         made = []
         for i, command in enumerate(commands):
-            motion = replace(self.stretches[i].motion, command=command, command_late=-late)
+            motion = self.stretches[i].motion
+            hand = motion.interaction / scale
+            motion = replace(motion, command=command, command_late=-late, interaction=hand)
             made.append(self.low(i, residual_along(body or self.body, motion).residual.value))
         return made
 

@@ -25,6 +25,8 @@ FAULTS = {
     "filter": ("computer: velocity_bandwidth",),
     "zero": ("C: cancel.zero",),
     "friction": ("Z_M: coulomb.level",),
+    "sign": ("C: gain",),
+    "sensor": ("force sensor: scale",),
 }
 WAYS = ("command", "no command", "no command, off too")
 
@@ -75,6 +77,9 @@ def planted(fault, numbers, effects, random):
         laws["zero"] = random.uniform(0.1, 0.25) * random.choice([-1, 1])
     elif fault == "friction":
         effects["coulomb"]["level"] *= random.choice([0.6, 1.4])
+    elif fault == "sign":
+        forces = ("level", "amplitude")
+        laws |= {n: -v for n, v in laws.items() if n.rpartition(".")[2] in forces}
     return Compensation({"cancel": laws}, {}, bandwidth, late), effects
 
 
@@ -97,10 +102,15 @@ def named(fault, number, way):
     inertia, effects, random = draw(number)
     plan, numbers = plan_for(inertia, effects)
     computer, changed = planted(fault, numbers, effects, random)
-    on = experiment(record(inertia, changed, computer, SECONDS, random), command=way == "command")
+    columns = record(inertia, changed, computer, SECONDS, random)
+    if fault == "sensor":
+        columns["hand"] = 0.85 * columns["hand"]
+    on = experiment(columns, command=way == "command")
     off = None
     if way == WAYS[2]:
-        off = experiment(record_without(inertia, changed, SECONDS, random))
+        columns = record_without(inertia, changed, SECONDS, random)
+        columns["hand"] = columns["hand"] * (0.85 if fault == "sensor" else 1.0)
+        off = experiment(columns)
     return verify(plan, on, without=off)
 
 

@@ -8,7 +8,7 @@ from design.faults_campaign import FAULTS, WAYS, experiment, is_right, named
 import teleopdesign as td
 from teleopdesign.design.second_recording import SecondRecording
 
-QUICK = ("none", "level")
+QUICK = ("none", "level", "sign")
 EACH = [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in FAULTS]
 
 
