@@ -180,9 +180,11 @@ def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Arr
     """
     from scipy.signal import detrend
 
-    x = np.concatenate([record.signals[name][s] for s in record.segments])
-    n = min(len(x), 4096)
-    windows = np.lib.stride_tricks.sliding_window_view(x, n)[:: max(1, n // 2)]
+    n = min(_usual_length(record), 4096)
+    # no window crosses the seam of two segments: the jump there is no motion
+    parts = [record.signals[name][s] for s in record.segments if s.stop - s.start >= n]
+    views = (np.lib.stride_tricks.sliding_window_view(x, n)[:: max(1, n // 2)] for x in parts)
+    windows = np.concatenate([*views])
     varying = detrend(windows, type="linear" if even_out else "constant")
     spectra = np.fft.rfft(varying * np.hanning(n))
     density: Array = np.mean(np.abs(spectra) ** 2, 0).astype(np.float64)
@@ -190,3 +192,9 @@ def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Arr
     rate = record.rate_of(name)
     noise = density[(frequency > PROPOSED * rate) & (2 * frequency <= rate)]
     return frequency, density, float(np.median(noise))
+
+
+def _usual_length(record: Record) -> int:
+    """The length (rows) that the segments with half of all rows have at least."""
+    lengths = np.sort([s.stop - s.start for s in record.segments])[::-1]
+    return int(lengths[np.searchsorted(np.cumsum(lengths), HALF * lengths.sum())])

@@ -7,6 +7,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
+from teleopdesign.measurement.bandwidth import default_bandwidth
 
 H = 0.005
 T = H * np.arange(4000)
@@ -183,3 +184,14 @@ def test_up_to_a_fifth_of_the_rows_may_lack_a_number(empty, is_read):
         ExperimentError, match=r"no number in 20% of the rows, expected at most 20%"
     ):
         made(data, inertia=1.0)
+
+
+def test_rows_lost_in_a_log_leave_its_bandwidth():
+    """The jump of the position across the gap is no motion."""
+    t = 1e-3 * np.arange(20_000)
+    x = 5e-6 * np.round((0.1 * np.sin(4 * t) + 0.05 * np.sin(12 * t + 1.0)) / 5e-6)
+    data = {"t": t, "x": x, "u": np.sin(4 * t)}
+    kept = (t < 6.0) | (t >= 6.5)
+    cut = {name: column[kept] for name, column in data.items()}
+    whole, parted = (default_bandwidth(made(one, inertia=1.0)) for one in (data, cut))
+    assert parted == pytest.approx(whole, rel=0.2)
