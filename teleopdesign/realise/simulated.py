@@ -87,6 +87,22 @@ def _bristle(of_any_level: bool) -> Effect:
     return replace(bristle, needs=frozenset()) if of_any_level else bristle
 
 
+@lru_cache(maxsize=2)
+def _rigid_bristle(of_any_level: bool) -> Effect:
+    """The undamped bristle of ideal friction: a step may carry it beyond its level, not its force.
+
+    A bristle that turns within one step may end far beyond; in the next step it returns.
+    """
+    plain = _bristle(of_any_level).without("bristle_damping")
+
+    def law(now: Any, p: Any) -> sp.Expr:
+        # not evaluated: sympy would compare the two at length, and cannot decide
+        force = sp.Min(plain.law(now, p), now.level, evaluate=False)
+        return sp.Max(-now.level, force, evaluate=False)
+
+    return replace(plain, law=law)
+
+
 def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> Body:
     """Ideal Coulomb friction realised by a bristle that deflects by `deflection` before it slides.
 
@@ -105,15 +121,15 @@ def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -
         body = with_least_level(body)
     if unloaded < STEADY * level:
         damping_ratio = min(damping_ratio, UNDAMPED)
-    lugre = _bristle(bool(body.lacks(EFFECTS["presliding"])))
+    of_any_level = bool(body.lacks(EFFECTS["presliding"]))
     if (law := _level_in_motion(body.effects)) is not None:
         # where the level is small, the bristle would be far too soft elsewhere
         level = max(level, float(np.nanmax(law(*_ALONG, *body.numbers().values()))))
     stiffness = level / deflection
     if not damping_ratio:
-        return body.with_effect(lugre.without("bristle_damping"), {"stiffness": stiffness})
+        return body.with_effect(_rigid_bristle(of_any_level), {"stiffness": stiffness})
     damping = 2.0 * damping_ratio * (stiffness * body.parameters["inertia"].value) ** 0.5
-    return body.with_effect(lugre, {"stiffness": stiffness, "bristle_damping": damping})
+    return body.with_effect(_bristle(of_any_level), {"stiffness": stiffness, "bristle_damping": damping})
 
 
 def with_least_level(body: Body) -> Body:

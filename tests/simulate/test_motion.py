@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import teleopdesign as td
 from teleopdesign.simulate import sampled_motion, sine
 
 
@@ -41,3 +42,15 @@ def test_a_motion_through_samples_of_a_polynomial_of_fifth_order_is_that_polynom
     inside = np.linspace(0.05, 0.95, 30)
     assert motion.velocity(inside) == pytest.approx(5 * inside**4 - 2 * inside, abs=1e-9)
     assert motion.acceleration(inside) == pytest.approx(20 * inside**3 - 2, abs=1e-8)
+
+
+@pytest.mark.parametrize("give", [1e-5, 1e-7, 1.4e-9])
+def test_ideal_friction_stays_within_its_level_however_short_its_bristle(give):
+    """A bristle that turns within one step ends far beyond its length; its force does not."""
+    device = td.hand(mass=0.2, damping=1.0, stiffness=0.0)
+    device = device.with_effect(td.EFFECTS["coulomb"], values={"level": 0.3})
+    motion = sine(amplitude=1.4e-3, frequency=45.2)
+    run = td.simulate_diagram(
+        td.haptic_interface(device), duration=0.1, motion={"L": motion}, give=give, every_step=True
+    )
+    assert abs(run["Z_M_friction"].values).max() <= 0.3 * (1 + 1e-9)
