@@ -106,17 +106,27 @@ def cancellation_claims(
     actuation = [e.name for e in body.effects if e.role == "actuation"]
     open_ones = effects_left_open(body, reach, errors=errors)
     left = {name: why for name, why in open_ones.items() if name not in actuation}
-    if not chosen.controller.stages[0].law.bound:  # the least level stands for every other one
-        least = round_down(friction.lowest.low, digits=4)
-        part = _decimal(round_up(fraction * least, digits=6))
-        claim = bounded_compensation(coulomb_level=_decimal(least), bound=part)
-        words = f"at the least level, and in proportion at every other, {claim.statement}"
-        claims = [replace(claim, statement=words)]
+    if not chosen.controller.stages[0].law.bound:
+        claims = [_claim_of_all_levels(friction, fraction)]
     else:
         claims = _friction_claims(
             body, chosen, friction, reach, gain=gain, late=late, errors=errors
         )
     return [extend_to_device(c, over=friction.over, left=left) for c in claims]
+
+
+def _claim_of_all_levels(friction: FrictionInterval, fraction: float) -> Claim:
+    """Claim on a cancellation that follows the level: its readings are late, and filtered.
+
+    What it commands belongs to another moment, so the claim is for any level at any moment.
+    """
+    least = round_down(friction.lowest.low, digits=4)
+    most = round_up(fraction * friction.highest.high, digits=6)
+    claim = bounded_compensation(coulomb_level=_decimal(least), bound=_decimal(most))
+    if claim.status == "proved":
+        return claim
+    why = "it follows a level, and a late or filtered reading may carry it above the friction then"
+    return replace(claim, verdict=Unknown(why))
 
 
 def _friction_claims(

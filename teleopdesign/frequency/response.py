@@ -279,7 +279,7 @@ def ratio_unit(diagram: Diagram, output: str, source: str) -> str:
 
     units = signal_units(diagram)
     above, below = units(output), units(source)
-    return "1" if above == below else f"{above}/{below}"
+    return "1" if above == below else f"{above}/({below})" if "*" in below else f"{above}/{below}"
 
 
 def cases_of(diagrams: Diagram | Mapping[str, Diagram]) -> dict[str, Diagram]:

@@ -129,7 +129,9 @@ def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -
     if not damping_ratio:
         return body.with_effect(_rigid_bristle(of_any_level), {"stiffness": stiffness})
     damping = 2.0 * damping_ratio * (stiffness * body.parameters["inertia"].value) ** 0.5
-    return body.with_effect(_bristle(of_any_level), {"stiffness": stiffness, "bristle_damping": damping})
+    return body.with_effect(
+        _bristle(of_any_level), {"stiffness": stiffness, "bristle_damping": damping}
+    )
 
 
 def with_least_level(body: Body) -> Body:

@@ -27,9 +27,10 @@ def simulation_text(simulation: Simulation) -> str:
     """Duration and scheme, and a line with the rms of each signal."""
     lines = [f"{_title(simulation)}, {simulation.data.attrs['scheme']}"]
     for name, x in simulation.data.items():
-        error = x.attrs.get("step_error")
-        of_step = "" if error is None else f"  error of the step {error:.1e} of the largest"
-        lines.append(f"  {name:<28} rms {_rms(x):<10.4g} {x.attrs['units']:<6}{of_step}".rstrip())
+        known = {"step": x.attrs.get("step_error"), "give": x.attrs.get("give_error")}
+        errors = [f"{of} {error:.1e}" for of, error in known.items() if error is not None]
+        shown = f"  error over the largest: {', '.join(errors)}" if errors else ""
+        lines.append(f"  {name:<28} rms {_rms(x):<10.4g} {x.attrs['units']:<6}{shown}".rstrip())
     return "\n".join(lines)
 
 

@@ -61,7 +61,7 @@ def test_a_sine_from_outside_and_continuous_controllers_act(capsys):
     assert main(["simulate", NAME, "--duration", "0.1", "--continuous",
                  "--input", "R_V", "2N", "5Hz", "--error"]) == 0  # fmt: skip
     lines = capsys.readouterr().out.splitlines()
-    assert all("error of the step" in line for line in lines[1:])
+    assert all("error over the largest: step" in line for line in lines[1:])
     assert float(lines[1].split()[2]) > 0.0  # the device moves
 
 
