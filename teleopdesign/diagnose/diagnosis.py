@@ -23,6 +23,7 @@ from ..realise.friction_cells import FrictionCell
 from .adequacy import VerdictName, floors_left, is_adequate, verdict
 from .candidates import Candidate
 from .covariance import covariance_in_blocks
+from .criteria import CRITERIA
 from .learnable import Learnable, NearReversals
 from .model_data import model_of_body
 from .no_named_law import FreeForm
@@ -219,6 +220,19 @@ class Diagnosis(Shown, ByValue):
             for r in self.rungs
             if r.added is not None and r.alternatives
         )
+
+    @property
+    def either(self) -> tuple[LadderRow, ...]:
+        """Rows that are not named, but whose effect or one of its look-alikes is likely missing."""
+        chances = {c.candidate.key: c.probability for c in self.candidates}
+
+        def together(row: LadderRow) -> float:
+            assert row.added is not None
+            alike = (row.added, *(one.candidate for one in row.alternatives))
+            return sum(chances.get(one.key, 0.0) for one in alike)
+
+        open_rows = (r for r in self.rungs if r.alternatives and r.added not in self.missing)
+        return tuple(r for r in open_rows if together(r) >= CRITERIA.named)
 
     @property
     def more_is_missing(self) -> bool:

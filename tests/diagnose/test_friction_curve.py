@@ -61,6 +61,22 @@ def test_constant_force_and_coulomb_asymmetry_stay_one_group():
     assert {c.effect.name for c in group} == {"bias", "coulomb_asymmetry"}
 
 
+def test_a_pair_that_no_point_tells_apart_is_missing_beside_a_named_effect():
+    """Each has half of the probability, the pair nearly all of it."""
+    v = np.r_[np.linspace(-0.2, -0.005, 20), np.linspace(0.005, 0.2, 20)]
+    force = np.sign(v) * (0.5 + 0.2 * np.exp(-((v / 0.03) ** 2))) + 1.5 * v + 0.1
+    force += 0.005 * np.random.default_rng(0).standard_normal(len(v))
+    diagnosis = td.find_missing(td.friction_curve(v, force, axis="prismatic"))
+    assert [c.effect.name for c in diagnosis.missing] == ["stribeck"]
+    (row,) = diagnosis.either
+    assert {row.added.effect.name, row.alternatives[0].candidate.effect.name} == {
+        "bias",
+        "coulomb_asymmetry",
+    }
+    assert "is missing: these records do not decide which" in str(diagnosis)
+    assert "less likely than not" not in str(diagnosis)
+
+
 def test_damping_that_differs_by_direction_is_named():
     diagnosis = td.find_missing(drawn(5, lambda v: 0.4 + 0.25 * v, more=lambda v: 0.05 * abs(v)))
     (one,) = diagnosis.missing

@@ -255,19 +255,24 @@ def _why_unlikely(diagnosis: Diagnosis) -> str:
 def _named_effects(diagnosis: Diagnosis) -> str:
     """The effects that are missing, and those that are less likely than not, as a sentence."""
     added = [r for r in diagnosis.rungs if r.added is not None]
-    names = ", ".join(
-        " or ".join((r.title, *(str(one.candidate) for one in r.alternatives)))
-        for r in added
-        if r.added in diagnosis.missing
+    names = ", ".join(_with_look_alikes(r) for r in added if r.added in diagnosis.missing)
+    either = "".join(
+        f" Also {_with_look_alikes(r)} is missing: these records do not decide which."
+        for r in diagnosis.either
     )
-    less = [r.title for r in added if r.added not in diagnosis.missing]
+    rest = [r for r in added if r.added not in diagnosis.missing and r not in diagnosis.either]
+    less = [r.title for r in rest]
     if not less:
-        return f"{names}."
+        return f"{names}.{either}"
     describe = "this effect describes" if len(less) == 1 else "these effects describe"
     return (
-        f"{names}. {', '.join(less)}: less likely than not; the force that {describe} counts as "
-        "unexplained."
+        f"{names}.{either} {', '.join(less)}: less likely than not; the force that {describe} "
+        "counts as unexplained."
     )
+
+
+def _with_look_alikes(row: LadderRow) -> str:
+    return " or ".join((row.title, *(str(one.candidate) for one in row.alternatives)))
 
 
 def _rest(diagnosis: Diagnosis) -> str:

@@ -64,11 +64,18 @@ def verdict(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.verdict == "effects_missing":
         named = [step_name(r) for r in diagnosis.rungs if r.added in diagnosis.missing]
-        less = [step_name(r) for r in diagnosis.rungs[1:] if r.added not in diagnosis.missing]
+        either = "".join(
+            f" Also {' or '.join(map(str, group))} is missing: these records do not decide which."
+            for group in diagnosis.groups
+            if any(group[0] == r.added for r in diagnosis.either)
+        )
+        rest_of = (r for r in diagnosis.rungs[1:] if r.added not in diagnosis.missing)
+        less = [step_name(r) for r in rest_of if r not in diagnosis.either]
         helps = "helps, but is" if len(less) == 1 else "help, but each is"
         others = f" {join_names(less)} {helps} less likely than not." if less else ""
         added_words = "this effect" if len(added) == 1 else "all added effects"
-        return f"Your model lacks {join_names(named)}. With {added_words}, {fell}.{others} {rest}"
+        lacks = f"Your model lacks {join_names(named)}."
+        return f"{lacks} With {added_words}, {fell}.{either}{others} {rest}"
     if diagnosis.silence:
         return f"Undecided. {diagnosis.silence}"
     if not added:
