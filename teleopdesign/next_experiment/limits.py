@@ -89,8 +89,16 @@ def _limits_of_records(stretches: Sequence[Stretch]) -> Limits:
         speed=_largest([s.motion.velocity[_inner_rows(s)] for s in stretches]),
         acceleration=_largest(accelerations),
         jerk=_largest(jerks),
-        force=max(float(np.abs(s.motion.command).max()) for s in stretches),
+        force=_largest_force(stretches),
     )
+
+
+def _largest_force(stretches: Sequence[Stretch]) -> float:
+    """The largest command; where the motor was off, the largest force of the hand."""
+    commands, hands = (
+        [getattr(s.motion, f) for s in stretches] for f in ("command", "interaction")
+    )
+    return max(float(np.abs(x).max()) for x in (commands if any(map(np.any, commands)) else hands))
 
 
 def _inner_rows(stretch: Stretch) -> slice:
