@@ -15,7 +15,9 @@ import numpy as np
 from ..base.finding import Concern, Finding
 from ..blocks import Body
 from ..check import CheckedRecording
+from ..effects import EFFECTS
 from ..measurement.filtering import Array
+from ..measurement.limits import HALF
 from ..measurement.logger_clock import CLOCK
 from ..measurement.prepare import Stretch
 from ._force_balance import Estimate, ForceBalance, force_balance
@@ -57,6 +59,8 @@ def check_lateness(recording: CheckedRecording, balance: ForceBalance) -> Iterat
         return
     is_alone = f"{balance.body}.interaction_force" not in prepared.experiment.channels
     concern, remedy = _remedy(late, labels, balance, stretches, is_alone=is_alone)
+    if concern == "warning" and _is_of_friction(model.body(balance.body), stretches, late):
+        concern, remedy = "note", "friction that the model lacks looks the same: no delay for it"
     parts = [
         f"{labels[n]} {'lags' if t > 0 else 'leads'} "
         f"{'the forces' if n == 'position' else 'the motion'} by {1e3 * abs(t):.2g} ms "
@@ -112,6 +116,19 @@ def _remedy(
     if seconds < 0.0:  # a cause before its effect: physics does that too
         return "note", "the actuator is late, or the position is logged late"
     return "warning", f"{write}{', or leave it to a diagnosis' * (seconds <= CLOCK.latest)}"
+
+
+def _is_of_friction(body: Body, stretches: Sequence[Stretch], late: Mapping[str, float]) -> bool:
+    """Whether a lag is gone, or another one, beside friction of any form over the speed.
+
+    late: channel -> s
+    """
+    top = max(float(np.abs(s.motion.velocity).max()) for s in stretches)
+    free = EFFECTS["free_friction"]
+    nothing = dict.fromkeys(free.parameters, 0.0)
+    beside = force_balance(body.with_effect(free, {**nothing, "upper": top}), stretches)
+    shifts = {} if beside is None else beside.shifts
+    return any(n not in shifts or abs(shifts[n].value - t) > HALF * abs(t) for n, t in late.items())
 
 
 def _drift(

@@ -195,11 +195,11 @@ def is_size(force: Array, position: Array, sample_time: float) -> bool:
     if min(each) < SMALL * sum(each):
         return False
     place = (place - place.mean()) / max(float(np.ptp(place)), np.finfo(float).tiny)
-    columns, load = np.vstack([motion, place, place**2]), np.vstack([place, place**2])
+    columns = np.vstack([motion, place, place**2])
     _, _, signed = least_squares(columns, target, sample_time)
     sign, least = np.sign(motion[1]), signed
     for _ in range(_SIGN_ROUNDS):
-        rows = np.vstack([sign * columns, np.ones_like(sign), load])
+        rows = np.vstack([sign * columns, np.ones_like(sign)])
         solution, _, left = least_squares(rows, target, sample_time)
         least, before = min(least, left), sign
         sign = np.sign(solution[: len(columns)] @ columns)

@@ -46,3 +46,19 @@ def test_a_sign_that_seems_wrong_may_be_that_of_a_hand():
     (sign,) = [f for f in findings_on(x, -force) if f.topic == "signs"]
     assert "has the opposite sign" in sign.sentence
     assert "A hand that moves the device and is not logged looks the same" in sign.sentence
+
+
+def test_friction_that_the_model_lacks_is_no_delay_of_a_log():
+    """A Stribeck peak after each reversal looks like a position that lags the forces."""
+    t = 1e-3 * np.arange(8000)
+    x = 0.02 * np.sin(1.5 * t) + 0.01 * np.sin(4.5 * t + 1.0) + 0.003 * np.sin(18.0 * t)
+    v = np.gradient(x, t)
+    level = 0.5 + 0.5 * np.exp(-((v / 0.02) ** 2))
+    force = 0.2 * np.gradient(v, t) + level * np.tanh(v / 1e-3) + v
+    table = {"t": t, "x": np.round(x / 5e-6) * 5e-6, "u": force, "f": 0.01 * np.sin(7.0 * t)}
+    channels = {"position": {"column": "x", "unit": "m"}, "actuator_force": "u"}
+    experiment = td.experiment(
+        table, axis="prismatic", inertia=0.2, interaction_force="f", **channels
+    )
+    shifts = [f for f in check_experiment(experiment) if f.topic == "time shift"]
+    assert all(shift.concern == "note" for shift in shifts)
