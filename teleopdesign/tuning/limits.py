@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -18,12 +18,15 @@ from ..base.arguments import check_types
 from ..base.errors import ModelError, UnstableLoop, did_you_mean
 from ..base.frozen import ByValue
 from ..base.shown import Shown
+from ..controllers import Controller
+from ..controllers import controller as make_controller
 from ..diagrams import Diagram
 from ..frequency import delay_margin, gain_margin, loop_gain, phase_margin
 from ..passivity.intervals.box import ValueBox
 from ..passivity.intervals.linear import CLAIMS, margin_over
 from ..passivity.intervals.over_box import claim_over_intervals
 from ..passivity.ports import drop_absent_effects, nonlinear_parts, without_holders
+from ..simulate import Sampling
 from ..studies.chosen_measures import Measure, measures_of
 from ..studies.measures import MEASURES
 
@@ -75,7 +78,8 @@ def limit(
         "delay margin" (s), "gain margin" (factor up or down), "phase margin" (degrees); a measure
     least, most: lower or upper bound, one of them, in the unit of the margin or measure
     over: intervals of values, for all of which the limit must hold
-    controller: name of the controller whose loop has the margin
+    controller: name of the controller whose loop has the margin; where a computer samples it, each
+        hold counts as a dead time of half a period
     raises ModelError: no measure of that name, no bound or two
     """
     names = (*CLAIMS, *LOOP_MARGINS)
@@ -100,28 +104,46 @@ def limit_of(content: Any) -> TuningLimit:
     return content if isinstance(content, TuningLimit) else limit(content)
 
 
-def loop_margin(diagram: Diagram, name: str, controller: str) -> float:
-    """Margin of a controller's loop; -inf: the loop is unstable, inf: nothing limits the margin."""
+def loop_margin(
+    diagram: Diagram, name: str, at: str, computer: Sampling | Literal["continuous"]
+) -> float:
+    """Margin of a controller's loop; -inf: the loop is unstable, inf: nothing limits the margin.
+
+    at: name of the controller;  computer: that samples it. It holds its command, and where the law
+        has states its reading too: each counts as a dead time of half a period
+    """
+    part = next((c for c in diagram.controls if c.name == at), None)
+    law = None if part is None or part.analog else part.controller
+    if isinstance(computer, Sampling) and isinstance(law, Controller):
+        if not any(stage.law.in_z for stage in law.stages):
+            holds = 1 + any(stage.law.states for stage in law.stages)
+            late = computer.delay + 0.5 * holds * computer.period
+            diagram = diagram.with_block(at, law.then(make_controller("delay", {"time": late})))
     margin = {
         "delay margin": delay_margin,
         "phase margin": phase_margin,
         "gain margin": gain_margin,
     }[name]
     try:
-        return margin(loop_gain(diagram, controller=controller))
+        return margin(loop_gain(diagram, controller=at))
     except UnstableLoop:
         return -np.inf
 
 
 def margin_function(
-    limited: TuningLimit, diagram: Diagram, box: ValueBox
+    limited: TuningLimit,
+    diagram: Diagram,
+    box: ValueBox,
+    computer: Sampling | Literal["continuous"],
 ) -> Callable[[dict[str, float]], float]:
     """The margin of a claim or a loop as a function of the diagram's values, made once per search.
 
     box: of all values that vary; for a linear diagram the margin is compiled over this box
+    computer: of the controllers, as in `loop_margin`
     """
     if limited.name in LOOP_MARGINS:
-        return lambda v: loop_margin(diagram.with_values(v), limited.name, limited.controller)
+        name, at = limited.name, limited.controller
+        return lambda v: loop_margin(diagram.with_values(v), name, at, computer)
     whole = diagram if limited.name == "stable" else without_holders(diagram)
     kept = tuple(n for n in box.names if n in whole.values)
     if not nonlinear_parts(drop_absent_effects(whole)):

@@ -268,7 +268,8 @@ class Problem:
             return None
         diagram, every = self.case.diagram, self.parameters.intervals
         both = {n: ends for n, ends in every.items() if n in diagram.values}
-        return margin_function(one, diagram, ValueBox.of(both | dict(one.over)))
+        box = ValueBox.of(both | dict(one.over))
+        return margin_function(one, diagram, box, self.case.computer)
 
 
 def start_values(case: SimulatedCase, box: ValueBox) -> np.ndarray:

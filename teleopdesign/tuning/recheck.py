@@ -67,7 +67,8 @@ def _check(problem: Problem, trial: TrialPoint, k: int) -> CheckedLimit:
     def margin(point: np.ndarray) -> float:
         values = box.named(point)
         if one.name in LOOP_MARGINS and one.measure is None:
-            return loop_margin(diagram.with_values(values), one.name, one.controller)
+            here, computer = diagram.with_values(values), problem.case.computer
+            return loop_margin(here, one.name, one.controller, computer)
         return one.excess(problem.measured_at(trial.values, values, one))
 
     worst = search_worst(margin, box, points=_POINTS if one.over else 0, seed=0, downhill=False)

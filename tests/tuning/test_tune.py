@@ -205,3 +205,23 @@ def test_a_limit_on_a_claim_without_a_margin_says_so():
         assert passive.holds is held
         if np.isnan(passive.value):
             assert "checked numerically" not in passive.how
+
+
+def test_a_loop_with_margins_is_stable_in_its_computer():
+    """Force feedback behind a low-pass: in continuous time no gain of it is too large."""
+    device = td.hand(mass=0.15, damping=4.0, stiffness=0.0)
+    feedback = td.controller("low_pass", {"bandwidth": 50.0})
+    feedback = feedback.then(td.controller("gain", {"gain": 1.0}))
+    hand = td.hand(mass=1.0, damping=1.0, stiffness=50.0)
+    tuned = td.tune(
+        td.haptic_interface(device, force_feedback=feedback, hand=hand),
+        {"H.gain.gain": (0.5, 20.0)},
+        "force_error",
+        duration=0.3,
+        inputs={"R_D": 0.0, "R_V": lambda t: np.sin(12 * t)},
+        evaluations=10,
+        subject_to=[td.limit("gain margin", least=2.0)],
+    )
+    assert 1.0 < tuned.values["H.gain.gain"] < 6.0
+    run = td.simulate_diagram(tuned.diagram, duration=1.0, inputs={"R_V": 0.01})
+    assert abs(run["R_A"].values).max() < 0.1
