@@ -9,8 +9,15 @@ import numpy as np
 from ..base.finding import Concern, Finding
 from ..base.units import unit_of
 from ..measurement.experiment import Experiment
-from ..measurement.friction_curve import CHANNELS, CURVE, noise_of_points, speed_numbers
+from ..measurement.friction_curve import (
+    CHANNELS,
+    CURVE,
+    count_speeds,
+    noise_of_points,
+    speed_numbers,
+)
 from ._recording import CheckedRecording, RecordingCheck
+from .hidden_motion import FOR_EACH
 
 #: points in each direction below which its curve is hardly known: as many as a level, a damping and
 #: the three numbers of a Stribeck curve need
@@ -37,8 +44,23 @@ def find_in_points(recording: CheckedRecording) -> Iterator[Finding]:
             {"power": float(np.mean(velocity * force))},
             stops=True,
         )
+    yield from _about_count(recording, velocity)
     yield from _about_directions(velocity)
     yield from _about_scatter(experiment, velocity, force)
+
+
+def _about_count(recording: CheckedRecording, velocity: np.ndarray) -> Iterator[Finding]:
+    if recording.model is None:
+        return
+    values = recording.model.parameters.items()
+    free = sum(not (n.endswith(".inertia") or v.fixed) for n, v in values)
+    speeds, least = count_speeds([velocity]), int(FOR_EACH * (free + 1))
+    if speeds < least:
+        sentence = (
+            f"{speeds} different speeds tell no effect beside the {free} parameters of the model, "
+            f"which follow them whatever they are: measure at {least} speeds or more."
+        )
+        yield Finding("points", "warning", sentence, {"speeds": float(speeds)}, stops=True)
 
 
 def _about_directions(velocity: np.ndarray) -> Iterator[Finding]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -11,6 +12,7 @@ import sympy as sp
 
 from ..base.errors import ExperimentError
 from ..blocks.body import ONE_ONLY
+from ..check.hidden_motion import FOR_EACH
 from ..effects import (
     CONTACT_ROLES,
     SIGNALS,
@@ -101,9 +103,10 @@ def comes_too_early(effect: Effect, at: str, model: Model) -> bool:
     return any(n in model.known and not model.body(at).has(n) for n in effect.after)
 
 
-def restrict_to_curve(model: Model) -> Model:
+def restrict_to_curve(model: Model, speeds: float = math.inf) -> Model:
     """The model to which only friction of the speed and a constant force may be added.
 
+    speeds: number of different speeds, which limits the parameters that may be added
     raises ExperimentError: the model has another effect, which needs a time
     """
     for place, body in model.bodies.items():
@@ -113,7 +116,15 @@ def restrict_to_curve(model: Model) -> Model:
                     f"model.{place}.effects: {effect.name} needs a time, which a friction curve "
                     "has not: expected friction of the speed, and bias"
                 )
-    return replace(model, known={n: e for n, e in model.known.items() if is_static(e)})
+    fitting = (e for e in model.known.values() if is_static(e) and fits_speeds(e, model, speeds))
+    return replace(model, known={e.name: e for e in fitting})
+
+
+def fits_speeds(effect: Effect, model: Model, speeds: float) -> bool:
+    """Whether so many different speeds are `FOR_EACH` times the parameters with an effect's."""
+    values = (v for n, v in model.parameters.items() if not n.endswith(".inertia"))
+    new = sum(not p.optional for p in effect.parameters.values())
+    return FOR_EACH * (sum(not v.fixed for v in values) + new) <= speeds
 
 
 def list_look_alikes(candidate: Candidate, model: Model) -> list[Candidate]:

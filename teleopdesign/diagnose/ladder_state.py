@@ -10,6 +10,7 @@ import numpy as np
 from ..check import why_silent
 from ..effects import depends_on_time, find_effect
 from ..measurement.experiment import Experiment
+from ..measurement.friction_curve import count_speeds
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .adequacy import is_noise, limit_noise_floor
@@ -165,7 +166,7 @@ def search_for(
     experiment = whole.experiment
     stated = model or Model.from_experiment(experiment)
     if whole.is_curve:
-        stated = restrict_to_curve(stated)
+        stated = restrict_to_curve(stated, count_speeds(s.motion.velocity for s in whole.stretches))
     if why_silent(whole, stated):
         stated = restrict_candidates((), stated)
     return LadderSearch(

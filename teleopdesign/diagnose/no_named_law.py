@@ -13,9 +13,10 @@ from typing import Annotated
 from ..base.codec import INLINE, Error
 from ..base.frozen import ByValue
 from ..effects import EFFECTS, depends_on_position
+from ..measurement.friction_curve import count_speeds
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .candidates import Candidate, is_static, tells_place_from_time
+from .candidates import Candidate, fits_speeds, is_static, tells_place_from_time
 from .decision import is_better
 from .fit import Fit
 from .noise_floor import NoiseFloor
@@ -74,8 +75,10 @@ def _curves(model: Model, prepared: Prepared) -> list[Candidate]:
         for effect in EFFECTS.values():
             if not effect.free or body.has(effect.name):
                 continue
-            if prepared.is_curve and not is_static(effect):
-                continue
+            if prepared.is_curve:
+                speeds = count_speeds(motion.velocity for motion in motions)
+                if not (is_static(effect) and fits_speeds(effect, model, speeds)):
+                    continue
             of_place = depends_on_position(effect)
             if of_place and not tells_place_from_time(motions, separate_zeros=separate):
                 continue

@@ -10,7 +10,7 @@ rows that is held out has speeds of the whole range; readings of one speed stay 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -113,6 +113,11 @@ def speed_numbers(velocity: Array) -> NDArray[np.intp]:
             number, first = number + 1, velocity[row]
         numbers[row] = number
     return numbers
+
+
+def count_speeds(velocities: Iterable[Array]) -> int:
+    """Number of different speeds among the points of some records."""
+    return int(speed_numbers(np.concatenate([*velocities])).max()) + 1
 
 
 def curve_motion(record: Record, body: str) -> Motion:

@@ -202,3 +202,16 @@ def test_new_reads_a_table_of_speeds_and_torques(tmp_path, monkeypatch):
     assert curve.is_curve and curve.axis("device") == "revolute"
     assert np.abs(curve.records[0].signals["device.velocity"]).max() == pytest.approx(10.47, 1e-3)
     assert "kind" in curve.guesses
+
+
+@pytest.mark.parametrize("points", [4, 5, 7, 9])
+def test_few_speeds_name_no_effect_beside_the_parameters_that_follow_them(points):
+    """Coulomb and viscous friction are all that is there; a law through all points says nothing."""
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        one_way = np.geomspace(0.003, 0.3, points - points // 2)
+        v = np.r_[-one_way[: points // 2][::-1], one_way]
+        force = 0.5 * np.sign(v) + 2.0 * v + 0.005 * rng.standard_normal(points)
+        diagnosis = td.find_missing(td.friction_curve(v, force, axis="prismatic"))
+        assert not diagnosis.missing and diagnosis.no_named_law is None
+        assert (points < 6) == ("measure at 6 speeds or more" in diagnosis.silence)
