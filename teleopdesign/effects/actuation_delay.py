@@ -13,6 +13,13 @@ def law(now, p):
     return delayed(now.command, p.delay)
 
 
+def undetermined(p, facts):
+    return (
+        f"a position that is logged {1e3 * p.delay:.3g} ms later than the forces looks the same: "
+        "check the clocks of the log"
+    )
+
+
 EFFECT = Effect(
     role="actuation",
     energy="supplies",
@@ -27,5 +34,6 @@ EFFECT = Effect(
         )
     },
     absent={"delay": 0.0},
+    undetermined=undetermined,
     source="dead time in the sense of any control text",
 )

@@ -14,6 +14,13 @@ def law(now, p):
     return p.gain * now.command
 
 
+def undetermined(p, facts):
+    return (
+        f"a sensor that reads {p.gain:.3g} of the hand's force looks the same, unless the inertia "
+        "is known: calibrate one of the two forces"
+    )
+
+
 EFFECT = Effect(
     role="actuation",
     energy="supplies",
@@ -25,5 +32,6 @@ EFFECT = Effect(
         )
     },
     absent={"gain": 1.0},
+    undetermined=undetermined,
     source="torque constant of a motor",
 )
