@@ -63,6 +63,8 @@ def forces_on(diagram: Diagram, cut: Cut) -> ForcesOnBody:
     # signal = w force + others, force = sign Z motion
     junction = next((j for j in diagram.junctions if j.output == cut.signal), None)
     weights = {block.force: 1.0} if junction is None else dict(junction.terms)
+    if block.force not in weights:
+        raise ModelError(f"{cut.name}: {cut.signal} is no sum with its force, {block.force}")
     weight = float(weights.pop(block.force)) * block.sign
     others = tuple((s, -float(w) / weight) for s, w in weights.items() if s in cut.inputs)
     return ForcesOnBody(block.motion, (cut.signal, 1.0 / weight), others, True)
