@@ -107,6 +107,7 @@ def fit_simulation(
     initial: Mapping[str, float] | None = None,
     computer: Sampling | Literal["continuous"] = SAMPLED,
     step: float = 1e-4,
+    give: float = 1e-5,
     starts: int = 15,
     seed: int = 0,
 ) -> SimulationFit:
@@ -121,7 +122,8 @@ def fit_simulation(
     noise: signal -> standard deviation (SI) for its weight; default: the residual of the fit
     inputs, motion: as in `simulate`, or the name of a column of the data. A motion is
         differentiated twice without a low-pass: with steps of an encoder, `td.fit` is better
-    initial, computer, step: as in `simulate`; a `SimulatedCase` keeps all its settings except the
+    initial, computer, step, give: as in `simulate`; ideal friction that gives by much of the noise
+        of a position moves the other values. A `SimulatedCase` keeps all its settings except the
         duration: up to the last whole sample of the computer within the data
     starts: number of points, besides the diagram's values, from which searches may begin
     returns: standard errors are valid for measurement errors that are correlated over at most 0.25
@@ -131,7 +133,7 @@ def fit_simulation(
         rows so far apart that their time is hardly in s
     """
     measured = measured_signals(data)
-    settings = {"initial": initial, "computer": computer, "step": step}
+    settings = {"initial": initial, "computer": computer, "step": step, "give": give}
     case = _case(diagram, measured, inputs or {}, motion or {}, settings)
     box = box_of_parameters(parameters)
     names = dict(signals) if signals is not None else _namesakes(case, measured)
