@@ -71,7 +71,8 @@ class DiagnosedRecording:
         if self.folder is None:
             raise ExperimentError(
                 f"{self.file}: does not say where its records are: give the folder of its "
-                f"experiment, and --answer {self.file}"
+                f"experiment, and --answer {self.file}; one of arrays in Python: "
+                "load_answer(FILE, experiment=...)"
             )
         place = Path(self.file).parent / self.folder
         if not place.is_dir():
