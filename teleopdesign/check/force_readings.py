@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..base.finding import Finding
+from ..base.sentences import percent
 from ..measurement.encoder import is_most, is_on_grid
 from ..measurement.hum import STRONG, hum_of
 from ..measurement.limits import NEARLY_ALL
@@ -81,7 +82,7 @@ def check_hum(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
     share = hum.rms / float(signal.values[rows].std())
     words = (
         f" has a tone of {hum.mains:g} Hz, {hum.rms:.3g} {signal.unit} rms "
-        f"({100 * share:.2g} % of the channel), that no position shows: hum of the mains? A "
+        f"({percent(share, '.2g')} of the channel), that no position shows: hum of the mains? A "
         "diagnosis takes it off; shield the wire, or compare below that frequency."
     )
     numbers = {"frequency": hum.mains, "rms": hum.rms}

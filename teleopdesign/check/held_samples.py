@@ -11,6 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..base.finding import Finding
+from ..base.sentences import percent
 from ..measurement.encoder import CHANGES, CHANGES_OF_FORCE, update_period
 from ..measurement.repeated_rows import repeats
 from ._recording import CheckedRecording, RecordingCheck, Signal
@@ -42,8 +43,8 @@ def check_repeats(signal: Signal) -> Iterator[Finding]:
     yield signal.finding(
         "held samples",
         "warning" if part > MANY else "note",
-        f": {len(odd)} samples ({100 * part:.2g} % of those in motion) repeat the sample before "
-        "although the body moves: the log is not in step with the sensor.",
+        f": {len(odd)} samples ({percent(part, '.2g')} of those in motion) repeat the sample "
+        "before although the body moves: the log is not in step with the sensor.",
         {"count": float(len(odd)), "part": part, "time": signal.time(row)},
         signal.around(row, odd, name="repeats the one before", span=30),
     )

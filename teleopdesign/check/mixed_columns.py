@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..base.finding import Finding
+from ..base.sentences import percent
 from ..measurement.first_guess import explain_force
 from ._recording import CheckedRecording, RecordingCheck
 
@@ -40,8 +41,8 @@ def find_mixed_columns(recording: CheckedRecording) -> Iterator[Finding]:
             columns = [experiment.channels[key].column for key in keys]
             sentence = (
                 f"the columns of {names[0]} and {names[1]} seem swapped: motion explains "
-                f"{100 * max(as_logged, 0.0):.2g} % of the force, {100 * exchanged:.2g} % the "
-                f'other way round; write column = "{columns[1]}" at channels.{names[0]} and '
+                f"{percent(max(as_logged, 0.0), '.2g')} of the force, {percent(exchanged, '.2g')} "
+                f'the other way round; write column = "{columns[1]}" at channels.{names[0]} and '
                 f'column = "{columns[0]}" at channels.{names[1]}.'
             )
             numbers = {"as_given": as_logged, "swapped": exchanged}

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..base.finding import Finding
+from ..base.sentences import percent
 from ..measurement.encoder import reading_step, sampling_jitter
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Stretch
@@ -83,7 +84,7 @@ def _check_scatter(signal: Signal) -> Iterator[Finding]:
     off = jitter * float(np.sqrt(np.mean((np.diff(longest) / h) ** 2)))
     words = (
         " scatters the more the faster it moves, as if its samples were taken "
-        f"{1e3 * jitter:.2g} ms rms early or late ({100 * jitter / h:.2g} % of a sample), "
+        f"{1e3 * jitter:.2g} ms rms early or late ({percent(jitter / h, '.2g')} of a sample), "
         f"{off:.2g} {signal.unit} at its usual speed: compare at low frequency."
     )
     numbers = {"jitter": jitter, "part": jitter / h, "position": off}

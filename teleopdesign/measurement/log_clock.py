@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError, quote
+from ..base.sentences import percent
 from .channel import Channel, LogLayout
 from .encoder import Array
 from .limits import HALF
@@ -72,7 +73,7 @@ def clock_of_log(
         (between, f"that say nothing new: {FASTER}", one_each),
     ):
         if count := int(np.count_nonzero(left_out)):
-            part = f"{100 * count / len(filled):.2g} % of the rows"
+            part = f"{percent(count / len(filled), '.2g')} of the rows"
             steps.append(ReadingStep(file, f"{count_of(count, 'row')} {text}", rule, part))
     steps += [ReadingStep(file, *words) for words in clock.remarks]
     return replace(clock, stamped=stamped), columns, steps + more_steps

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.sentences import percent
 from ..base.units import si_factor
 from .encoder import SURELY, Array
 from .limits import HALF
@@ -172,7 +173,7 @@ def read_at_stamps(
     else:
         slope, error = stamps_are_true(clock, positions)
         numbers |= {"jitter": clock.jitter, "followed": slope}
-        text = f"stamps {float(f'{100 * clock.jitter / h:.2g}'):g} % of a row off an even clock"
+        text = f"stamps {percent(clock.jitter / h, '.2g')} of a row off an even clock"
         share = f"({slope:.2f} +- {error:.1g} of what they say)"
         stamped = slope > HALF and math.isfinite(error)
         rule = f"the position was read at its stamps {share}: {rule}"
@@ -241,4 +242,4 @@ def effect_of_even_stamps(clock: RecordClock, positions: Sequence[Array]) -> str
     ]
     if not speeds:
         return "none"
-    return f"read as even, positions would err by {100 * max(speeds):.2g} % of the travel"
+    return f"read as even, positions would err by {percent(max(speeds), '.2g')} of the travel"
