@@ -292,3 +292,8 @@ def guess_from(records: Sequence[Record], body: str) -> FirstGuess:
         total = force if other is None else force + other
         pairs += [(total[s], record.signals[f"{body}.position"][s]) for s in record.segments]
     return explain_forces(pairs, records[0].sample_time)
+
+
+def is_first_guess(records: Sequence[Record], body: str, inertia: float) -> bool:
+    """Whether an inertia (SI) of a model is the start that these records themselves give."""
+    return float(f"{guess_from(records, body).start_of_inertia:.3g}") == inertia

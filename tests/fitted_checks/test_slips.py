@@ -69,7 +69,7 @@ def joint(factor):
     units = {"t": "s", "q": "rad", "u": "N*m"}
     experiment = td.experiment(columns, axis="revolute", units=units, **names)
     model = Model.from_experiment(experiment)
-    known = {"device.inertia": 0.02, "device.coulomb.level": 0.3, "device.viscous.damping": 0.001}
+    known = {"device.inertia": 0.0202, "device.coulomb.level": 0.3, "device.viscous.damping": 0.001}
     return model.with_values(known), prepare(experiment)
 
 
@@ -80,6 +80,12 @@ def test_a_position_in_turns_that_is_given_as_radians_is_named():
     )
     (right,) = disagreements(*joint(1.0))
     assert right.concern == "fine" and "signs and units agree" in right.sentence
+
+
+def test_units_do_not_agree_with_an_inertia_of_the_same_records():
+    _, prepared = joint(1.0)
+    (finding,) = disagreements(Model.from_experiment(prepared.experiment), prepared)
+    assert "signs agree" in finding.sentence and "signs and units" not in finding.sentence
 
 
 @pytest.mark.parametrize("times", [0.2, 3.0])
