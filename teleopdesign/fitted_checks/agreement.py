@@ -193,7 +193,7 @@ def _agreement(recording: CheckedRecording, balance: ForceBalance) -> Finding:
         if stated.fixed or not is_first_guess(records, balance.body, stated.value):
             text = f"signs and units agree: {text}, the model states {stated.value:.3g} {unit}"
         else:
-            text = f"signs agree: {text}; of units, a known one (fixed = true) would tell"
+            text = f"signs agree: {text}; units show only beside a known one (fixed = true)"
     if balance.other:
         gain = with_standard_error(balance.gain.value, balance.gain.error)
         text += f"; {balance.other} balances the other forces with a factor of {gain}"

@@ -99,6 +99,7 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
         {"file": name, "use": record.use, **dict.fromkeys(sorted(record.offset_names), "own")}
         for record, name in zip(experiment.records, names, strict=True)
     )
+    lines += guesses_text(experiment.guesses)
     return "\n".join(lines) + "\n"
 
 
@@ -126,6 +127,12 @@ def records_text(records: Iterable[Mapping[str, Any]]) -> list[str]:
         for record in records
         for line in ("[[records]]", *(f"{k} = {toml_text(v)}" for k, v in record.items()))
     ]
+
+
+def guesses_text(guesses: Mapping[str, str]) -> list[str]:
+    """Lines of the table [guessed]; none without a guess."""
+    lines = [f"{string_text(key)} = {string_text(why)}" for key, why in guesses.items()]
+    return ["", "[guessed]", *lines] if lines else []
 
 
 def _value(value: ModelValue) -> str:

@@ -173,3 +173,26 @@ def test_up_to_a_fifth_of_the_rows_may_lack_a_number(empty, is_read):
         ExperimentError, match=r"no number in 20% of the rows, expected at most 20%"
     ):
         made(data, inertia=1.0)
+
+
+def test_units_that_nothing_states_are_guesses_also_in_a_saved_folder(tmp_path):
+    data = {"t": T, "x": X, "force_N": FORCE}
+    names = {"position": "x", "actuator_force": "force_N"}
+    experiment = td.experiment(data, axis="prismatic", inertia=1.0, **names)
+    assert set(experiment.guesses) == {"channels.time.unit", "channels.position.unit"}
+    loaded = td.load_experiment(experiment.save(tmp_path / "saved"))
+    assert loaded.guesses == experiment.guesses
+    stated = td.experiment(data, axis="prismatic", inertia=1.0, units={"t": "s", "x": "m"}, **names)
+    assert not stated.guesses
+
+
+def test_a_force_in_kg_is_answered_with_the_unit_of_a_weight():
+    data, names = {"t": T, "x": X, "load (kg)": FORCE}, {"position": "x"}
+    with pytest.raises(ExperimentError, match="kgf"):
+        td.experiment(data, axis="prismatic", actuator_force="load (kg)", inertia=1.0, **names)
+    units = {"load (kg)": "kgf"}
+    experiment = td.experiment(
+        data, axis="prismatic", actuator_force="load (kg)", units=units, inertia=1.0, **names
+    )
+    force = experiment.records[0].signals["device.actuator_force"]
+    assert force == pytest.approx(9.80665 * FORCE)

@@ -31,6 +31,8 @@ from .time_role import (
 
 #: rows that are looked at
 MOST = 60_000
+#: units in which load cells are read, and those of the weight that acts
+WEIGHTS = {"kg": "kgf"}
 
 
 def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, str], Log]:
@@ -177,9 +179,10 @@ def interpolate_columns(
             continue
         column_unit = choices.units.get(name) or log.units.get(name)
         column_unit = column_unit or unit_in_log(name, log.names)
+        column_unit = WEIGHTS.get(column_unit or "", column_unit)
         # the counter of a position wraps, which is the same as a sign
-        is_counter = likeness(name, "position") >= SURE_NAME and not is_wanted(name)
-        code = None if is_counter else sign_code_of(x[fine])
+        is_position = likeness(name, "position") >= SURE_NAME and not is_wanted(name)
+        code = None if is_position else sign_code_of(x[fine])
         readings = x[fine] if code is None else code.decode(x[fine])
         grid = np.interp(clock.time, at[fine], readings)
         columns[name] = SurveyedColumn(name, grid, readings, column_unit, code)
