@@ -17,6 +17,7 @@ from ..numbers_in_cells import holds_dates, numbers_of
 from ..record_clock import clock_of
 from ..repeated_rows import rows_between_readings
 from ..signed_numbers import sign_code_of
+from ..spikes import lost_zeros
 from ..stamps import seconds_since_first, unit_in_place_of, unit_of_steps
 from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, reasons, rises, unit_in_log
 from .remarks import sample_rate_in
@@ -182,6 +183,7 @@ def interpolate_columns(
         column_unit = WEIGHTS.get(column_unit or "", column_unit)
         # the counter of a position wraps, which is the same as a sign
         is_position = likeness(name, "position") >= SURE_NAME and not is_wanted(name)
+        fine &= ~lost_zeros(x) if is_position else True
         code = None if is_position else sign_code_of(x[fine])
         readings = x[fine] if code is None else code.decode(x[fine])
         grid = np.interp(clock.time, at[fine], readings)
