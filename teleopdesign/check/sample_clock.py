@@ -18,11 +18,10 @@ from ..measurement.encoder import reading_step, sampling_jitter
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Stretch
 from ..measurement.record import Record
-from ..measurement.stamps import FASTEST
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
-#: Hz: lowest plausible rate of a log
-SLOWEST = 5.0
+#: Hz: lowest plausible rate of a log, and highest: a scope may have 1 MHz
+SLOWEST, FASTEST = 5.0, 1.001e6
 #: part of a sample time that readings may be early or late and still count as in time
 IN_TIME = 0.02
 #: part of the squares of a measured acceleration from which jitter of the clock leaves nothing to

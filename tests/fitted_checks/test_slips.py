@@ -33,16 +33,6 @@ def test_a_time_in_ms_that_is_read_as_s_is_named(rod):
     assert [f.concern for f in ask("sample_clock", rod)] == ["fine"]
 
 
-def test_position_and_force_that_are_swapped_are_named(rod):
-    def swapped(s):
-        x, u = s["device.position"], s["device.actuator_force"]
-        return s | {"device.position": u, "device.actuator_force": x}
-
-    assert not ask("mixed_columns", rod)
-    (finding,) = ask("mixed_columns", changed(rod, swapped))
-    assert 'write column = "u" at channels.position' in finding.sentence
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(("channel", "factor"), [("interaction", 0.6), ("actuator", 1.7)])
 def test_forces_of_two_scales_are_a_note_that_says_what_to_type(rod, channel, factor):
