@@ -56,7 +56,7 @@ class FirstGuess:
     damping: float
     explained: float
     errors: tuple[float, float, float]
-    left: float = 0.0
+    left: float
 
     @property
     def start_of_inertia(self) -> float:
@@ -71,7 +71,7 @@ class FirstGuess:
         return error if np.isfinite(error) and self.inertia + SURELY * error > 0.0 else 0.0
 
 
-_NOTHING = FirstGuess(0.0, 0.0, 0.0, 0.0, (np.inf, np.inf, np.inf))
+_NOTHING = FirstGuess(0.0, 0.0, 0.0, 0.0, (np.inf, np.inf, np.inf), 0.0)
 
 
 def band_of_fit(sample_time: float) -> float:

@@ -52,8 +52,6 @@ UNITS = (
 FIT_PART = 0.6
 #: part of a log by which a cut moves to lie between two trials
 NEAR_CUT = 0.25
-#: rows of a trial, on average: what changes more often is a signal
-ROWS_OF_A_TRIAL = 50
 
 
 def survey_log(log: Log, file: str, choices: Choices) -> Survey:
@@ -250,7 +248,8 @@ def trial_column(raw: Mapping[str, Array]) -> str | None:
         if not set(WORDS["segment"]).intersection(words_of(name)):
             continue
         changes = int(np.count_nonzero(np.diff(values)))
-        if np.all(values == np.round(values)) and 0 < changes * ROWS_OF_A_TRIAL < len(values):
+        # trials with fewer rows than a record, on average, are none: what changes more is a signal
+        if np.all(values == np.round(values)) and 0 < changes * FEWEST < len(values):
             return name
     return None
 

@@ -18,7 +18,7 @@ from ..record_clock import clock_of
 from ..repeated_rows import rows_between_readings
 from ..signed_numbers import sign_code_of
 from ..spikes import lost_zeros
-from ..stamps import seconds_since_first, unit_in_place_of, unit_of_steps
+from ..stamps import seconds_since_first, unit_of_steps
 from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, reasons, rises, unit_in_log
 from .remarks import sample_rate_in
 from .time_role import (
@@ -122,8 +122,6 @@ def time_column(
             counted = "channels.time.column" in guesses and counts_rows(raw[name])
             more = "; if it counts the rows: --sample-rate HZ" if counted else ""
             guesses["channels.time.unit"] = why + more
-    elif name not in choices.units and (other := unit_in_place_of(unit, raw[name])):
-        unit, guesses["channels.time.unit"] = other
     return name, unit
 
 
