@@ -116,7 +116,8 @@ def test_a_plain_number_is_in_si_and_a_unit_is_converted(at, tmp_path):
     ("old", "new", "message"),
     [
         ("level = 0.5", 'level = { value = 1, unit = "kg" }',
-         'effects.coulomb.level.unit: found "kg", expected a force such as "N" or "mN"'),
+         'effects.coulomb.level.unit: found "kg", expected a force such as "N" or "mN"; '
+         'as a weight it is in "kgf"'),
         ("level = 0.5", "level = -1", "effects.coulomb.level: -1 N is outside 0 .. inf"),
         ("level = 0.5", "level = { value = 1, stderr = -1 }",
          "effects.coulomb.level.stderr: found -1, expected 0 or more"),

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.files import write_beside
-from ..base.sentences import with_error_on_page
+from ..base.sentences import percent, with_error_on_page
 from ..block_cuts import BlockDiagnosis, find_missing, load_experiment, write_answer
 from ..measurement.experiment import Experiment
 from .export import RESULTS
@@ -67,7 +67,7 @@ def candidate_rows(diagnosis: BlockDiagnosis, place: str = EVERY) -> list[dict[s
                 "effect": one["effect"],
                 "at": one["at"],
                 "probability": f"{100 * one['probability']:.0f} %",
-                "check error": f"{100 * one['check_error']:.3g} %",
+                "check error": percent(one["check_error"], ".3g"),
                 "verdict": "missing" if key in named else "or" if key in listed else "no",
                 "parameters": ", ".join(text.removesuffix(" 1") for text in values),
             }

@@ -116,11 +116,14 @@ def _digits(value: float, decimals: int) -> int:
 
 
 def percent(part: float | None, form: str = ".2f", *, unknown: str = "unknown") -> str:
-    """A part of a whole as "7.07 %".
+    """A part of a whole as "7.07 %", also 1 with two digits: "100 %".
 
     form: format of the number;  unknown: text in place of a number that is None or not finite
     """
-    return unknown if part is None or not math.isfinite(part) else f"{100 * part:{form}} %"
+    if part is None or not math.isfinite(part):
+        return unknown
+    text = f"{100 * part:{form}}"
+    return f"{float(text):.0f} %" if "e+" in text else f"{text} %"
 
 
 def percent_on_page(part: float | None) -> str:

@@ -293,7 +293,9 @@ def si_factor(
         raise ExperimentError(f"{_begin(where)}found {quote(unit)}, {expected}{hint}") from None
     wanted = parse_unit(kind.units[0])
     if parsed.dimension != wanted.dimension or _is_part(unit, kind):
-        raise ExperimentError(f"{_begin(where)}found {quote(unit)}, {expected}")
+        is_weight = quantity == "force" and f"{unit}f" in SYMBOLS
+        hint = f"; as a weight it is in {quote(f'{unit}f')}" if is_weight else ""
+        raise ExperimentError(f"{_begin(where)}found {quote(unit)}, {expected}{hint}")
     if quantity == "frequency" and parsed.powers[-1] == 1:
         return parsed.scale / (2 * math.pi)  # an angular frequency in rad/s or rpm; Hz counts turns
     return parsed.scale * _turns_in(unit, quantity, axis)

@@ -12,6 +12,7 @@ import numpy as np
 from ..base.arguments import check_types
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.files import write_text
+from ..base.sentences import percent
 from ..base.toml import comment_text, string_text, toml_text
 from ..diagrams import Diagram
 from ..measurement.doors._log import Log, join_names
@@ -182,8 +183,8 @@ def _compare(
     here, there = search.errors(best), search.errors(second)
     other = f"{second[signal].column!r}" if signal in second else "no column"
     errors = [
-        f"{name} is off by {100 * error:.2g} %, with {other} "
-        + (f"by {100 * there[name]:.2g} %" if name in there else "untested")
+        f"{name} is off by {percent(error, '.2g')}, with {other} "
+        + (f"by {percent(there[name], '.2g')}" if name in there else "untested")
         for name, error in here.items()
         if error != there.get(name)
     ]

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..base.finding import Finding
+from ..base.sentences import percent
 from ..measurement.encoder import STEPS, reading_noise
 from ..measurement.filtering import Array
 from ..measurement.limits import HALF, SEVERAL
@@ -89,7 +90,7 @@ def check_clipped(signal: Signal) -> Iterator[Finding]:
             "clipped channels",
             "note" if commanded else "warning",
             f" runs flat against its {name} value {value:.4g} {signal.unit}, {count} times, "
-            f"{100 * part:.2g} % of the samples: {why}.",
+            f"{percent(part, '.2g')} of the samples: {why}.",
             {"value": limit, "count": float(count), "part": part},
             signal.around(int(at[0]), at, name=f"at the {name} value"),
         )

@@ -1,4 +1,4 @@
-"""Readings of a force: coarse steps in the log, rows without a reading, and hum of the mains."""
+"""Readings of a force: coarse steps in the log, and hum of the mains."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..base.finding import Finding
-from ..measurement.encoder import is_most, is_on_grid
+from ..base.sentences import percent
+from ..measurement.encoder import is_on_grid
 from ..measurement.hum import STRONG, hum_of
 from ..measurement.limits import NEARLY_ALL
 from ._recording import CheckedRecording, RecordingCheck, Signal
@@ -18,17 +19,13 @@ from ._recording import CheckedRecording, RecordingCheck, Signal
 COARSE = 0.03
 #: fewest levels of a rounded signal: a relay has two or three, on purpose
 LEVELS = 5
-#: rows, and fewest times, that a force differs from zero at a time, where its log lacks readings: a
-#: test with pulses holds each one for longer, or has fewer
-SHORT, OFTEN = 4.0, 20
 
 
 def find_poor_forces(recording: CheckedRecording) -> Iterator[Finding]:
-    """Forces whose log has coarse steps, lacks readings, or hums."""
+    """Forces whose log has coarse steps, or hums."""
     for signal in recording.varying:
         if signal.is_force:
             yield from check_force_steps(signal)
-            yield from check_lost_force(signal)
             yield from check_hum(signal, recording.beside(signal))
 
 
@@ -52,22 +49,6 @@ def check_force_steps(signal: Signal) -> Iterator[Finding]:
     yield signal.finding("force steps", "warning", words, {"step": step, "error": float(error)})
 
 
-def check_lost_force(signal: Signal) -> Iterator[Finding]:
-    """Report a force that mostly reads zero, and other values for a few rows at a time."""
-    acts = signal.values != 0.0
-    times = int(np.count_nonzero(np.diff(acts.astype(int)) == 1))
-    part, rows = float(np.mean(acts)), float(np.count_nonzero(acts)) / max(times, 1)
-    if is_most(acts) or times < OFTEN or rows > SHORT:
-        return
-    words = (
-        f" is exactly 0 in {100 * (1 - part):.0f} % of the rows, and differs from 0 for "
-        f"{rows:.1f} rows at a time: the log lacks readings, or the force hardly exceeds its "
-        "resolution. No model of the device explains such a force."
-    )
-    numbers = {"part": 1 - part, "rows": rows, "count": float(times)}
-    yield signal.finding("force steps", "warning", words, numbers)
-
-
 def check_hum(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
     """Report a force with a tone of the mains, in a record whose positions have none.
 
@@ -81,7 +62,7 @@ def check_hum(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
     share = hum.rms / float(signal.values[rows].std())
     words = (
         f" has a tone of {hum.mains:g} Hz, {hum.rms:.3g} {signal.unit} rms "
-        f"({100 * share:.2g} % of the channel), that no position shows: hum of the mains? A "
+        f"({percent(share, '.2g')} of the channel), that no position shows: hum of the mains? A "
         "diagnosis takes it off; shield the wire, or compare below that frequency."
     )
     numbers = {"frequency": hum.mains, "rms": hum.rms}

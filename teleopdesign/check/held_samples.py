@@ -11,13 +11,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..base.finding import Finding
+from ..base.sentences import percent
 from ..measurement.encoder import CHANGES, CHANGES_OF_FORCE, update_period
+from ..measurement.limits import SMALL
 from ..measurement.repeated_rows import repeats
 from ._recording import CheckedRecording, RecordingCheck, Signal
 from .force_readings import LEVELS
-
-#: part of the samples in motion from which repeats are a warning: each errs by the motion of a row
-MANY = 0.05
 
 
 def find_held_samples(recording: CheckedRecording) -> Iterator[Finding]:
@@ -41,9 +40,9 @@ def check_repeats(signal: Signal) -> Iterator[Finding]:
     row = int(odd[len(odd) // 2])
     yield signal.finding(
         "held samples",
-        "warning" if part > MANY else "note",
-        f": {len(odd)} samples ({100 * part:.2g} % of those in motion) repeat the sample before "
-        "although the body moves: the log is not in step with the sensor.",
+        "warning" if part > SMALL else "note",
+        f": {len(odd)} samples ({percent(part, '.2g')} of those in motion) repeat the sample "
+        "before although the body moves: the log is not in step with the sensor.",
         {"count": float(len(odd)), "part": part, "time": signal.time(row)},
         signal.around(row, odd, name="repeats the one before", span=30),
     )

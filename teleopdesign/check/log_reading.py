@@ -8,6 +8,7 @@ import numpy as np
 
 from ..base.finding import Finding
 from ..measurement.experiment import Experiment
+from ..measurement.files import is_experiment
 from ..measurement.hum import STRONG
 from ..measurement.limits import SMALL
 from ..measurement.motion import SHORTEST
@@ -17,12 +18,11 @@ from ._recording import CheckedRecording, RecordingCheck
 
 def find_corrections(recording: CheckedRecording) -> Iterator[Finding]:
     """Guesses of `teleopdesign new`, gaps of the records, and corrections of their logs."""
+    how = "correct it in experiment.toml, or take its line out of [guessed]"
+    if not is_experiment(recording.experiment.folder):
+        how = "`units` of td.experiment states it"
     for key, why in recording.experiment.guesses.items():
-        sentence = (
-            f"{key} was guessed: {why}; correct it in experiment.toml, or take its line out of "
-            "[guessed]."
-        )
-        yield Finding("guesses", "note", sentence)
+        yield Finding("guesses", "note", f"{key} was guessed: {why}; {how}.")
     for record in recording.experiment.records:
         yield from check_segments(record)
         for step in record.reading:

@@ -13,15 +13,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..base.finding import Finding
+from ..base.sentences import percent
 from ..measurement.encoder import reading_step, sampling_jitter
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import Stretch
 from ..measurement.record import Record
-from ..measurement.stamps import FASTEST
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
-#: Hz: lowest plausible rate of a log
-SLOWEST = 5.0
+#: Hz: lowest plausible rate of a log, and highest: a scope may have 1 MHz
+SLOWEST, FASTEST = 5.0, 1.001e6
 #: part of a sample time that readings may be early or late and still count as in time
 IN_TIME = 0.02
 #: part of the squares of a measured acceleration from which jitter of the clock leaves nothing to
@@ -83,7 +83,7 @@ def _check_scatter(signal: Signal) -> Iterator[Finding]:
     off = jitter * float(np.sqrt(np.mean((np.diff(longest) / h) ** 2)))
     words = (
         " scatters the more the faster it moves, as if its samples were taken "
-        f"{1e3 * jitter:.2g} ms rms early or late ({100 * jitter / h:.2g} % of a sample), "
+        f"{1e3 * jitter:.2g} ms rms early or late ({percent(jitter / h, '.2g')} of a sample), "
         f"{off:.2g} {signal.unit} at its usual speed: compare at low frequency."
     )
     numbers = {"jitter": jitter, "part": jitter / h, "position": off}

@@ -7,7 +7,7 @@ with such content.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -28,19 +28,15 @@ FACTOR = 1.6
 def find_wrong_accuracy(recording: CheckedRecording) -> Iterator[Finding]:
     """Channels whose readings have other steps, or other noise, than stated."""
     for signal in recording.varying:
-        others = recording.beside(signal)
-        yield from check_steps(signal, others)
-        yield from check_noise(signal, others)
+        yield from check_steps(signal)
+        yield from check_noise(signal)
 
 
 CHECK = RecordingCheck(order=70, find=find_wrong_accuracy, in_order="steps and noise as stated")
 
 
-def check_steps(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
-    """Compare the stated resolution of a channel with its readings.
-
-    others: channels of the same record, one of which may have the stated steps instead
-    """
+def check_steps(signal: Signal) -> Iterator[Finding]:
+    """Compare the stated resolution of a channel with its readings."""
     stated, read_step = signal.channel.resolution, signal.step
     if stated is None or not read_step or (step := true_step(signal.values, stated)) == stated:
         return
@@ -49,7 +45,6 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
     )
     if step is None and read_step < stated and is_between:
         return  # the readings have steps; the interpolated samples have none
-    swapped = [o.name for o in others if step is None and _shares_steps(o, stated)]
     concern: Concern = "warning"
     text = f" is not read in steps of the stated {stated:.4g} {signal.unit}"
     if step is not None:
@@ -58,8 +53,6 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
             f"{stated:.4g}: the encoder is coarser than stated; write resolution = "
             f"{step / abs(signal.channel.conversion.factor):.4g} at channels.{signal.name}."
         )
-    elif swapped:
-        text += f", but {swapped[0]} is: are the two columns swapped?"
     elif read_step < stated:
         concern, text = "note", f"{text}, but in finer ones."
     else:
@@ -68,11 +61,8 @@ def check_steps(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
     yield signal.finding("encoder steps", concern, text, numbers)
 
 
-def check_noise(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
-    """Compare the stated noise of a channel with its readings; no finding where none is stated.
-
-    others: channels of the same record; one of the same unit may be the noisy one instead
-    """
+def check_noise(signal: Signal) -> Iterator[Finding]:
+    """Compare the stated noise of a channel with its readings; no finding where none is stated."""
     stated = signal.channel.noise
     if stated is None:
         return
@@ -82,13 +72,10 @@ def check_noise(signal: Signal, others: Sequence[Signal]) -> Iterator[Finding]:
     ratio = scatter / expected
     if 1 / FACTOR < ratio < FACTOR:
         return
-    alike = [o for o in others if o.channel.noise is None and o.unit == signal.unit]
-    noisy = [o.name for o in alike if 1 / FACTOR < measured_noise(o) / expected < FACTOR]
-    hint = f" {noisy[0]} has it: are the two columns swapped?" if noisy and ratio < 1 else ""
     effect = "hides effects" if ratio < 1 else "makes noise look like an effect"
     words = (
         f" scatters by {scatter:.3g} {signal.unit} rms, {stated:.3g} is stated: a noise floor that "
-        f"is wrong {effect}.{hint}"
+        f"is wrong {effect}."
     )
     numbers = {"stated": stated, "seen": scatter, "ratio": ratio}
     yield signal.finding("noise", "warning", words, numbers)
@@ -106,12 +93,6 @@ def true_step(x: Array, stated: float) -> float | None:
     places = np.unique(x)
     on = [k for k in multiples if is_on_grid(places, k * stated)]
     return stated * max(on, default=1)
-
-
-def _shares_steps(other: Signal, stated: float) -> bool:
-    """Whether another channel moves in the stated steps; a much finer step would fit by chance."""
-    alike = 0.5 < other.step / stated < 2.0 * MULTIPLES.stop
-    return alike and is_on_grid(other.values, stated)
 
 
 def measured_noise(signal: Signal) -> float:

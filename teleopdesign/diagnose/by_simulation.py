@@ -24,6 +24,7 @@ import numpy as np
 from ..base.errors import ModelError, did_you_mean, quote
 from ..base.files import make_plain
 from ..base.frozen import ByValue
+from ..base.sentences import percent
 from ..base.shown import figure_of, html_table
 from ..base.units import unit_of
 from ..measurement.experiment import Experiment
@@ -93,16 +94,15 @@ class SimulationComparison(ByValue):
         rows: list[tuple[str, ...]] = []
         for e in self.errors:
             axis = self.model.body(e.at).axis
-            horizon = "whole record" if np.isinf(e.horizon) else f"{e.horizon:g} s"
             rows.append(
                 (
                     e.use,
                     e.at,
-                    horizon,
+                    "whole record" if np.isinf(e.horizon) else f"{e.horizon:g} s",
                     f"{e.position:.3g} {unit_of('position', axis)}",
-                    f"{100 * e.of_travel:.3g} %",
+                    percent(e.of_travel, ".3g"),
                     f"{e.velocity:.3g} {unit_of('velocity', axis)}",
-                    f"{100 * e.of_speed:.3g} %",
+                    percent(e.of_speed, ".3g"),
                 )
             )
         return rows

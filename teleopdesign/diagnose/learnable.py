@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from ..base.codec import At, InUnit, Size
+from ..base.sentences import percent
 from ..base.units import unit_of
 from ..measurement.filtering import Array
 from ..measurement.friction_curve import FOLDS
@@ -69,13 +70,13 @@ class Learnable:
         return max(self.left - self.error, 0.0)
 
     def __str__(self) -> str:
-        left, rest = 100 * self.left, 100 * min(self.error, self.left)
+        left, rest = (percent(e, ".2g") for e in (self.left, min(self.error, self.left)))
         if not self.part > 0.0:
-            return f"{left:.2g} % left; nothing was learned from the motion"
+            return f"{left} left; nothing was learned from the motion"
         where = f", {self.where}" if self.where else ""
         return (
-            f"{left:.2g} % left; {100 * self.part:.2g} % follows from the motion{where}; "
-            f"{rest:.2g} % was not learned"
+            f"{left} left; {percent(self.part, '.2g')} follows from the motion{where}; "
+            f"{rest} was not learned"
         )
 
 
@@ -92,8 +93,8 @@ class NearReversals:
 
     def __str__(self) -> str:
         return (
-            f"within {self.within:g} s of a reversal: {100 * self.error:.3g} % of the force there "
-            f"({100 * self.share:.2g} % of the rows)"
+            f"within {self.within:g} s of a reversal: {percent(self.error, '.3g')} of the force "
+            f"there ({percent(self.share, '.2g')} of the rows)"
         )
 
 

@@ -13,6 +13,7 @@ import math
 from dataclasses import dataclass, replace
 
 from ..base.errors import ExperimentError
+from ..base.sentences import percent
 from ..measurement.bandwidth import LOWEST
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
@@ -36,8 +37,8 @@ class NarrowerBand:
 
     def __str__(self) -> str:
         return (
-            f"up to {self.bandwidth:.3g} Hz this model leaves {100 * self.error:.2g} % of the "
-            f"force, up to {self.chosen:.3g} Hz {100 * self.error_at_chosen:.2g} %. Either the "
+            f"up to {self.bandwidth:.3g} Hz this model leaves {percent(self.error, '.2g')} of the "
+            f"force, up to {self.chosen:.3g} Hz {percent(self.error_at_chosen, '.2g')}. Either the "
             "position sensor is filtered or coarser than stated, and shows accelerations that "
             "did not occur, or an effect at high frequencies is missing: try bandwidth = "
             f'{{ value = {self.bandwidth:.3g}, unit = "Hz" }} at comparison'
@@ -89,7 +90,7 @@ def choose_band(wide: Diagnosis, narrow: Diagnosis) -> Diagnosis:
         return wide
     words = (
         f"all that is faster than {narrow.bandwidth:.3g} Hz: the final model of the "
-        f"search up to {wide.bandwidth:.3g} Hz leaves {100 * _error(wide.after):.2g} % of "
+        f"search up to {wide.bandwidth:.3g} Hz leaves {percent(_error(wide.after), '.2g')} of "
         "the force. Either the position sensor is filtered or coarser than stated, or an effect at "
         "high frequencies is missing"
     )

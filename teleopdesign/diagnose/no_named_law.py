@@ -12,6 +12,7 @@ from typing import Annotated
 
 from ..base.codec import INLINE, Error
 from ..base.frozen import ByValue
+from ..base.sentences import percent
 from ..effects import EFFECTS, depends_on_position
 from ..measurement.friction_curve import count_speeds
 from ..measurement.prepare import Prepared
@@ -41,8 +42,8 @@ class FreeForm(ByValue):
         what = "force" if of == "position" else "friction"
         return (
             f"no named law: a {what} of the {of} that no law of the catalogue describes is there; "
-            f"with {self.candidate} the model leaves {100 * self.check_error:.3g} % "
-            f"(fit {100 * self.fit_error:.3g} %)"
+            f"with {self.candidate} the model leaves {percent(self.check_error, '.3g')} "
+            f"(fit {percent(self.fit_error, '.3g')})"
         )
 
 

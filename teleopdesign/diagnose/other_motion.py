@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from ..base.sentences import percent
 from ..effects import Effect
 from ..measurement.prepare import Prepared
 from ..model import Model
@@ -108,7 +109,7 @@ def undetermined_coupling(
     there = Candidate(added.effect, other)
     return Undetermined(
         added,
-        f"{there} by the motion of {added.at} leaves {100 * turned.check_error:.3g} % of the arm's "
-        f"forces instead of {100 * last.check_error:.3g} %: parameters of the links can imitate a "
-        "coupling that acts both ways",
+        f"{there} by the motion of {added.at} leaves {percent(turned.check_error, '.3g')} of the "
+        f"arm's forces instead of {percent(last.check_error, '.3g')}: parameters of the links can "
+        "imitate a coupling that acts both ways",
     )

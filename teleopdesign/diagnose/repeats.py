@@ -23,6 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.codec import Size
+from ..base.sentences import percent
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared, Stretch, measured_force
@@ -56,11 +57,11 @@ class Repeatability:
         return same if same > self.chance else 0.0
 
     def __str__(self) -> str:
-        error, left, share = 100 * self.error, 100 * self.left, 100 * self.share
-        same = f"{100 * self.repeating:.2g} % repeats" if self.repeating else "none surely repeats"
+        error, left, same = (percent(e, ".2g") for e in (self.error, self.left, self.repeating))
+        same = f"{same} repeats" if self.repeating else "none surely repeats"
         return (
-            f"{error:.2g} % of the force differs from pass to pass over the same motion "
-            f"({share:.0f} % of the rows); of {left:.2g} % left there, {same}"
+            f"{error} of the force differs from pass to pass over the same motion "
+            f"({percent(self.share, '.0f')} of the rows); of {left} left there, {same}"
         )
 
 

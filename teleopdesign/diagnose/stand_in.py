@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from ..base.sentences import percent
 from ..measurement.prepare import Prepared
 from .criteria import CRITERIA
 from .decision import is_better
@@ -57,8 +58,9 @@ def stands_in_for_values(
         return None
     reason = (
         "a fit to all records leaves "
-        f"{100 * without.check_error:.3g} % of the check records without it, "
-        f"{100 * with_it.check_error:.3g} % with it: the fit records do not determine its values"
+        f"{percent(without.check_error, '.3g')} of the check records without it, "
+        f"{percent(with_it.check_error, '.3g')} with it: the fit records do not determine its "
+        "values"
     )
     return SetAside(rung.added, rung.fit.check_error, reason)
 
@@ -87,7 +89,7 @@ def stands_in_for_readings(
     floors, without = say_floors(leaves, ".2g"), say_floors(left, ".2g")
     reason = (
         f"lowers the error from the readings of the sensors, from {100 * before.drawn:.2g} to "
-        f"{100 * after.drawn:.2g} % of the force, but leaves {floors} noise floors, "
+        f"{percent(after.drawn, '.2g')} of the force, but leaves {floors} noise floors, "
         f"{without} without it"
     )
     return SetAside(rung.added, rung.fit.check_error, reason, of_readings=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..base.errors import ModelError
+from ..base.sentences import percent
 from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate, list_look_alikes
@@ -74,7 +75,7 @@ def alike_on_records(fit: Fit, rung: Rung, prepared: Prepared) -> str:
             continue
         return (
             f"these records hardly distinguish it from {' and '.join(f'`{n}`' for n in names)}, "
-            f"with which {100 * instead.check_error:.3g} % of the force would be left"
+            f"with which {percent(instead.check_error, '.3g')} of the force would be left"
         )
     return ""
 
@@ -100,8 +101,8 @@ def known_together(fit: Fit, candidate: Candidate) -> str:
     # known far better than each of them: by the same part
     if product.known >= CRITERIA.open_error * min(product.errors):
         return ""
-    each = ", ".join(f"{100 * error:.2g} %" for error in product.errors)
-    return f"{product} is known within {100 * product.known:.2g} %, each factor only within {each}"
+    known, each = percent(product.known, ".2g"), [percent(e, ".2g") for e in product.errors]
+    return f"{product} is known within {known}, each factor only within {', '.join(each)}"
 
 
 def open_parameters_line(model: Model) -> str | None:

@@ -10,6 +10,7 @@ repeats several times a turn, as from teeth and magnets, is `cogging`.
 import numpy as np
 from sympy import sin
 
+from ..base.sentences import percent
 from ._effect import Effect, FitSearch, Parameter, positive_amplitude
 from ._facts import STRAIGHT
 
@@ -34,7 +35,7 @@ def undetermined(p, facts):
     travel = facts.text(facts.travel, "position")
     return (
         f"over a travel of {travel} a spring and a constant force give this torque within "
-        f"{100 * bend:.2g} % of its variation: the records hardly distinguish these"
+        f"{percent(bend, '.2g')} of its variation: the records hardly distinguish these"
     )
 
 

@@ -9,6 +9,7 @@ the encoder: a spring with its rest position elsewhere comes with a `bias`. On a
 
 import numpy as np
 
+from ..base.sentences import percent
 from ._effect import Effect, Parameter
 from ._facts import STRAIGHT
 
@@ -23,7 +24,7 @@ def undetermined(p, facts):
     travel = facts.text(facts.travel, "position")
     return (
         f"over a travel of {travel} the gravity of a link that hangs down at 0 gives this torque "
-        f"within {100 * bend:.2g} % of its variation: the records hardly distinguish `gravity`"
+        f"within {percent(bend, '.2g')} of its variation: the records hardly distinguish `gravity`"
     )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..base.finding import Finding
+from ..base.sentences import percent
 from ..base.units import unit_of
 from ..diagnose.candidates import tells_place_from_time
 from ..measurement.filtering import Array
@@ -31,18 +32,18 @@ def missing_excitation(motions: Sequence[Motion], model: Model, place: str) -> d
     moving = forth + back
     reasons: dict[str, str] = {}
     if moving < RARE:
-        reasons["velocity"] = f"it moves only {100 * moving:.2g} % of the time"
+        reasons["velocity"] = f"it moves only {percent(moving, '.2g')} of the time"
     elif min(forth, back) < RARE * moving:
         reasons["velocity"] = "it moves in one direction only"
     elif (spread := float(np.std(speed[direction != 0]) / np.mean(speed[direction != 0]))) < STEADY:
-        reasons["velocity"] = f"its speed varies by only {100 * spread:.2g} %"
+        reasons["velocity"] = f"its speed varies by only {percent(spread, '.2g')}"
     if not tells_place_from_time(motions):
         reasons["position"] = "it never returns to an earlier position"
     force = _rms([m.lowpassed(m.at_rows(m.command) + m.interaction) for m in motions])
     inertia = model.body(place).parameters["inertia"].value
     share = inertia * _rms([m.lowpassed(m.acceleration) for m in motions]) / force if force else 0.0
     if share < LIGHT:
-        reasons["acceleration"] = f"inertia makes only {100 * share:.2g} % of the force"
+        reasons["acceleration"] = f"inertia makes only {percent(share, '.2g')} of the force"
     commands = np.concatenate([m.command for m in motions])
     if hardly_varies(commands):
         reasons["command"] = reasons["acting_force"] = "the commanded force hardly varies"

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.finding import Concern, Finding
+from ..base.sentences import percent
 from ..blocks import Body
 from ..check import CheckedRecording
 from ..effects import EFFECTS
@@ -67,7 +68,8 @@ def check_lateness(recording: CheckedRecording, balance: ForceBalance) -> Iterat
         f"({abs(t / h):.1f} samples)"
         for n, t in late.items()
     ]
-    shares = f"{100 * balance.unshifted:.2g} -> {100 * balance.left:.2g} % of the force in motion"
+    before, after = (percent(e, ".2g") for e in (balance.unshifted, balance.left))
+    shares = f"{before} -> {after} of the force in motion"
     numbers = {f"{n}.lag": t for n, t in late.items()}
     numbers |= {"left": balance.left, "unshifted": balance.unshifted, "sample_time": h}
     sentence = f"{' and '.join(parts)}: {remedy} ({shares} left unexplained)."
@@ -165,8 +167,8 @@ def _drift(
         f"quarter of the records to {1e3 * ends[1]:.2g} ms in the last: it has another clock. Its "
         f"row at time t holds the value of time {1.0 + rate:.5g} t: multiply its times by about "
         "this number, or log all channels by one clock; a delay corrects the mean alone "
-        f"({100 * balance.left:.2g} % of the force in motion is left unexplained, "
-        f"{100 * left:.2g} % in a quarter)."
+        f"({percent(balance.left, '.2g')} of the force in motion is left unexplained, "
+        f"{percent(left, '.2g')} in a quarter)."
     )
     numbers = {"rate": rate, "first": ends[0], "last": ends[1], "left": left}
     return Finding("clock drift", "warning", sentence, numbers, balance.body)

@@ -12,11 +12,12 @@ from dataclasses import replace
 from itertools import combinations
 
 from ..base.finding import Finding
-from ..base.sentences import with_standard_error
+from ..base.sentences import percent, with_standard_error
 from ..base.units import unit_of
 from ..check import CheckedRecording, RecordingCheck
 from ..check.computed_command import describe_computed
 from ..measurement.experiment import Experiment
+from ..measurement.first_guess import is_first_guess
 from ..measurement.prepare import prepare
 from ._force_balance import ForceBalance, force_balances
 from ._timing import check_lateness
@@ -74,9 +75,10 @@ def _find_swapped(
             other = prepare(exchanged, bandwidth=prepared.bandwidth)
             after = _worst(force_balances(model, other, timed=False))
             if after < SWAPPED * before:
+                shares = [percent(part, ".2g") for part in (before, after)]
                 sentence = (
-                    f"the columns of {a} and {b} seem swapped: {100 * before:.2g} % of the force "
-                    f"in motion is left unexplained, {100 * after:.2g} % the other way round."
+                    f"the columns of {a} and {b} seem swapped: {shares[0]} of the force in motion "
+                    f"is left unexplained, {shares[1]} the other way round."
                 )
                 numbers = {"as_given": before, "swapped": after}
                 yield Finding("swapped columns", "warning", sentence, numbers)
@@ -186,10 +188,12 @@ def _agreement(recording: CheckedRecording, balance: ForceBalance) -> Finding:
         return Finding("signs and units", "note", sentence, numbers, balance.body)
     text = "no sign or unit contradicts the motion, but the motion does not determine an inertia"
     if inertia.sure:
-        text = (
-            f"signs and units agree: the motion requires an inertia of {inertia.value:.3g} {unit}, "
-            f"the model states {body.parameters['inertia'].value:.3g} {unit}"
-        )
+        stated, records = body.parameters["inertia"], recording.experiment.fit_records
+        text = f"the motion requires an inertia of {inertia.value:.3g} {unit}"
+        if stated.fixed or not is_first_guess(records, balance.body, stated.value):
+            text = f"signs and units agree: {text}, the model states {stated.value:.3g} {unit}"
+        else:
+            text = f"signs agree: {text}; units show only beside a known one (fixed = true)"
     if balance.other:
         gain = with_standard_error(balance.gain.value, balance.gain.error)
         text += f"; {balance.other} balances the other forces with a factor of {gain}"

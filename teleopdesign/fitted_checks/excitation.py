@@ -10,7 +10,7 @@ from itertools import combinations, zip_longest
 import numpy as np
 
 from ..base.finding import Finding
-from ..base.sentences import round_near, with_standard_error
+from ..base.sentences import percent, round_near, with_standard_error
 from ..base.units import unit_after_number, unit_of
 from ..check import CheckedRecording, RecordingCheck
 from ..diagnose.candidates import Candidate, bodies_with_measured_force, candidates
@@ -79,8 +79,8 @@ def _describe_passes(repeats: Repeatability) -> Finding:
         "what repeats",
         "fine",
         f"a motion is made again in {100 * repeats.share:.0f} % of the rows. There "
-        f"{100 * repeats.error:.2g} % of the force differs from pass to pass, which no model of "
-        f"the motion explains; your model leaves {100 * repeats.left:.2g} %.",
+        f"{percent(repeats.error, '.2g')} of the force differs from pass to pass, which no model "
+        f"of the motion explains; your model leaves {percent(repeats.left, '.2g')}.",
         asdict(repeats),
     )
 
@@ -147,10 +147,10 @@ def _describe_floor(left: float, floor: float) -> str:
     """What the limits mean beside a part `left` of the force that the model leaves unexplained."""
     lacks = left > CRITERIA.countable * floor
     return (
-        f"these limits hold above the noise floor, {100 * floor:.2g} % of the force"
+        f"these limits hold above the noise floor, {percent(floor, '.2g')} of the force"
         f"{', which contains no noise of the force: state `noise` at the channel' * lacks}; "
-        f"{100 * left:.2g} % of the force is unexplained, and small effects may be hidden in this "
-        "part."
+        f"{percent(left, '.2g')} of the force is unexplained, and small effects may be hidden in "
+        "this part."
     )
 
 
@@ -186,7 +186,7 @@ def _describe_smallest(v: Visibility, model: Model, share: float | None = None) 
     off = effect.absent[name]
     word, size = ("below", value) if math.isinf(off) else ("from", abs(value - off))
     number = f"{size:.2g}{'' if unit == '1' else ' ' + unit}"
-    force = "" if share is None else f", {100 * share:.2g} % of the force"
+    force = "" if share is None else f", {percent(share, '.2g')} of the force"
     return f"{effect.name} ({name} {word} {number}{force})"
 
 

@@ -19,7 +19,7 @@ from .channel import BODY_QUANTITIES, Channel, LogLayout, frequency_from, layout
 from .description import BodyDescription, EnvironmentDescription, bodies_from, environment_from
 from .doors._log import join_names
 from .friction_curve import CURVE, bodies_and_channels, curve_record
-from .reading import ReadingStep, reading_table
+from .reading import ReadingStep, reading_lines
 from .record import Record, read_record, record_entries
 from .tables import is_log, read_columns
 
@@ -109,7 +109,7 @@ class Experiment(ByValue):
         return html_table(title, ("body or record", "axis or use", "", ""), rows)
 
     def __repr__(self) -> str:
-        return "\n".join([describe_content(self), *reading_table(self.reading)])
+        return "\n".join([describe_content(self), *reading_lines(self.reading)])
 
 
 def describe_content(experiment: Experiment) -> str:

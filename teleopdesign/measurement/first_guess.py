@@ -57,7 +57,7 @@ class FirstGuess:
     damping: float
     explained: float
     errors: tuple[float, float, float]
-    left: float = 0.0
+    left: float
 
     @property
     def start_of_inertia(self) -> float:
@@ -72,7 +72,7 @@ class FirstGuess:
         return error if np.isfinite(error) and self.inertia + SURELY * error > 0.0 else 0.0
 
 
-_NOTHING = FirstGuess(0.0, 0.0, 0.0, 0.0, (np.inf, np.inf, np.inf))
+_NOTHING = FirstGuess(0.0, 0.0, 0.0, 0.0, (np.inf, np.inf, np.inf), 0.0)
 
 
 def band_of_fit(sample_time: float) -> float:
@@ -299,3 +299,8 @@ def guess_from(records: Sequence[Record], body: str) -> FirstGuess:
         total = force if other is None else force + other
         pairs += [(total[s], record.signals[f"{body}.position"][s]) for s in record.segments]
     return explain_forces(pairs, records[0].sample_time)
+
+
+def is_first_guess(records: Sequence[Record], body: str, inertia: float) -> bool:
+    """Whether an inertia (SI) of a model is the start that these records themselves give."""
+    return float(f"{guess_from(records, body).start_of_inertia:.3g}") == inertia

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 from ..base.arguments import check_types
 from ..base.errors import ExperimentError, unknown
 from ..base.toml import Table
-from ..base.units import AXES, unit_of
+from ..base.units import AXES, is_unit, unit_of
 from .channel import BODY_QUANTITIES, layout_from
 from .column_names import as_unit, likeness, unfit_unit, unit_in_name, why_no_unit
 from .description import BodyDescription, bodies_from, with_first_values
@@ -55,7 +56,8 @@ def experiment(
         "i", "unit": "A", "torque_constant": {"value": 0.04, "unit": "N*m/A"}}`)
     time: default: the column or index whose name suggests a time;  sample_rate: Hz, instead
     segment: the column that numbers trials: hidden states start anew at each
-    units: column -> unit; default: the unit at the end of the column's name ("Pos (deg)"), or SI
+    units: column -> unit; default: the unit at the end of the column's name ("Pos (deg)"), or SI,
+        which `check` then calls a guess
     inertia: kg or kg*m^2; default: estimated from the data, as are the first values of friction
     effects: those of the model;  fit, check: spans (begin, end) in s from the first row, or one
         span; default: all rows are fitted, and blocks of them are held out in turn
@@ -81,12 +83,15 @@ def experiment(
     }
     Table({"axis": axis}, _WHERE).choice("axis", AXES)
     entered = {key: entry for key, entry in entries.items() if entry is not None}
-    channels = {key: channel_table(e, key, axis, log, units or {}) for key, e in entered.items()}
+    guesses: dict[str, str] = {}
+    channels = {
+        key: channel_table(e, key, axis, log, units or {}, guesses) for key, e in entered.items()
+    }
     content: dict[str, Any] = {"channels": channels}
     if sample_rate is not None:
         channels["sample_rate"] = {"value": sample_rate, "unit": "Hz"}
     else:
-        channels["time"] = _time_table(time, log, units or {})
+        channels["time"] = _time_table(time, log, units or {}, guesses)
     if segment is not None:
         channels["segment"] = {"column": segment}
     body: dict[str, Any] = {"axis": axis, "effects": {name: {} for name in effects}}
@@ -98,7 +103,8 @@ def experiment(
     if fit is not None:
         spans = [("fit", span) for span in _spans(fit, "fit")]
     spans += [("check", span) for span in _spans(check, "check")]
-    return build_experiment(content, log, spans, title=title, bandwidth=bandwidth)
+    made = build_experiment(content, log, spans, title=title, bandwidth=bandwidth)
+    return replace(made, guesses=guesses)
 
 
 def _spans(spans: Sequence[Sequence[float] | float], use: str) -> list[Sequence[float]]:
@@ -184,9 +190,17 @@ def _with_first_values(body: BodyDescription, records: Sequence[Record]) -> Body
 
 
 def channel_table(
-    entry: ChannelEntry, key: str, axis: str, log: Log, units: Mapping[str, str]
+    entry: ChannelEntry,
+    key: str,
+    axis: str,
+    log: Log,
+    units: Mapping[str, str],
+    guesses: dict[str, str],
 ) -> dict[str, Any]:
-    """The table of a channel: as written, or a column's name with the unit for this column."""
+    """The table of a channel: as written, or a column's name with the unit for this column.
+
+    guesses: gets the unit that is taken where none is stated
+    """
     table: dict[str, Any] = {"column": entry} if isinstance(entry, str) else dict(entry)
     column = table.get("column")
     if "unit" in table or not isinstance(column, str):
@@ -196,17 +210,23 @@ def channel_table(
     along = "prismatic" if "lever_arm" in table else axis  # a force in N beside an angle
     unit = as_unit(stated) if stated else unit_in_name(column, quantity, along)
     if unit is None and (text := unfit_unit(column)):
-        instead = f"units={{{column!r}: {unit_of(quantity, axis)!r}}}"
+        weight = f"{text}f" if quantity == "force" and is_unit(f"{text}f") else None
+        instead = f"units={{{column!r}: {weight or unit_of(quantity, axis)!r}}}"
         if quantity == "force" and unit_in_name(column, quantity) and axis == "revolute":
             instead = f'{{"column": {column!r}, "lever_arm": {{"value": 0.07, "unit": "m"}}}}'
         raise ExperimentError(
             f"{_WHERE}: {key}: {why_no_unit(column, None, quantity, axis)}: state it, such as "
             f"{instead}, if {text!r} is to be read so"
         )
-    return {**table, "unit": unit or unit_of(quantity, along)}
+    if unit is None:
+        unit = unit_of(quantity, along)
+        guesses[f"channels.{key}.unit"] = f"{unit}: {why_no_unit(column, None, quantity, axis)}"
+    return {**table, "unit": unit}
 
 
-def _time_table(entry: ChannelEntry | None, log: Log, units: Mapping[str, str]) -> dict[str, Any]:
+def _time_table(
+    entry: ChannelEntry | None, log: Log, units: Mapping[str, str], guesses: dict[str, str]
+) -> dict[str, Any]:
     if entry is not None and not isinstance(entry, str):
         return dict(entry)
     if entry is None:
@@ -216,7 +236,9 @@ def _time_table(entry: ChannelEntry | None, log: Log, units: Mapping[str, str]) 
                 f"{_WHERE}: time: no column sounds like a time, found {', '.join(log.names)}: give "
                 "time or sample_rate"
             )
-    unit = units.get(entry) or log.units.get(entry) or unit_in_name(entry, "time") or "s"
+    unit = units.get(entry) or log.units.get(entry) or unit_in_name(entry, "time")
+    if unit is None:
+        unit, guesses["channels.time.unit"] = "s", f"s: the name {entry!r} states no unit"
     return {"column": entry, "unit": unit}
 
 

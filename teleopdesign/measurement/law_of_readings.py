@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from .encoder import ENOUGH, FEWEST_STEPS, LOST, grid_of, reading_step
 from .filtering import Array
+from .limits import NEARLY_ALL
 from .repeated_rows import runs_of
 
 #: (readings of the position, past commands) of the laws, the simpler one first: spring, damper of
@@ -33,9 +34,6 @@ VISIBLE = 4.0
 #: steps of a rounded command by which an exact law is off: half a step, and some of it again for
 #: the factors, which are estimated from rounded commands
 ROUNDED = 0.75
-#: part of the rows in which the law holds, from which it is that of the whole record: turning
-#: points at a limit are few rows
-WHOLE = 0.95
 #: rows, and rows in which the reading changes, for each number of a law
 FOR_EACH = 20
 #: rows of a run without a clipped command, and memories of the filter after which a run counts: a
@@ -142,7 +140,7 @@ def law_of_readings(
         for taps, past in ORDERS:
             law = _law_of_order(rows, taps, past, step=step, sample_time=sample_time)
             if law is not None:
-                return replace(law, is_partial=bool(np.mean(counted) < WHOLE))
+                return replace(law, is_partial=bool(np.mean(counted) < NEARLY_ALL))
     return None
 
 

@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError, quote
+from ..base.sentences import percent
 from .channel import Channel, LogLayout
 from .encoder import Array
 from .limits import HALF
 from .reading import ReadingStep, count_of
 from .record_clock import DATE, RecordClock, clock_of, counted_clock, segments_of
 from .repeated_rows import MOST, repeated_rows, rows_between_readings, with_slower_signals
+from .spikes import lost_zeros
 from .stamps import read_at_stamps
 from .tables import LogColumns
 from .usual_step import usual_step
@@ -46,6 +48,8 @@ def clock_of_log(
         steps.append(ReadingStep(file, text, rule, "none"))
     if "segment" not in channels:
         columns = with_slower_signals(columns, [*channels.values()], stamps)
+    written, columns = columns, _without_lost_zeros(columns, channels)
+    odd_zero = "" if columns is written else ", or with a 0 to which no motion leads"
     filled = _filled_rows(columns, channels, name)
     labels = _labels(columns, channels, name)
     again, between = _rows_without_reading(columns, channels, filled, stamps)
@@ -67,15 +71,27 @@ def clock_of_log(
     stamped, more_steps = read_at_stamps(clock, positions, file)
     one_each = f"one row of each reading, {1 / clock.sample_time:.4g} a second"
     for left_out, text, rule in (
-        (~filled, "with a cell that holds no number", "read as lost"),
+        (~filled, f"with a cell that holds no number{odd_zero}", "read as lost"),
         (again, "the same as the one before", "read as lost"),
         (between, f"that say nothing new: {FASTER}", one_each),
     ):
         if count := int(np.count_nonzero(left_out)):
-            part = f"{100 * count / len(filled):.2g} % of the rows"
+            part = f"{percent(count / len(filled), '.2g')} of the rows"
             steps.append(ReadingStep(file, f"{count_of(count, 'row')} {text}", rule, part))
     steps += [ReadingStep(file, *words) for words in clock.remarks]
     return replace(clock, stamped=stamped), columns, steps + more_steps
+
+
+def _without_lost_zeros(columns: LogColumns, channels: Mapping[str, Channel]) -> LogColumns:
+    """The columns, with empty cells for zeros of positions that stand for no reading."""
+    values = dict(columns.values)
+    for channel in channels.values():
+        wraps = channel.conversion.period or channel.conversion.code  # a turn ends at 0, by a leap
+        for column in channel.columns if channel.quantity == "position" and not wraps else ():
+            if (lost := lost_zeros(values[column])).any():
+                values[column] = np.where(lost, np.nan, values[column])
+    changed = any(values[name] is not x for name, x in columns.values.items())
+    return replace(columns, values=values) if changed else columns
 
 
 def _on_this_clock(

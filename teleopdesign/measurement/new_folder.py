@@ -24,7 +24,7 @@ from .motion import SHORTEST as SEGMENT
 from .record import Record, RecordEntry, overlap, read_record
 from .record_clock import SHORTEST
 from .reversals import runs_one_way
-from .saving import body_lines, records_text
+from .saving import body_lines, guesses_text, records_text
 from .survey import Survey, spans_of
 from .survey.remarks import STATEMENTS
 from .tables import open_log
@@ -265,8 +265,5 @@ def experiment_text(
         lines += [
             comment_text(f"  {string_text(name)}: {why}") for name, why in survey.unused.items()
         ]
-    lines += ["", *records_text(records)]
-    if survey.guesses:
-        lines += ["", "[guessed]"]
-        lines += [f"{string_text(key)} = {string_text(why)}" for key, why in survey.guesses.items()]
+    lines += ["", *records_text(records), *guesses_text(survey.guesses)]
     return "\n".join(lines) + "\n"

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-#: characters of a line, and of the columns before the last
-WIDTH, WIDEST = 100, 34
+#: characters of a line
+WIDTH = 100
 #: the end of the name of a record that is a part of a log: "log.csv 0-14.4 s"
 _SPAN = re.compile(r" [-+.\de]+-[-+.\de]+ s$")
 
@@ -43,34 +43,25 @@ def log_name(file: str) -> str:
     return _SPAN.sub("", file)
 
 
-def reading_table(steps: Sequence[ReadingStep]) -> list[str]:
-    """The steps as lines of a table; empty where every file is used unchanged.
+def reading_lines(steps: Sequence[ReadingStep]) -> list[str]:
+    """The steps as lines of text; empty where every file is used unchanged.
 
     Records that are all cut from one log are named by their spans.
     """
-    if not steps:
-        return []
-    rows = [("record", "in the log", "how it was read, and what that does to the answer")]
     logs = {log_name(s.file) for s in steps}
     log = f"{logs.pop()} " if len(logs) == 1 else ""
-    alike: dict[tuple[str, str], list[str]] = {}
+    alike: dict[str, list[str]] = {}
     for s in steps:
-        text = s.rule if s.effect == "none" else f"{s.rule}; {s.effect}"
-        alike.setdefault((s.observed, text), []).append(s.file.removeprefix(log))
-    rows += [(", ".join(files), observed, text) for (observed, text), files in alike.items()]
-    first = min(WIDEST, max(len(row[0]) for row in rows))
-    second = min(WIDEST, max(len(row[1]) for row in rows))
-    rest = WIDTH - first - second - 6
-    lines: list[str] = []
-    for row in rows:
-        cells = [
-            textwrap.wrap(text, width) or [""]
-            for text, width in zip(row, (first, second, rest), strict=True)
-        ]
-        for k in range(max(map(len, cells))):
-            one, two, three = (cell[k] if k < len(cell) else "" for cell in cells)
-            lines.append(f"  {one:<{first}}  {two:<{second}}  {three}".rstrip())
-    return lines
+        effect = "" if s.effect == "none" else f"; {s.effect}"
+        text = f"{s.observed}: {s.rule}{effect}"
+        alike.setdefault(text, []).append(s.file.removeprefix(log))
+    return [
+        line
+        for text, files in alike.items()
+        for line in textwrap.wrap(
+            f"{', '.join(files)}: {text}", WIDTH, initial_indent="  ", subsequent_indent="    "
+        )
+    ]
 
 
 def count_of(number: int, one: str) -> str:

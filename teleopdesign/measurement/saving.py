@@ -16,7 +16,7 @@ from ..base.toml import comment_text, inline_text, string_text, toml_text
 from ..base.units import unit_of
 from .channel import BODY_QUANTITIES
 from .description import BodyDescription, Effects, ModelValue
-from .reading import reading_table
+from .reading import reading_lines
 
 if TYPE_CHECKING:
     from .experiment import Experiment
@@ -76,7 +76,7 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
         lines += ["[model.environment]"]
         lines += [f"{n} = {_value(values[n])}" for n in _ENVIRONMENT if n in values]
         lines += ["[model.environment.effects]", *_effect_lines(experiment.environment.effects), ""]
-    lines += [comment_text(line) for line in reading_table(experiment.reading)]
+    lines += [comment_text(line) for line in reading_lines(experiment.reading)]
     lines += ["[channels]", *['time = { column = "t", unit = "s" }'] * (not experiment.is_curve)]
     one = tuple(experiment.bodies) == ("device",)
     present = [k for k in experiment.channels if all(k in r.signals for r in experiment.records)]
@@ -99,6 +99,7 @@ def experiment_text(experiment: Experiment, names: list[str]) -> str:
         {"file": name, "use": record.use, **dict.fromkeys(sorted(record.offset_names), "own")}
         for record, name in zip(experiment.records, names, strict=True)
     )
+    lines += guesses_text(experiment.guesses)
     return "\n".join(lines) + "\n"
 
 
@@ -126,6 +127,12 @@ def records_text(records: Iterable[Mapping[str, Any]]) -> list[str]:
         for record in records
         for line in ("[[records]]", *(f"{k} = {toml_text(v)}" for k, v in record.items()))
     ]
+
+
+def guesses_text(guesses: Mapping[str, str]) -> list[str]:
+    """Lines of the table [guessed]; none without a guess."""
+    lines = [f"{string_text(key)} = {string_text(why)}" for key, why in guesses.items()]
+    return ["", "[guessed]", *lines] if lines else []
 
 
 def _value(value: ModelValue) -> str:

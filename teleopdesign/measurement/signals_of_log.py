@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ..base.sentences import percent
 from .channel import Channel
 from .encoder import Array, is_on_grid, reading_step
 from .reading import ReadingStep, count_of
@@ -110,7 +111,7 @@ def _fill_spikes(
         f"{name}: {count_of(count, 'reading')} far off the course of the others, the worst by "
         f"{float(f'{worst / np.std(filled):.2g}'):g} standard deviations",
         "read as lost, filled by the curve through their neighbours",
-        f"{100 * count / len(values):.2g} % of the readings",
+        f"{percent(count / len(values), '.2g')} of the readings",
         topic="outliers",
         numbers=(("count", float(count)), ("row", float(np.argmax(off)) + 1.0), ("size", worst)),
     )
@@ -215,9 +216,9 @@ def _describe_lost_rows(
     size = float(np.sqrt(error / force)) if force > 0 else float("nan")
     return ReadingStep(
         file,
-        f"{count_of(lost, 'row')} lost, {100 * part:.2g} %",
+        f"{count_of(lost, 'row')} lost, {percent(part, '.2g')}",
         "filled: positions by the curve through their neighbours, commands by the line between",
-        f"adds at most {100 * size:.2g} % of the force"
+        f"adds at most {percent(size, '.2g')} of the force"
         + (f"; positions there err by {' and '.join(positions)}" if positions else ""),
         size,
         "lost rows",

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .encoder import Array
+from .encoder import Array, reading_step
 from .limits import HALF, SMALL
 from .record_clock import FEWEST
 from .repeated_rows import runs_of
@@ -47,6 +47,28 @@ def filled_spikes(
             continue
         out[part], spikes[part] = fill_spikes(x, odd), odd
     return (out, spikes) if spikes.any() else (values, spikes)
+
+
+def lost_zeros(position: Array) -> Mask:
+    """Mask (n,) of the readings 0 of a position that stand for none: it leaps there and back.
+
+    Each leap is larger than any other change of a reading, the largest of them `GAP` times. A body
+    that passes zero, or rests there, comes to it as it moves elsewhere.
+    """
+    zero, lost = position == 0.0, np.zeros(len(position), dtype=bool)
+    change = np.abs(np.diff(position))
+    other = change[~(zero[1:] | zero[:-1]) & np.isfinite(change)]
+    first, past = runs_of(zero)
+    inner = (first > 0) & (past < len(zero))
+    first, past = first[inner], past[inner]
+    if not len(first) or not len(other):
+        return lost
+    least = max(float(other.max()), GAP * reading_step(position[np.isfinite(position)]))
+    leaps = np.minimum(change[first - 1], change[past - 1])
+    if leaps.max() > GAP * least:
+        for a, b in zip(first[leaps > least], past[leaps > least], strict=True):
+            lost[a:b] = True
+    return lost
 
 
 def find_spikes(x: Array, step: float) -> Mask:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.sentences import unit_at_axis, with_standard_error
+from ..base.sentences import percent, unit_at_axis, with_standard_error
 from ..base.shown import html_table
 from ..base.units import unit_after_number
 from ..simulate.units import signal_units
@@ -148,7 +148,7 @@ def _fit_rows(fitted: SimulationFit) -> list[tuple[str, str]]:
     units = signal_units(fitted.diagram)
     for name, rms in fitted.rms.items():
         was = f"{100 * fitted.before[name]:.3g} -> " if np.isfinite(fitted.before[name]) else ""
-        share = f"{was}{100 * fitted.of_signal[name]:.3g} %"
+        share = f"{was}{percent(fitted.of_signal[name], '.3g')}"
         rows.append((f"rms of {name}", f"{rms:.3g} {units(name)} ({share} of the signal)"))
     return rows
 

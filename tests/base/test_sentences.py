@@ -88,4 +88,5 @@ def test_a_value_and_its_error_are_printed_to_the_same_decimal(x, error):
 
 def test_a_part_that_is_no_number_is_unknown():
     assert percent(0.07071) == "7.07 %" and percent(0.5, ".0f") == "50 %"
+    assert percent(0.999, ".2g") == "100 %" and percent(0.0123, ".2g") == "1.2 %"
     assert percent(math.nan) == "unknown" and percent(math.inf, unknown="not told") == "not told"

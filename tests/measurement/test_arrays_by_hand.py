@@ -195,3 +195,26 @@ def test_rows_lost_in_a_log_leave_its_bandwidth():
     cut = {name: column[kept] for name, column in data.items()}
     whole, parted = (default_bandwidth(made(one, inertia=1.0)) for one in (data, cut))
     assert parted == pytest.approx(whole, rel=0.2)
+
+
+def test_units_that_nothing_states_are_guesses_also_in_a_saved_folder(tmp_path):
+    data = {"t": T, "x": X, "force_N": FORCE}
+    names = {"position": "x", "actuator_force": "force_N"}
+    experiment = td.experiment(data, axis="prismatic", inertia=1.0, **names)
+    assert set(experiment.guesses) == {"channels.time.unit", "channels.position.unit"}
+    loaded = td.load_experiment(experiment.save(tmp_path / "saved"))
+    assert loaded.guesses == experiment.guesses
+    stated = td.experiment(data, axis="prismatic", inertia=1.0, units={"t": "s", "x": "m"}, **names)
+    assert not stated.guesses
+
+
+def test_a_force_in_kg_is_answered_with_the_unit_of_a_weight():
+    data, names = {"t": T, "x": X, "load (kg)": FORCE}, {"position": "x"}
+    with pytest.raises(ExperimentError, match="kgf"):
+        td.experiment(data, axis="prismatic", actuator_force="load (kg)", inertia=1.0, **names)
+    units = {"load (kg)": "kgf"}
+    experiment = td.experiment(
+        data, axis="prismatic", actuator_force="load (kg)", units=units, inertia=1.0, **names
+    )
+    force = experiment.records[0].signals["device.actuator_force"]
+    assert force == pytest.approx(9.80665 * FORCE)

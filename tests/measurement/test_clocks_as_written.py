@@ -8,6 +8,9 @@ import pandas
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from measurement.columns_by_hand import Q as ANGLE
+from measurement.columns_by_hand import U as TORQUE
+from measurement.columns_by_hand import look
 
 from teleopdesign.measurement.doors._cells import stamps_in_texts, stamps_of
 from teleopdesign.measurement.from_arrays import log_of
@@ -158,14 +161,24 @@ def test_the_tick_of_a_microcontroller_is_the_time_beside_a_counter_of_steps():
     assert survey.channels["position"]["column"] == "left_tick"
 
 
-def test_a_velocity_that_contradicts_a_guessed_unit_of_time_says_which_one_it_needs(tmp_path):
-    t = 1e-3 * np.arange(4000)
-    x = 0.05 * np.sin(4.4 * t) + 0.02 * np.sin(11.9 * t + 1)
-    v = np.gradient(x, t)
-    path = tmp_path / "log.csv"
-    table = np.c_[2e3 * t, x, v, 0.4 * np.gradient(v, t) + 2 * v + 0.5 * np.sign(v)]
-    names = "time,position_m,velocity_m_s,force_N"  # a count of half milliseconds
-    np.savetxt(path, table, delimiter=",", header=names, comments="", fmt="%.9g")
-    survey = survey_log(open_log(path, "log.csv"), "log.csv", Choices(axis="prismatic"))
-    assert "requires steps of 0.001 s" in survey.guesses["channels.time.unit"]
-    assert "--unit 'time=500 us'" in survey.guesses["channels.time.unit"]
+@pytest.mark.parametrize(
+    ("name", "step"),
+    [
+        ("dt [us]", 2000.0),
+        ("timestep__us", 2000.0),
+        ("dt", 0.002),
+        ("dt_ms", 2.0),
+        ("Δt (s)", 0.002),
+    ],
+)
+def test_a_column_of_time_steps_tells_the_rate(name, step):
+    late = 1.0 + 0.02 * np.random.default_rng(1).standard_normal(len(ANGLE))
+    result = look({name: step * late, "angle_rad": ANGLE, "torque_Nm": TORQUE})
+    assert result.channels["sample_rate"]["value"] == pytest.approx(500.0, rel=0.01)
+    assert name in result.guesses["sample_rate"]
+
+
+def test_a_step_that_is_far_from_even_tells_no_rate():
+    steps = np.random.default_rng(1).exponential(0.01, len(ANGLE)) ** 2
+    result = look({"dt": steps, "angle_rad": ANGLE, "torque_Nm": TORQUE})
+    assert result.channels["sample_rate"]["value"] == 1000.0

@@ -10,7 +10,6 @@ from scipy.io import savemat
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.numbers_in_cells import numbers_of
-from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.tables import open_log, read_columns
 
 T = 0.01 * np.arange(90)
@@ -56,44 +55,6 @@ def spun(begin, push, rows=400):
     return np.column_stack([begin + t, voltage, place, speed]).round(6).tolist()
 
 
-def test_lists_of_records_with_the_same_fields_are_trials_in_the_order_of_their_times(tmp_path):
-    path = tmp_path / "log.json"
-    content = {
-        "fast-backward": spun(30.0, lambda t: -6.0 + 0.0 * t),
-        "fast-forward": spun(20.0, lambda t: 6.0 + 0.0 * t),
-        "slow-forward": spun(10.0, lambda t: 0.2 + t, rows=600),
-        "events": [{"at": 3, "what": "start"}, {"at": 9, "what": "end"}],
-        "one": [[1.0, 2.0, 3.0, 4.0]],
-        "units": "Radians",
-    }
-    path.write_text(json.dumps(content))
-    log = open_log(path, "log.json")
-    assert log.names == ("(1)", "(2)", "(3)", "(4)", "trial")
-    assert log.notes == (
-        '3 trials, \'trial\' numbers them: "slow-forward", "fast-forward", "fast-backward"',
-    )
-    assert np.array_equal(column(path, "trial"), np.repeat([1, 2, 3], [600, 400, 400]))
-    assert np.all(np.diff(column(path, "(1)")) > 0)
-    # the longest trial only rises in all columns, and physics is looked at in it
-    survey = survey_log(log, "log.json", Choices())
-    used = {key: entry["column"] for key, entry in survey.channels.items()}
-    assert used == {
-        **{"time": "(1)", "segment": "trial", "position": "(3)"},
-        "actuator_force": "(2)",
-    }
-    assert survey.unused["(4)"].startswith("the velocity of '(3)'")
-
-
-def test_lists_without_times_or_with_other_fields_stay_as_written(tmp_path):
-    path = tmp_path / "log.json"
-    path.write_text(json.dumps({"b": [{"n": "x", "q": 1}] * 2, "a": [{"n": "y", "q": 2}] * 3}))
-    assert np.array_equal(column(path, "q"), [1, 1, 2, 2, 2])
-    path.write_text(json.dumps({"b": [{"q": 1}] * 2, "a": [{"q": 2, "u": 1}] * 3}))
-    assert open_log(path, "log.json").names == ("q", "u"), "the longest list is the log"
-    path.write_text(json.dumps({"b": [{"q": 1, "trial": 7}] * 2, "a": [{"q": 2, "trial": 8}] * 3}))
-    assert np.array_equal(column(path, "trial"), [8, 8, 8])
-
-
 @pytest.mark.parametrize("text", ["[]", "3", '{"a": 1}', "[" * 100_000, "left\nright\n", "\0", ""])
 def test_json_without_records_is_one_line(tmp_path, text):
     path = tmp_path / "log.json"
@@ -114,19 +75,11 @@ def test_groups_of_hdf5_say_units_and_matlab_turns_matrices(tmp_path):
         angle = content.create_dataset("joint/angle", data=Q)
         angle.attrs["Units"] = "degrees"
         content["data"] = np.stack([T, Q])
-        fields = content.create_dataset("axis/q", (1, 2), dtype=h5py.ref_dtype)
-        for k in range(2):
-            fields[0, k] = content.create_dataset(f"#refs#/{k}", data=(k + 1) * Q[None, :]).ref
     as_matlab(path)
     log = open_log(path, "log.mat")
     assert log.units == {"joint/angle": "deg"}
-    assert {"data(:,1)", "data(:,2)", "axis(1)/q", "axis(2)/q"} <= set(log.names)
+    assert {"data(:,1)", "data(:,2)"} <= set(log.names)
     assert np.array_equal(column(path, "data(:,2)"), Q)
-    assert np.array_equal(column(path, "axis(2)/q"), 2 * Q)
-    loop = h5py.File(path, "r+")
-    loop["axis/q"][0, 0] = loop["axis/q"].ref  # a reference to itself is no column
-    loop.close()
-    assert "axis(1)/q" not in open_log(path, "log.mat").names
 
 
 def test_an_array_of_structs_of_matlab_is_numbered(tmp_path):
@@ -201,19 +154,6 @@ def swings(count, rows):
     ]
 
 
-@pytest.mark.parametrize("inside", [True, False])
-def test_records_that_hold_long_lists_are_trials_in_the_order_of_the_file(inside, tmp_path):
-    """The limits in the settings were the log ("found 2 rows"), or each number was a column."""
-    tests = swings(3, 120)
-    content = {"config": {"limits": [-0.6, 0.6]}, "data": tests} if inside else tests
-    (tmp_path / "log.json").write_text(json.dumps(content))
-    log = open_log(tmp_path / "log.json", "log.json")
-    assert set(log.names) == {"goal", "sensor", "trial"}
-    assert list(column(tmp_path / "log.json", "goal")[:120]) == tests[0]["goal"]
-    assert set(column(tmp_path / "log.json", "trial")) == {1.0, 2.0, 3.0}
-    assert "3 trials" in log.notes[0]
-
-
 def test_the_joints_of_a_robot_are_no_trials(tmp_path):
     states = [{"q": [0.1 * k, 0.2, 0.3], "tau": [1.0 * k, 2.0, 3.0]} for k in range(90)]
     (tmp_path / "log.json").write_text(json.dumps(states))
@@ -221,3 +161,15 @@ def test_the_joints_of_a_robot_are_no_trials(tmp_path):
         *(f"q({k})" for k in (1, 2, 3)),
         *(f"tau({k})" for k in (1, 2, 3)),
     }
+
+
+@pytest.mark.parametrize("inside", [True, False])
+def test_several_recordings_in_one_file_are_refused_and_other_lists_are_left_out(inside, tmp_path):
+    tests, path = swings(3, 120), tmp_path / "log.json"
+    path.write_text(json.dumps({"config": {"limits": [-0.6, 0.6]}, "data": tests}))
+    if not inside:
+        path.write_text(json.dumps(tests))
+    with pytest.raises(ExperimentError, match=r'found the same columns in ".*\(1\)".*of its own'):
+        open_log(path, "log.json")
+    path.write_text(json.dumps({"b": [{"q": 1}] * 2, "a": [{"q": 2, "u": 1}] * 3}))
+    assert open_log(path, "log.json").names == ("q", "u"), "the longest list is the log"

@@ -54,16 +54,6 @@ def test_values_and_clocks_are_those_of_the_files(arm):
     assert log.clocks["arm_joint_2.efforts"] == "efforts.time"
 
 
-def test_without_time_the_files_are_read_row_by_row(tmp_path):
-    for name, values in (("q_pos", Q), ("q_tau", TAU)):
-        write(tmp_path / "run", f"{name}.csv", ["j1", "j2", "j3"], values)
-    log = open_log(tmp_path / "run", "run")
-    assert log.names == ("j1.pos", "j2.pos", "j3.pos", "j1.tau", "j2.tau", "j3.tau")
-    read = log.read({"j3.tau": "channels.actuator_force"})
-    assert np.asarray(read["j3.tau"]) == pytest.approx(TAU[:, 2], abs=1e-6)
-    assert log.notes == ("2 tables without time, row by row: pos, tau",)
-
-
 def test_files_of_one_quantity_each_are_no_fit_and_check_record(arm, tmp_path, capsys):
     logs = [str(arm / f"states_{name}.csv") for name in ("positions", "efforts")]
     assert main(["new", *logs, "--yes", "--output", str(tmp_path / "experiment")]) == 2

@@ -62,7 +62,7 @@ AS_LOGGERS_WRITE = {
     "nan": (cell(7, 2, "nan"), "1 row with a cell that holds no number"),
     "infinite": (cell(7, 2, "-inf"), "1 row with a cell"),
     "empty cell": (cell(149, 3, ""), "1 row with a cell"),
-    "row cut short": (lambda lines: [*lines[:-1], "1.49,0.1"], "a last row that was cut off"),
+    "row cut short": (lambda lines: [*lines[:-1], "1.49,0.1"], "a line that is no row"),
     "semicolons": (lambda lines: [line.replace(",", ";") for line in lines], "semicolons between"),
     "tabs": (lambda lines: [line.replace(",", "\t") for line in lines], "tabs between columns"),
     "pause": (shifted(50, 0.5), "1 pause, the longest 0.51 s"),

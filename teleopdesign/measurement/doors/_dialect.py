@@ -23,7 +23,6 @@ from ._header import (
     is_row_of_units,
     is_unit_cell,
     names_and_units,
-    names_by_number,
     names_of_labelled_rows,
     numbers_channels,
 )
@@ -215,10 +214,6 @@ def _header(
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Names and units from the lines before the first row of numbers."""
     plain = [line for line in before if line.strip()]
-    if plain and _comments(plain[-1:]):  # a row of names below such a list says more
-        numbered = names_by_number(_comments(plain), width)
-        if numbered is not None:
-            return numbered
     above = _without_constants([_cells_above(line, separator, width) for line in plain], width)
     wide = [tuple(cells) for cells in above if len(cells) == width]
     rows = [cells for cells in wide if not _is_data(cells, comma)]
@@ -274,12 +269,6 @@ def _without_constants(above: list[list[str]], width: int) -> list[list[str]]:
         if beside and width - 1 <= len(names) <= width and texts >= len(names):
             out[k] = [*names, ""][:width]  # rows of the table may end with a separator
     return out
-
-
-def _comments(lines: Sequence[str]) -> list[str]:
-    """What comments say, without their marks."""
-    texts = (line.strip() for line in lines if line.lstrip().startswith(COMMENTS))
-    return [text.lstrip("#%/ \t") for text in texts]
 
 
 def open_bytes(path: Path) -> IO[bytes]:

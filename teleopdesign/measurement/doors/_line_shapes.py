@@ -35,8 +35,7 @@ _PAIR = re.compile(
     r"[\s,;|]*+([^\W\d][\w./]*+(?:\[\d++\])?)\s*+[=:]\s*+"
     r"([-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d++)?|nan)([^\W\d]*+)(?:[\s,;|]++|$)"
 )
-#: a name in quotes, as Python prints those of a dict; and a name with a vector behind it
-_QUOTED = re.compile(r"(['\"])([^\W\d][\w./ ]*+)\1(?=\s*+:)")
+#: a name with a vector behind it
 _NAMED_VECTOR = re.compile(r"([^\W\d][\w./]*+)\s*+[=:]\s*+(?:array\()?[\[(]([^\[\]()=:]*+)[\])]\)?")
 #: lines of a trace that name a signal, and after which its rows begin
 _NAME = re.compile(r"\d++\.Variable\s*+;(.*)$")
@@ -143,7 +142,7 @@ def names_and_values(lines: Sequence[str], file: str) -> LineShape | None:
 def pairs_of(line: str) -> list[tuple[str, str, str]]:
     """(name, number, unit) of each pair in a line; empty if the line is anything but pairs."""
     pairs, end = [], 0
-    if any(sign in line for sign in "[({"):
+    if any(sign in line for sign in "[("):
         line = _with_elements(line)
     while end < len(line) and (match := _PAIR.match(line, end)) is not None:
         pairs.append((match[1], match[2], match[3]))
@@ -152,15 +151,12 @@ def pairs_of(line: str) -> list[tuple[str, str, str]]:
 
 
 def _with_elements(line: str) -> str:
-    """A line of pairs with a pair for each element of its vectors, without braces and quotes."""
+    """A line of pairs with a pair for each element of its vectors."""
 
     def elements(match: re.Match[str]) -> str:
         numbers = [number for number in re.split(r"[\s,;]+", match[2]) if number]
         return " ".join(f"{match[1]}[{k}]={number}" for k, number in enumerate(numbers))
 
-    line = _QUOTED.sub(lambda m: m[2].replace(" ", "_"), line.strip())
-    if line.startswith("{") and line.endswith("}"):
-        line = line[1:-1]
     return _NAMED_VECTOR.sub(elements, line)
 
 

@@ -6,19 +6,16 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 
 from ...base.errors import ExperimentError, quote
+from ..limits import SEVERAL
 from ._cells import is_empty
 from ._dialect import COMMENTS, Dialect, cells_of, is_value, without_end
-from ._log import MOST_BYTES, join_names, refuse_size
+from ._log import MOST_BYTES, refuse_size
 
 #: most lines that are no rows (messages of a logger that restarts, a garbled row), as a number and
 #: as a part of the rows, that are left out. More such lines mean that the table has another form
 FEW_STRAYS, MOST_STRAYS = 10, 0.01
-#: columns from which on a word in each is no message of a logger
-FEWEST_OF_A_HEADER = 3
 #: lines that are looked at together, and with what a row of plain numbers begins
 _BLOCK, _BEGINS_A_ROW = 5_000, frozenset("0123456789+-.")
-#: what stands for bytes that are no letter, as at the end of a file that was cut within a letter
-CUT_LETTER = "\ufffd"
 _BEGINS_A_NUMBER = (*'0123456789+-.,;|\t"',)
 
 
@@ -33,7 +30,6 @@ def rows_of_numbers(
     """
     width, separator = len(dialect.header), dialect.separator
     count = bytes_read = again = 0
-    cut = False  # whether the last line was left out: the last line of a file may be incomplete
     lines_read = 0
     lines_of = iter(stream)
     while lines := list(islice(lines_of, _BLOCK)):
@@ -43,15 +39,13 @@ def rows_of_numbers(
         if bytes_read > MOST_BYTES:
             raise ExperimentError(f"{file}: found over {MOST_BYTES:.2g} bytes of text")
         if begin >= dialect.first and _are_plain_rows(lines, dialect):
-            count, cut = count + len(lines), False
+            count += len(lines)
             yield from lines
             continue
         for k, line in enumerate(lines, begin):
             bare = line.lstrip()
             if k < dialect.first or not bare or bare.startswith(COMMENTS):
                 continue
-            if line[-1] == CUT_LETTER:  # without an end of line: the last one of the file
-                return
             line = without_end(line, separator)
             if is_another_header(line, dialect):
                 raise ExperimentError(
@@ -60,12 +54,12 @@ def rows_of_numbers(
                 )
             if dialect.labels and is_header_again(line, dialect):
                 strays.append(count + 1)
-                again, cut = again + 1, False
+                again += 1
                 continue
             count += 1
             cells = len(line.split()) if separator == " " else line.count(separator) + 1
             quoted_cells = '"' in line and separator != " "
-            if cut := cells < width and not quoted_cells or is_text(line, dialect):
+            if cells < width and not quoted_cells or is_text(line, dialect):
                 strays.append(count)
                 count -= 1
                 if len(strays) - again > max(FEW_STRAYS, MOST_STRAYS * count):
@@ -73,12 +67,9 @@ def rows_of_numbers(
                 continue
             if cells > width and not quoted_cells and separator != " ":
                 if cells > width + 1 or not line.rstrip("\r\n").endswith(separator):
-                    nameless = text_without_name(line, dialect) if count == 1 else ""
-                    raise ragged_row_error(file, count, cells, width, nameless)
+                    raise ragged_row_error(file, count, cells, width)
                 line = line.rstrip("\r\n")[:-1] + "\n"
             yield line
-    if cut:
-        strays.pop()  # reported as an incomplete row
 
 
 def _are_plain_rows(lines: Sequence[str], dialect: Dialect) -> bool:
@@ -87,7 +78,7 @@ def _are_plain_rows(lines: Sequence[str], dialect: Dialect) -> bool:
     if separator == " " or not {line[:1] for line in lines} <= _BEGINS_A_ROW:
         return False
     cells = {line.count(separator) + 1 for line in lines}
-    odd, text = ('"', CUT_LETTER, *";" * (separator != ";")), "".join(lines)
+    odd, text = ('"', *";" * (separator != ";")), "".join(lines)
     return cells == {len(dialect.header)} and not any(x in text for x in odd)
 
 
@@ -112,7 +103,7 @@ def is_another_header(line: str, dialect: Dialect) -> bool:
     Of two columns, a message of the logger may do that too.
     """
     width = len(dialect.header)
-    if not dialect.named or dialect.separator == " " or width < FEWEST_OF_A_HEADER:
+    if not dialect.named or dialect.separator == " " or width < SEVERAL:
         return False
     if line.lstrip()[:1] in _BEGINS_A_NUMBER:
         return False
@@ -122,19 +113,7 @@ def is_another_header(line: str, dialect: Dialect) -> bool:
     return not any(cells == cells_of(above, dialect.separator) for above in dialect.remarks)
 
 
-def ragged_row_error(
-    file: str, row: int, cells: int, width: int, more: str = ""
-) -> ExperimentError:
+def ragged_row_error(file: str, row: int, cells: int, width: int) -> ExperimentError:
     return ExperimentError(
-        f"{file}: row {row}: found {cells} cells, expected {width} as in the header{more}"
+        f"{file}: row {row}: found {cells} cells, expected {width} as in the header"
     )
-
-
-def text_without_name(line: str, dialect: Dialect) -> str:
-    """What to do about the first row's texts, such as a tag before its numbers; "" without one."""
-    cells = cells_of(line, dialect.separator)
-    texts = [k for k, c in enumerate(cells) if not is_value(c, dialect.comma) and not is_empty(c)]
-    if not texts or len(cells) != len(dialect.header) + 1:
-        return ""
-    where = join_names([f"{quote(cells[k])} in cell {k + 1}" for k in texts], most=3)
-    return f"; the header may leave out the name of a text ({where}): write it there"

@@ -71,22 +71,15 @@ def _check_definitions(source: Path, file: str) -> None:
     """
     readers = [optional(f"rosbags.rosbag{k}", file, "ros") for k in (1, 2)]
     typesys = optional("rosbags.typesys", file, "ros")
-    idl = optional("rosbags.typesys.idl", file, "ros")
     with readers[source.suffix != ".bag"].Reader(source) as reader:
         for connection in reader.connections:
             _check_type_name(connection.msgtype, file)
-            text = connection.msgdef.data
-            if connection.msgdef.format.name == "MSG":
-                types = typesys.get_types_from_msg(text, connection.msgtype)
-            elif connection.msgdef.format.name == "IDL":
-                parts = [
-                    p.split("\n", 1)[-1] if "IDL: " in p else p for p in text.split("=" * 80 + "\n")
-                ]
-                types = {
-                    n: t for part in parts if part for n, t in idl.get_types_from_idl(part).items()
-                }
-            else:
+            text, written = connection.msgdef.data, connection.msgdef.format.name
+            if written == "NONE":  # of old bags, whose types rosbags knows
                 continue
+            if written != "MSG":
+                raise ExperimentError(f"{file}: found definitions in {written}, expected in MSG")
+            types = typesys.get_types_from_msg(text, connection.msgtype)
             for name, (constants, its_fields) in types.items():
                 _check_type_name(name, file)
                 for field, kind in its_fields:

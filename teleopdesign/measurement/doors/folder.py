@@ -36,13 +36,9 @@ def open_folder(
     stems = [t.name.split(".")[0] for t in tables]
     names = stems if len(set(stems)) == len(stems) else [t.name for t in tables]
     logs = {n: open_one(t, f"{file}/{t.name}") for n, t in zip(names, tables, strict=True)}
-    signals = dict(zip(_without_shared_words(names), logs.values(), strict=True))
-    if _are_signals(signals):
-        return _log_of_signals(signals)
     if are_quantities(names, [log.names for log in logs.values()]):
-        if not any(likeness(n, "time") > 0 for log in signals.values() for n in log.names):
-            return _log_of_signals(signals, of_joints=True)
-        logs, name_of = signals, _field_name
+        logs = dict(zip(_without_shared_words(names), logs.values(), strict=True))
+        name_of = _field_name
     else:
         _refuse_same_columns(logs, folder, [t.name for t in tables])
         name_of = _topic_name
@@ -73,14 +69,6 @@ def open_folder(
         return tuple(f"{n}: {note}" for n, log in logs.items() for note in log.left_out())
 
     return Log(tuple(columns), read, units, tuple(notes), clocks, left_out)
-
-
-def _are_signals(logs: Mapping[str, Log]) -> bool:
-    """Whether tables without header are signals whose files are named by them: "position.csv"."""
-    plain = all(
-        log.names == tuple(_names_with_numbers("column", len(log.names))) for log in logs.values()
-    )
-    return plain and _name_both(logs)
 
 
 def are_quantities(tables: Sequence[str], headers: Sequence[tuple[str, ...]]) -> bool:
@@ -124,40 +112,6 @@ def _without_shared_words(names: Sequence[str]) -> list[str]:
     return shorter if all(shorter) and len(set(shorter)) == len(names) > 1 else list(names)
 
 
-def _names_with_numbers(name: str, count: int) -> list[str]:
-    return [f"{name} {k + 1}" for k in range(count)]
-
-
-def _log_of_signals(logs: Mapping[str, Log], of_joints: bool = False) -> Log:
-    """Signals of tables without time, row by row: "position 1", "torque 1".
-
-    of_joints: the columns have names: "joint_1.position", "joint_1.torque"
-    """
-
-    def names_in(table: str, log: Log) -> list[str]:
-        if of_joints:
-            return [_field_name(table, column) for column in log.names]
-        return _names_with_numbers(table, len(log.names)) if len(log.names) > 1 else [table]
-
-    columns = {
-        name: (table, column)
-        for table, log in logs.items()
-        for name, column in zip(names_in(table, log), log.names, strict=True)
-    }
-
-    def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
-        out: dict[str, Any] = {}
-        for table, log in logs.items():
-            here = {w: columns[w][1] for w in wanted if columns[w][0] == table}
-            values = log.read({column: wanted[w] for w, column in here.items()}) if here else {}
-            out |= {w: values[column] for w, column in here.items()}
-        return out
-
-    without = "time" if of_joints else "header"
-    note = f"{len(logs)} tables without {without}, row by row: {join_names(logs)}"
-    return Log(tuple(columns), read, notes=(note,))
-
-
 def _refuse_same_columns(logs: Mapping[str, Log], folder: Path, files: Sequence[str]) -> None:
     headers = [log.names for log in logs.values()]
     if len(headers) > 1 and len(set(headers)) < len(headers):
@@ -172,9 +126,8 @@ def _time_column(log: Log, file: str) -> str:
     best = max(log.names, key=lambda name: likeness(name, "time"))
     if likeness(best, "time") == 0.0:
         raise ExperimentError(
-            f"{file}: found no column that is called time among "
-            f"{join_names(log.names)}: tables side "
-            "by side need one each"
+            f"{file}: found no column that is called time among {join_names(log.names)}, expected "
+            "one in each table of a folder, or one table with all columns"
         )
     return best
 

@@ -14,7 +14,6 @@ from ...base.errors import ExperimentError, quote
 from ..column_names import unit_of_text
 from ._log import (
     MOST_COLUMNS,
-    MOST_PARTS,
     Log,
     how_to_save,
     optional,
@@ -53,8 +52,7 @@ def open_hdf5(path: Path, file: str) -> Log:
             if name.startswith("#"):  # where MATLAB keeps its cells
                 continue
             item = content[name]
-            if item.dtype == h5py.ref_dtype:
-                columns |= _fields_of_structs(content, item, name)
+            if item.dtype == h5py.ref_dtype:  # fields of an array of structs lie elsewhere
                 continue
             unit = _unit(item)
             if _OBJECT in item.attrs:
@@ -102,18 +100,3 @@ def _unit(item: Any) -> str | None:
             if isinstance(text, str) and text.strip():
                 return unit_of_text(text) or text.strip()
     return None
-
-
-def _fields_of_structs(
-    content: Any, item: Any, name: str
-) -> dict[str, tuple[str, int | str | None]]:
-    """Columns of one field of an array of structs, "axis(2)/q"; their values lie elsewhere."""
-    columns: dict[str, tuple[str, int | str | None]] = {}
-    group, _, field = name.rpartition("/")
-    for k, reference in enumerate(item[()].reshape(-1)[:MOST_PARTS], start=1):
-        target = content[reference] if reference else None
-        if target is None or not hasattr(target, "shape") or target.dtype.kind not in "fiu":
-            continue
-        if target.size > 1 and 1 in target.shape:
-            columns[f"{group}({k})/{field}" if group else f"{field}({k})"] = (target.name, None)
-    return columns

@@ -2,14 +2,13 @@
 
 Nested keys become columns such as "joint.pos". The numbers of a list become "q(1)", "q(2)", or
 "elbow.q" where the record names its joints in a list `name`. Several lists of records with the same
-fields are trials of one log, and so are a few records that hold long lists of numbers.
+columns are several recordings.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +16,9 @@ import numpy as np
 
 from ...base.errors import ExperimentError, quote
 from ._dialect import open_bytes
-from ._log import DEPTH, MOST_BYTES, MOST_FIELDS, Log, refuse_size
+from ._log import DEPTH, MOST_BYTES, MOST_FIELDS, Log, join_names, refuse_size
 from ._stray_lines import FEW_STRAYS, MOST_STRAYS
 from .shapes._table import MOST_ROWS
-
-#: column that numbers the lists of records with the same fields
-TRIAL = "trial"
 
 
 def open_json(path: Path, file: str) -> Log:
@@ -40,7 +36,13 @@ def open_json(path: Path, file: str) -> Log:
             content, strays = _records_of_lines(text, file)
     except RecursionError:
         raise ExperimentError(f"{file}: found JSON that is nested too deep") from None
-    columns, names = _columns(content if isinstance(content, list | dict) else [])
+    columns, trials = _columns(content if isinstance(content, list | dict) else [])
+    if len(trials) > 1:
+        named = join_names(map(quote, trials), most=4)
+        raise ExperimentError(
+            f"{file}: found the same columns in {named}, expected one recording: save each as a "
+            "file of its own, and give them together"
+        )
     if not columns:
         raise ExperimentError(
             f"{file}: found JSON without records, expected one record a line, a list of records, "
@@ -49,8 +51,6 @@ def open_json(path: Path, file: str) -> Log:
     refuse_size(max(map(len, columns.values())), file)
     lines = "a line that is no record" if strays == 1 else f"{strays} lines that are no records"
     notes: tuple[str, ...] = (f"{lines}: left out",) if strays else ()
-    if names:
-        notes += (f"{len(names)} trials, {TRIAL!r} numbers them: {', '.join(map(quote, names))}",)
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         return {name: np.array(columns[name], dtype=object) for name in wanted}
@@ -75,78 +75,42 @@ def _records_of_lines(text: str, file: str) -> tuple[list[Any], int]:
     return records, strays
 
 
-def _columns(content: list[Any] | dict[str, Any]) -> tuple[dict[str, list[Any]], tuple[str, ...]]:
-    """Columns of records, None where a record lacks a key; or the columns of a record of lists.
+def _columns(content: list[Any] | dict[str, Any]) -> tuple[dict[str, list[Any]], list[str]]:
+    """Columns of the longest list of records, None where a record lacks a key, or of lists.
 
-    returns: the columns, and the names of the trials, if there are several
+    returns: the columns, and the names of all tables that have them
     """
     if isinstance(content, list):
-        return _join(_tables("record", content))
+        content = {"record": content}
     lists = _lists("", content, 0)
     tables: dict[str, dict[str, list[Any]]] = {}
     for name, records in content.items():
         if isinstance(records, list) and records:
             tables |= _tables(name, records)
     # beside a table, short lists such as limits are settings
-    if lists and _rows(lists) >= max(map(_rows, tables.values()), default=0):
-        return lists, ()
-    return _join(tables)
+    if not tables or lists and _rows(lists) >= max(map(_rows, tables.values())):
+        return lists, []
+    longest = max(tables, key=lambda name: _rows(tables[name]))
+    columns = tables[longest]
+    return columns, [n for n, t in tables.items() if _rows(t) > 1 and list(t) == list(columns)]
 
 
 def _tables(name: str, records: list[Any]) -> dict[str, dict[str, list[Any]]]:
-    """The table of a list of records, or one of each record that holds the lists of a trial."""
-    trials = [_lists("", r, 0) if isinstance(r, dict) else {} for r in records]
-    if all(_is_trial(trial, len(records)) for trial in trials):
-        whole = [{n: v for n, v in t.items() if len(v) == _rows(t)} for t in trials]
+    """The table of a list of records, or one of each record that holds lists of numbers.
+
+    The lists of a robot's joints are shorter than its log, and one long list is none of columns.
+    """
+    held = [_lists("", r, 0) if isinstance(r, dict) else {} for r in records]
+    longest = [[len(v) for v in t.values()].count(_rows(t)) for t in held]
+    if all(_rows(t) > len(records) and n > 1 for t, n in zip(held, longest, strict=True)):
+        whole = [{n: v for n, v in t.items() if len(v) == _rows(t)} for t in held]
         return {f"{name}({k})": t for k, t in enumerate(whole, start=1)}
     return {name: _columns_of_records(records)}
-
-
-def _is_trial(lists: Mapping[str, list[Any]], records: int) -> bool:
-    """Whether lists of one record are columns: two of a length, which exceeds that of all records.
-
-    The lists of a robot's joints are shorter than its log.
-    """
-    rows = _rows(lists)
-    return rows > records and [len(v) for v in lists.values()].count(rows) > 1
-
-
-def _join(
-    tables: Mapping[str, dict[str, list[Any]]],
-) -> tuple[dict[str, list[Any]], tuple[str, ...]]:
-    """The longest table; with those that have the same columns, as trials of one log.
-
-    returns: the columns, and the names of the trials, if there are several
-    """
-    if not tables:
-        return {}, ()
-    longest = max(tables.values(), key=_rows)
-    alike = {n: t for n, t in tables.items() if _rows(t) > 1 and list(t) == list(longest)}
-    if len(alike) < 2 or TRIAL in longest:
-        return longest, ()
-    starts = {n: _start(t) for n, t in alike.items()}
-    order = (
-        list(alike) if None in starts.values() else sorted(alike, key=lambda n: starts[n] or 0.0)
-    )
-    joined = {column: [v for n in order for v in alike[n][column]] for column in longest}
-    joined[TRIAL] = [k for k, n in enumerate(order, start=1) for _ in range(_rows(alike[n]))]
-    return joined, tuple(order)
 
 
 def _rows(table: Mapping[str, list[Any]]) -> int:
     """Number of rows of a table; 0 for one without columns."""
     return max(map(len, table.values()), default=0)
-
-
-def _start(table: Mapping[str, list[Any]]) -> float | None:
-    """The first stamp, by which trials are put into order; None: the first column holds no stamps.
-
-    Stamps never fall. A set point may begin at any value, whichever trial came first.
-    """
-    first = next(iter(table.values()))
-    if not all(isinstance(v, int | float) for v in first):
-        return None
-    return float(first[0]) if all(a <= b for a, b in pairwise(first)) else None
 
 
 def _columns_of_records(content: list[Any]) -> dict[str, list[Any]]:

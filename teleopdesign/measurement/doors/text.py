@@ -32,7 +32,7 @@ from ._dialect import (
 )
 from ._line_shapes import LINE_SHAPES
 from ._log import Log
-from ._stray_lines import CUT_LETTER, rows_of_numbers
+from ._stray_lines import rows_of_numbers
 from .shapes import best_shape, table_of
 from .shapes._table import MOST_ROWS
 
@@ -137,8 +137,6 @@ def _log_of(text: _Text, sample: Mapping[str, Any]) -> Log:
         notes.append(f"{SEPARATORS[dialect.separator]} between columns{comma}")
     if dialect.encoding not in ("utf-8", "utf-8-sig"):
         notes.append(f"text in {dialect.encoding}")
-    if _is_cut_off(text):
-        notes.append("a last row that was cut off")
     if not dialect.named:
         notes.append("no header: columns are named by their number")
     elif dialect.header[-1].endswith(f"(:,{len(dialect.header) - 1})"):
@@ -181,16 +179,6 @@ def _without_blank_columns(
         for cell, (name, column) in zip(cells, sample.items(), strict=True)
         if cell or column.dtype.kind != "f" or np.any(np.isfinite(column))
     }
-
-
-def _is_cut_off(text: _Text) -> bool:
-    """Whether the last row has too few cells; False for packed files and for space as separator."""
-    lines = text.last_lines()
-    if lines and lines[-1][-1:] == CUT_LETTER:
-        return True
-    lines = [] if text.dialect.separator == " " else lines
-    cells = cells_of(lines[-1], text.dialect.separator) if len(lines) > 1 else []
-    return 0 < len(cells) < len(text.dialect.header)
 
 
 def _read(text: _Text, names: Sequence[str], strays: list[int]) -> dict[str, Any]:

@@ -15,8 +15,9 @@ from pathlib import PurePath
 import numpy as np
 
 from ...base.errors import ExperimentError, did_you_mean
-from ...base.units import is_several_times, is_unit
-from ..column_names import WORDS, as_unit, words_of
+from ...base.units import is_several_times, is_unit, parse_unit
+from ..channel import BODY_QUANTITIES
+from ..column_names import WORDS, as_unit, unit_in_name, words_of
 from ..doors._log import Log, join_names
 from ..doors.folder import are_quantities
 from ..encoder import Array
@@ -24,7 +25,7 @@ from ..numbers_in_cells import numbers_of
 from ..record_clock import FEWEST, segments_of
 from ..stamps import unwrap_stamps
 from .axis_kind import axis_of
-from .clock import duration_of, interpolate_columns, numeric_columns, time_column
+from .clock import WEIGHTS, duration_of, interpolate_columns, numeric_columns, time_column
 from .content import ASSUMED, NONE, Choices, Survey, SurveyedColumn
 from .derivative import wrap_of
 from .forces import describe_forces
@@ -51,8 +52,6 @@ UNITS = (
 FIT_PART = 0.6
 #: part of a log by which a cut moves to lie between two trials
 NEAR_CUT = 0.25
-#: rows of a trial, on average: what changes more often is a signal
-ROWS_OF_A_TRIAL = 50
 
 
 def survey_log(log: Log, file: str, choices: Choices) -> Survey:
@@ -101,6 +100,7 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     describe_position(survey, position, velocity, choices)
     describe_forces(survey, position, velocity, choices, file)
     _units_in_use(survey, choices, file)
+    _doubt_units(survey, log, choices)
     survey.unused = unused_columns(log, raw, survey)
     survey.columns = columns
     return survey
@@ -190,6 +190,25 @@ def _units_in_use(survey: Survey, choices: Choices, file: str) -> None:
             )
 
 
+def _doubt_units(survey: Survey, log: Log, choices: Choices) -> None:
+    """Mark the unit of a channel as a guess where the log states another one for its column."""
+    for key in ("position", "velocity", "actuator_force", "interaction_force"):
+        entry = survey.channels.get(key, {})
+        if (column := entry.get("column")) is None or column in choices.units:
+            continue
+        unit, named = entry["unit"], unit_in_name(column, BODY_QUANTITIES[key], survey.axis)
+        written, why = log.units.get(column) or unit_in_name(column), f"channels.{key}.unit"
+        if written in WEIGHTS and unit == WEIGHTS[written]:
+            survey.guesses[why] = f"{unit}: {column!r} in {written} is read as the weight that acts"
+        elif column in log.units and named and not _are_same(named, unit):
+            survey.guesses[why] = f"{unit}: a row of units states it, the name {column!r} another"
+
+
+def _are_same(one: str, other: str) -> bool:
+    """Whether two texts mean the same unit."""
+    return one == other or "counts" not in (one, other) and parse_unit(one) == parse_unit(other)
+
+
 def spans_of(
     duration: float, trials: Sequence[float] = ()
 ) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -229,7 +248,8 @@ def trial_column(raw: Mapping[str, Array]) -> str | None:
         if not set(WORDS["segment"]).intersection(words_of(name)):
             continue
         changes = int(np.count_nonzero(np.diff(values)))
-        if np.all(values == np.round(values)) and 0 < changes * ROWS_OF_A_TRIAL < len(values):
+        # trials with fewer rows than a record, on average, are none: what changes more is a signal
+        if np.all(values == np.round(values)) and 0 < changes * FEWEST < len(values):
             return name
     return None
 

@@ -49,13 +49,6 @@ def _axis_numbers(name: str) -> tuple[str, ...]:
     return (*_NUMBERS.findall(bare), *map(str.lower, _SPACE.findall(bare)))
 
 
-def same_but_axis(one: str, other: str) -> bool:
-    """Whether two names differ in the number of their axis only, "joint1" and "joint2"."""
-    numbers = {_axis_numbers(name) for name in (one, other)}
-    stems = {_NUMBERS.sub("#", _SPACE.sub("#", bare_name(name))) for name in (one, other)}
-    return len(numbers) == 2 and () not in numbers and len(stems) == 1
-
-
 def of_another_axis(one: str, other: str, names: Collection[str] = ()) -> bool:
     """Whether two columns belong to two axes: "J1_current", "J2_angle"; "slave_pos", "master_cmd".
 

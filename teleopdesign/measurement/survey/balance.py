@@ -106,18 +106,13 @@ def _may_balance(column: SurveyedColumn, axis: str, *, named: bool) -> bool:
 
 
 def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choices) -> None:
-    """Guess gear ratio, motor constant and lever arm if neither the user nor the log states them.
+    """Guess motor constant and lever arm if neither the user nor the log states them.
 
     The one that is open follows from the factor by which the command balances the force of the
     hand. If this factor is far from one and none of them is guessed, a note reports it.
     """
     stated = gear_ratio_in(survey.remarks) if choices.gear_ratio is None else None
-    is_motors = choices.gear_ratio is None and all(
-        says(_column_of(survey, key), "motor side") for key in ("position", "actuator_force")
-    )
-    if stated is not None and is_motors:
-        _guess_gear(survey, stated[0], f"a line of the log states {stated[1]!r}")
-    elif stated is not None:
+    if stated is not None:
         survey.notes.append(
             f"a line of the log states {stated[1]!r}: if position and force are those of "
             f"the motor, use --gear-ratio {stated[0]:g}"
@@ -138,15 +133,10 @@ def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choic
     elif not still_open and not 1 / FACTOR_OF_ONE < scale < FACTOR_OF_ONE:
         factor = with_standard_error(scale, error)
         force, hand = (_column_of(survey, f"{k}_force") for k in ("actuator", "interaction"))
-        if is_motors and stated is None and scale > 1:
-            whole = float(round(scale))
-            ratio = whole if abs(scale - whole) < 2 * error else float(f"{scale:.3g}")
-            _guess_gear(survey, ratio, f"{force!r} balances {hand!r} with a factor of {factor}")
-        else:
-            survey.notes.append(
-                f"{force!r} balances {hand!r} only with a factor of {factor}: one of the two has "
-                "another unit (--unit), or a gear lies between (--gear-ratio)"
-            )
+        survey.notes.append(
+            f"{force!r} balances {hand!r} only with a factor of {factor}: one of the two has "
+            "another unit (--unit), or a gear lies between (--gear-ratio)"
+        )
 
 
 def _column_of(survey: Survey, key: str) -> str:
@@ -193,16 +183,6 @@ def _guess_constant(survey: Survey, key: str, part: str, scale: float, error: fl
     survey.guesses[f"channels.{key}.{part}"] = (
         f"{value} {table['unit']}: with it, {_column_of(survey, key)!r} balances "
         f"{_column_of(survey, other)!r}{doubt}"
-    )
-
-
-def _guess_gear(survey: Survey, ratio: float, why: str) -> None:
-    """Position, velocity and command are those of the motor: set the gear ratio to the joint."""
-    for key in ("position", "velocity", "actuator_force"):
-        if key in survey.channels:
-            survey.channels[key]["gear_ratio"] = ratio
-    survey.guesses["channels.position.gear_ratio"] = (
-        f"{ratio:g}: the names of position and force are those of a motor, and {why}"
     )
 
 

@@ -17,7 +17,8 @@ from ..numbers_in_cells import holds_dates, numbers_of
 from ..record_clock import clock_of
 from ..repeated_rows import rows_between_readings
 from ..signed_numbers import sign_code_of
-from ..stamps import seconds_since_first, unit_in_place_of, unit_of_steps
+from ..spikes import lost_zeros
+from ..stamps import seconds_since_first, unit_of_steps
 from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, reasons, rises, unit_in_log
 from .remarks import sample_rate_in
 from .time_role import (
@@ -31,6 +32,8 @@ from .time_role import (
 
 #: rows that are looked at
 MOST = 60_000
+#: units in which load cells are read, and those of the weight that acts
+WEIGHTS = {"kg": "kgf"}
 
 
 def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, str], Log]:
@@ -119,8 +122,6 @@ def time_column(
             counted = "channels.time.column" in guesses and counts_rows(raw[name])
             more = "; if it counts the rows: --sample-rate HZ" if counted else ""
             guesses["channels.time.unit"] = why + more
-    elif name not in choices.units and (other := unit_in_place_of(unit, raw[name])):
-        unit, guesses["channels.time.unit"] = other
     return name, unit
 
 
@@ -177,9 +178,11 @@ def interpolate_columns(
             continue
         column_unit = choices.units.get(name) or log.units.get(name)
         column_unit = column_unit or unit_in_log(name, log.names)
+        column_unit = WEIGHTS.get(column_unit or "", column_unit)
         # the counter of a position wraps, which is the same as a sign
-        is_counter = likeness(name, "position") >= SURE_NAME and not is_wanted(name)
-        code = None if is_counter else sign_code_of(x[fine])
+        is_position = likeness(name, "position") >= SURE_NAME and not is_wanted(name)
+        fine &= ~lost_zeros(x) if is_position else True
+        code = None if is_position else sign_code_of(x[fine])
         readings = x[fine] if code is None else code.decode(x[fine])
         grid = np.interp(clock.time, at[fine], readings)
         columns[name] = SurveyedColumn(name, grid, readings, column_unit, code)

@@ -17,7 +17,7 @@ from ...base.toml import Table
 from ...base.units import is_unit, measures, unit_of
 from ..column_names import is_wanted, unit_in_name, why_no_unit
 from ..conversion import conversion_of
-from ..encoder import Array, reading_noise
+from ..encoder import reading_noise
 from ..signed_numbers import SIGN_BIT
 from .content import Choices, Survey
 from .remarks import torque_constant_in
@@ -28,9 +28,6 @@ PLACEHOLDER = 1.0
 #: names of forces in parts of what a drive is rated for: "[0.1%]", "(%)", "permille", and objects
 #: of drives on a field bus (CiA 402), which are in thousandths
 PER_CENT = re.compile(r"[%‰]|per ?mill?e|\b0x60(?:71|74|77|78)\b", re.I)
-#: bits of analog inputs; and part of the middle by which their mean may lie beside it: offsets of
-#: amplifiers and a mean force. A count of something else lies there by chance once in ten
-INPUT_BITS, NEAR_MIDDLE = (8, 10, 12, 14, 16), 0.1
 #: scatter over the standard deviation of the force below which none is stated: a noise floor of
 #: less than a thousandth of the force decides nothing
 LEAST = 1e-3
@@ -48,12 +45,6 @@ def describe_force(survey: Survey, name: str, key: str, choices: Choices) -> dic
     unit = survey.columns[name].unit or unit_in_name(name, "force", axis)
     entry: dict[str, Any] = {"column": name}
     entry |= describe_code(survey, name, key)
-    if unit is None and (middle := _middle_of_input(survey.columns[name].readings)):
-        entry["offset"] = -middle
-        survey.guesses[f"channels.{key}.offset"] = (
-            f"{-middle:g}: {name!r} holds whole numbers about {middle:g} and none below 0, as an "
-            "analog input does; the middle of the range of this input is zero force"
-        )
     if unit is None and choices.torque_constant is not None and key == "actuator_force":
         if not (says(name, "torque") and not says(name, "current")):
             unit = choices.torque_constant[1].rpartition("/")[2]
@@ -126,16 +117,6 @@ def describe_code(survey: Survey, name: str, key: str) -> dict[str, Any]:
         "experiment.toml"
     )
     return {code.key: code.bits}
-
-
-def _middle_of_input(readings: Array) -> float:
-    """The middle of an analog input's range about which the readings lie; 0.0: no such input."""
-    values = readings[np.isfinite(readings)]
-    if not len(values) or values.min() < 0 or not np.array_equal(values, np.round(values)):
-        return 0.0
-    bits = next((n for n in INPUT_BITS if values.max() < 2**n), None)
-    middle = 0.0 if bits is None else 2.0 ** (bits - 1)
-    return middle if abs(float(np.mean(values)) - middle) < NEAR_MIDDLE * middle else 0.0
 
 
 def _unit_at_lever(name: str, unit: str | None) -> str | None:

@@ -87,14 +87,12 @@ def _score_forces(
     survey: Survey, position: str, free: Mapping[str, SurveyedColumn], is_current: bool
 ) -> dict[str, float]:
     """The score of each column that may be the force;  is_current: the user says that it is one."""
-    sizes = _sizes_beside_signed(free, position, survey)
     return {
         n: score_of(
             "actuator_force",
             c,
             left=1.0 - survey.explained[n],
             its_constant_is_stated=is_current and _is_for_constant(c),
-            size_beside_a_signed_one=n in sizes,
             beside_the_position=stand_together(n, position),
             of_another_axis=of_another_axis(n, position, survey.columns),
         )
@@ -142,20 +140,6 @@ def _find_driving_force(
     if why is not None:
         survey.guesses["channels.actuator_force.column"] = why
     return force, acted is not None
-
-
-def _sizes_beside_signed(
-    free: Mapping[str, SurveyedColumn], position: str, survey: Survey
-) -> set[str]:
-    """The columns without a negative reading beside one of the same axis whose sign is a bit.
-
-    Servos on a bus report the load of their motor with a sign, and only the size of its current.
-    """
-    if not any(
-        c.code and not of_another_axis(n, position, survey.columns) for n, c in free.items()
-    ):
-        return set()
-    return {n for n, c in free.items() if c.code is None and c.readings.min() >= 0}
 
 
 def _is_for_constant(column: SurveyedColumn) -> bool:

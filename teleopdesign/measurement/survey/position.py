@@ -209,25 +209,6 @@ def describe_position(
     if velocity is not None and is_rate(survey, velocity):
         rate = {"column": velocity, "unit": survey.columns[velocity].unit, **gear}
         survey.channels["velocity"] = rate | describe_code(survey, velocity, "velocity")
-        _hold_time_against(survey, column, velocity)
-
-
-def _hold_time_against(survey: Survey, column: SurveyedColumn, velocity: str) -> None:
-    """Check a guessed unit of time: a position and its velocity show the true time step."""
-    why, unit = survey.guesses.get("channels.time.unit"), survey.channels["position"]["unit"]
-    if why is None or unit == "counts" or "channels.position.unit" in survey.guesses:
-        return
-    slower = size_by_velocity(survey, column, velocity)
-    slower /= si_factor(unit, quantity="position", axis=survey.axis)
-    if slower <= 0 or abs(slower - 1.0) < SMALL:
-        return
-    clock = survey.channels["time"]
-    tick = 1e6 * si_factor(clock["unit"], quantity="time") / slower
-    stated = f"{clock['column']}={float(f'{tick:.3g}'):g} us"
-    survey.guesses["channels.time.unit"] = (
-        f"{why}; but {velocity!r} in {survey.columns[velocity].unit} requires steps of "
-        f"{sample_time_of(survey) / slower:.3g} s: --unit {stated!r}"
-    )
 
 
 def _step_of_readings(values: Array) -> float:

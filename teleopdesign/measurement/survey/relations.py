@@ -19,7 +19,7 @@ from ..doors._log import Log
 from ..encoder import SURELY, Array
 from ..first_guess import least_squares, stretch_of
 from ..law_of_readings import is_copy
-from .axes import of_another_axis, same_but_axis
+from .axes import of_another_axis
 from .content import (
     SURE_NAME,
     Survey,
@@ -76,8 +76,6 @@ def _relation(column: SurveyedColumn, position: str, x: Array, speed: Array | No
             return f"a velocity, but not that of {position!r}"
         beside = is_unit_of(column.unit, "position")
         return f"a position beside {position!r}" if beside else f"a column in {column.unit}"
-    if likeness(name, "actuator_force") == 0 and same_but_axis(name, position):
-        return f"a column of another axis than {position!r}: --position chooses the axis"
     if may_be_set_point(column) and has_numbers_of(values, x):
         return f"a set point, or a reading once more: it has the numbers of {position!r}"
     if is_sent_to_places(x, column):
@@ -222,18 +220,10 @@ def _explain_no_force(column: SurveyedColumn, survey: Survey) -> str:
     # a voltage is nearly in proportion to the speed
     may_agree = not is_no_velocity(column)
     if may_agree and rate_agreement(x, column.values, sample_time_of(survey)) > DERIVATIVE:
-        if "velocity" in survey.channels:
-            return f"a second velocity for {position!r}"
-        state = f"its unit is not known: state the unit with --unit {name + '=UNIT'!r}"
-        how = "" if column.unit else f"; {state}"
-        return f"the velocity of {position!r}, which is computed from the position{how}"
-    for quantity in ("position", "velocity"):
-        if not column.unit and likeness(name, quantity) >= SURE_NAME:
-            return f"a {quantity}, but not that of {position!r}"
+        how = "" if column.unit else f"; --unit {name + '=UNIT'!r} states its unit"
+        return f"a velocity of {position!r}, which is computed from the position{how}"
     force = survey.channels["actuator_force"]["column"]
     share, best = (survey.explained.get(n) for n in (name, force))
     beside = "" if best is None else f", and {best:.0%} of {force!r}"
     explained = "" if share is None else f": the motion explains {share:.0%} of it{beside}"
-    if likeness(name, "actuator_force") >= SURE_NAME:
-        return f"a second force beside {force!r}{explained}"
-    return f"its name is not that of a force{explained}"
+    return f"no channel beside {force!r}{explained}"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.sentences import percent
 from ...block_cuts.computer import velocity_of
 from ...block_cuts.cuts_ladder import Key
 from ...block_cuts.diagnosis import BlockDiagnosis
@@ -106,8 +107,8 @@ def _table(diagnosis: BlockDiagnosis) -> list[tuple[str, ...]]:
             diagnosis.rows[-1].check[cut.name],
             diagnosis.floors[cut.name],
         )
-        percent = (f"{100 * e:.2g} %" for e in errors)
-        rows.append((cut.name, ", ".join(cut.blocks), *percent, ", ".join(words)))
+        shares = (percent(e, ".2g") for e in errors)
+        rows.append((cut.name, ", ".join(cut.blocks), *shares, ", ".join(words)))
     return rows
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from ...base.sentences import with_standard_error
+from ...base.sentences import percent, with_standard_error
 from ...base.shown import html_table
 from ...base.units import unit_after_number
 from ...blocks import Value
@@ -21,11 +21,6 @@ if TYPE_CHECKING:
 
 #: relative difference from which the error at the command is stated in addition
 DIFFERENT = 0.02
-
-
-def percent(error: float) -> str:
-    """An error in percent; "unknown" where it is not finite: the model is blind everywhere."""
-    return f"{100 * error:.2f} %" if math.isfinite(error) else "unknown"
 
 
 @shows("table")
@@ -172,7 +167,7 @@ def command_error_text(row: LadderRow) -> str | None:
     error, blind = row.check_error_at_command, row.blind
     if abs(error - row.check_error) <= DIFFERENT * row.check_error and blind == 0.0:
         return None
-    undefined = f", undefined in {100 * blind:.2g} % of the motion" if blind else ""
+    undefined = f", undefined in {percent(blind, '.2g')} of the motion" if blind else ""
     return f"check error at the command: {percent(error)}{undefined}"
 
 
@@ -204,9 +199,9 @@ def records_line(diagnosis: Diagnosis) -> str:
     line = f"records: the error on the check records is {ratio:.2g} times that on the fit records"
     if on_all is not None and on_all < 0.5 * after.check_error:
         return (
-            f"{line}. A fit to all records leaves {100 * on_all:.3g} % of the check records: the "
-            "fit records alone do not determine the parameters. Use a record that moves like the "
-            "check records for the fit, too"
+            f"{line}. A fit to all records leaves {percent(on_all, '.3g')} of the check records: "
+            "the fit records alone do not determine the parameters. Use a record that moves like "
+            "the check records for the fit, too"
         )
     return (
         f"{line}: the machine was not the same in both (friction, temperature, load), or moved "
@@ -289,6 +284,6 @@ def _nearest(diagnosis: Diagnosis) -> str:
     if near is None:
         return ""
     return (
-        f" {near.candidate} comes nearest and would leave {100 * near.check_error:.3g} %: "
+        f" {near.candidate} comes nearest and would leave {percent(near.check_error, '.3g')}: "
         f"{near.reason or 'on these records this may be chance'}."
     )

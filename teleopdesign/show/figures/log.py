@@ -28,8 +28,9 @@ _UNUSED = 12
 _LINE = 0.16
 #: most letters of such a line
 _LETTERS = 125
-#: width of the picture, inches beside, below and above its axes, and part of their height between
-_WIDTH, _MARGINS, _BETWEEN = 9.0, (0.95, 0.55, 0.15, 0.3), 0.45
+#: width of the picture, inches beside, below and above its axes (beside: a label of two lines and
+#: numbers such as -0.00015), and part of their height between
+_WIDTH, _MARGINS, _BETWEEN = 9.0, (1.2, 0.55, 0.15, 0.3), 0.45
 _KINDS = {"actuator_force": "force", "interaction_force": "force"}
 
 

@@ -27,7 +27,7 @@ from .._cells import is_column_of_texts
 from .._log import Log, join_names
 from ._table import CellTable, LongSignal, LongTable, as_text, rises, time_of
 from .clock_before_signals import clock_before_signals
-from .machines import machines_by_time, machines_in_turn
+from .machines import machines_in_turn
 from .reading_in_each_row import reading_in_each_row
 from .separate_clocks import separate_clocks
 from .two_part_time import two_part_time
@@ -47,7 +47,6 @@ def columns(table: CellTable) -> LongTable | None:
 SHAPES: tuple[TableShape, ...] = (
     columns,
     two_part_time,
-    machines_by_time,
     machines_in_turn,
     separate_clocks,
     clock_before_signals,

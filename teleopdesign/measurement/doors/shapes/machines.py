@@ -1,11 +1,8 @@
 """Tables whose rows belong to several machines in turn: each of them is read with its own clock.
 
-    motor_id; t;     pos;  cmd           joint, time, position, effort
-    1;        0.000; 0.10; 0.2           hip,   0.00, 0.10,     1.5
-    2;        0.001; 2.30; 0.0           knee,  0.00, 2.30,     0.1
-
-A logger may also write some hundred rows of one machine, then those of the other one, without any
-column that tells the two apart. Read as one body, such a table would leap between the machines.
+motor_id; t;     pos;  cmd           joint, time, position, effort
+1;        0.000; 0.10; 0.2           hip,   0.00, 0.10,     1.5
+2;        0.001; 2.30; 0.0           knee,  0.00, 2.30,     0.1
 """
 
 from __future__ import annotations
@@ -18,8 +15,7 @@ from numpy.typing import NDArray
 
 from ...column_names import words_of
 from ...encoder import Array
-from ...limits import HALF, SEVERAL
-from ...usual_step import GOES_ON, are_out_of_order
+from ...limits import HALF
 from .._log import MOST_PARTS, join_names
 from ._table import FEWEST_ROWS, CellTable, LongSignal, LongTable, as_text, time_of
 
@@ -42,26 +38,8 @@ def machines_in_turn(table: CellTable) -> LongTable | None:
         labels = _labels_of(name, table.columns[name])
         numbers = [x for n, x in table.numeric.items() if n not in (time, name)]
         if labels and _run_together(labels[1], table.numeric[time], numbers):
-            machines = labels[0]
-            how = f"named in {name!r}: {join_names(machines, most=4)}"
-            return _apart(table, time, name, labels, how)
+            return _apart(table, time, name, labels)
     return None
-
-
-def machines_by_time(table: CellTable) -> LongTable | None:
-    """Batches of rows of several machines: the time is set back to where an earlier part ended."""
-    time = time_of(table)
-    if not time or not np.all(np.isfinite(table.numeric[time])):
-        return None
-    if are_out_of_order(table.numeric[time]):
-        return None
-    parts, returns = parts_by_time(table.numeric[time])
-    count = int(parts.max(initial=-1)) + 1
-    if returns < SEVERAL or returns <= count or count > MOST_PARTS:
-        return None
-    names = [f"part {k + 1}" for k in range(count)]
-    how = f"told apart by their times: {join_names(names, most=4)}"
-    return _apart(table, time, "", (names, parts), how)
 
 
 def _labels_of(name: str, column: NDArray[Any]) -> tuple[list[str], NDArray[np.intp]] | None:
@@ -101,7 +79,7 @@ def _leaps_between(signal: Array, rows: Sequence[NDArray[np.intp]]) -> bool:
 
 
 def _apart(
-    table: CellTable, time: str, key: str, labels: tuple[list[str], NDArray[np.intp]], how: str
+    table: CellTable, time: str, key: str, labels: tuple[list[str], NDArray[np.intp]]
 ) -> LongTable:
     """The signals of each machine, with its own clock: "hip.position" at "hip.time"."""
     names, machine = labels
@@ -113,32 +91,5 @@ def _apart(
             unit, time_unit = table.units.get(n, ""), table.unit_of_time(time)
             values = table.columns[n][rows]
             signals.append(LongSignal(f"{name}.{n}", values, clock, times, unit, time_unit))
-    note = f"rows of {len(names)} machines in turn, {how}"
-    return LongTable(tuple(signals), len(machine) if key else 0, note)
-
-
-def parts_by_time(stamps: Array) -> tuple[NDArray[np.intp], int]:
-    """The part that each row continues, from 0, and how often the rows return to an earlier part.
-
-    A part goes on where the next stamp lies at most `GOES_ON` usual steps after its last one.
-    """
-    steps = np.diff(stamps)
-    forward = steps[steps > 0]
-    longest = GOES_ON * float(np.median(forward)) if len(forward) else 0.0
-    last, now, returns = [0], 0, 0
-    begins, parts = [0], [0]
-    for row in (np.flatnonzero((steps < 0) | (steps > longest)) + 1).tolist():
-        last[now] = row - 1
-        after = {k: float(stamps[row] - stamps[end]) for k, end in enumerate(last) if k != now}
-        near = {k: step for k, step in after.items() if 0 < step <= longest}
-        if near:
-            now = min(near, key=lambda k: near[k])
-            returns += 1
-        elif steps[row - 1] < 0:
-            last.append(row)
-            now = len(last) - 1
-            if now > MOST_PARTS:
-                break
-        begins.append(row)
-        parts.append(now)
-    return np.repeat(np.array(parts, dtype=np.intp), np.diff([*begins, len(stamps)])), returns
+    note = f"rows of {len(names)} machines in turn, named in {key!r}: {join_names(names, most=4)}"
+    return LongTable(tuple(signals), len(machine), note)
