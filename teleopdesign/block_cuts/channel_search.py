@@ -28,10 +28,10 @@ from ..measurement.prepare import prepare
 from ..measurement.survey.content import SURE_NAME
 from ..measurement.survey.position import unit_of_reach
 from .body import body_experiment, model_of_body
+from .computer_fit import data_of_computer
 from .cuts import Cut, Cuts, cuts_of
 from .diagram_experiment import DiagramExperiment, axis_of
 from .reading import diagram_experiment
-from .search import data_of_computer
 from .what_to_log import what_to_log, zero_signals
 
 #: part of columns whose name suggests another signal, and of right cuts that explain nothing
@@ -170,7 +170,7 @@ class ChannelSearch:
                 experiment = diagram_experiment(
                     self.diagram, self.data, channels=channels, outside=list(zero)
                 )
-                self.known[key] = _error(experiment, cut)
+                self.known[key] = error_at(experiment, cut)
             made[cut.name] = self.known[key]
         return made
 
@@ -231,7 +231,7 @@ def _is_velocity(name: str) -> bool:
     return likeness(name, "velocity") >= SURE_NAME
 
 
-def _error(experiment: DiagramExperiment, cut: Cut) -> float:
+def error_at(experiment: DiagramExperiment, cut: Cut) -> float:
     """Relative error of the stated diagram at a cut; 1 where nothing can be predicted."""
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):

@@ -7,22 +7,28 @@ fit among -1, 0 and 1 rows, the smaller one where both leave the same.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.frozen import is_same
+from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.evidence import SAME
 from ..diagnose.fit import standard_errors
 from ..diagnose.solve import BLOCK
 from ..effects.of_blocks.controllers import ControlEffect
 from ..measurement.filtering import Array, spectrum
 from ..measurement.prepare import TRIM
-from .computer import ComputerPart, Passes, Placed, free_parameters
+from .computer import ComputerPart, Passes, Placed, free_parameters, passes_of
 from .control_rows import ControlFit, ControlRows
+from .cuts import Cuts
 from .diagram_experiment import DiagramExperiment, RecordedLog
+
+#: part of the sample rate up to which the computer's signals are compared where no bandwidth is
+#: stated: a tenth of it, as far as a difference of two readings is a velocity
+_BAND = 0.1
 
 #: s of a block that is held out where no record is for checks only
 HELD_OUT = 1.0
@@ -238,3 +244,19 @@ def _reading(
     # a number of the computer, which was rounded for the log
     step = max(experiment.digit(name, log), channel.resolution or 0.0)
     return random.uniform(-0.5, 0.5, n) * step
+
+
+def data_of_computer(
+    experiment: DiagramExperiment, cuts: Cuts, bodies: Mapping[str, Diagnosis]
+) -> ControlData:
+    """The rows of the cuts of the computer and of sums, at the bandwidth of the bodies.
+
+    raises ModelError: rows are not passes of the computer, or a law cannot be predicted
+    """
+    computed = (*cuts.of("computer"), *cuts.of("wiring"))
+    part = ComputerPart(experiment.diagram, computed, experiment.zero, experiment.computer)
+    rows = [passes_of(experiment, log) for log in experiment.logs]
+    bandwidth = experiment.bandwidth or min(
+        [d.bandwidth for d in bodies.values()] or [_BAND / rows[0].period]
+    )
+    return ControlData(part, rows, bandwidth)

@@ -25,7 +25,7 @@ from ..effects.of_blocks.controllers import CONTROL_EFFECTS
 from ..measurement.experiment import Experiment
 from .body import body_experiment
 from .computer import Placed, free_parameters
-from .computer_fit import ControlData
+from .computer_fit import ControlData, data_of_computer
 from .computer_search import Attempt, ComputerLadder, ComputerStep
 from .control_rows import ControlFit
 from .cuts import Cuts
@@ -34,7 +34,6 @@ from .diagnosis import BlockDiagnosis
 from .diagram_experiment import DiagramExperiment
 from .joined_cut import placed_for
 from .reading import load_experiment
-from .search import data_of_computer
 
 
 def write_answer(diagnosis: BlockDiagnosis, path: str | Path) -> None:

@@ -24,18 +24,14 @@ from ..model import Model
 from ..unexplained import ResidualDescription
 from ..unexplained import describe as describe_bodies
 from .body import body_experiment, diagnose_body, model_of_body
-from .computer import ComputerPart, passes_of
-from .computer_fit import ControlData, floors
+from .channel_doubts import doubt_channels
+from .computer_fit import data_of_computer, floors
 from .computer_search import ComputerLadder, ComputerStep, climb, step_of
 from .control_rows import ControlFit
 from .cuts import COMPUTER, Cut, Cuts
 from .diagnosis import BlockDiagnosis
 from .diagram_experiment import DiagramExperiment
 from .joined_cut import climb_joined, placed_for, rank_laws
-
-#: part of the sample rate up to which the computer's signals are compared where no bandwidth is
-#: stated: a tenth of it, as far as a difference of two readings is a velocity
-_BAND = 0.1
 
 
 @check_types
@@ -72,6 +68,10 @@ def find_missing(
         )
     if model is not None:
         raise ModelError("find_missing: found a model beside a diagram, which has its own values")
+    if doubt := doubt_channels(experiment):
+        raise ExperimentError(
+            f"{experiment.title}: {doubt}: state the unit and sign of each column"
+        )
     report = progress or (lambda _: None)
     cuts, bodies = _select(experiment.cuts, at), {}
     joined: dict[str, ComputerLadder] = {}
@@ -115,22 +115,6 @@ def _select(cuts: Cuts, at: Collection[str] | None) -> Cuts:
         if name not in (at or ()):
             cuts = _without_cut(cuts, name, "its cut was left out")
     return cuts
-
-
-def data_of_computer(
-    experiment: DiagramExperiment, cuts: Cuts, bodies: Mapping[str, Diagnosis]
-) -> ControlData:
-    """The rows of the cuts of the computer and of sums, at the bandwidth of the bodies.
-
-    raises ModelError: rows are not passes of the computer, or a law cannot be predicted
-    """
-    computed = (*cuts.of("computer"), *cuts.of("wiring"))
-    part = ComputerPart(experiment.diagram, computed, experiment.zero, experiment.computer)
-    rows = [passes_of(experiment, log) for log in experiment.logs]
-    bandwidth = experiment.bandwidth or min(
-        [d.bandwidth for d in bodies.values()] or [_BAND / rows[0].period]
-    )
-    return ControlData(part, rows, bandwidth)
 
 
 def _reasons(cuts: Cuts) -> str:

@@ -73,6 +73,7 @@ def check_diagram(experiment: DiagramExperiment, options: argparse.Namespace) ->
 
     raises ModelError: --json, which only an experiment of bodies has
     """
+    from ..block_cuts.channel_doubts import doubt_channels
     from ..block_cuts.computer import UnevenRows, passes_of
 
     if options.json is not None:
@@ -83,6 +84,8 @@ def check_diagram(experiment: DiagramExperiment, options: argparse.Namespace) ->
             passes_of(experiment, log)
         except UnevenRows as problem:
             print(f"warning: the computer is untested: {problem}")
+    if doubt := doubt_channels(experiment):
+        print(f"warning: {doubt}")
     return 0
 
 

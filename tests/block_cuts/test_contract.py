@@ -130,3 +130,27 @@ def test_the_reason_why_laws_are_untested_stands_once(diagram, log, rows, what):
     with pytest.raises(td.ExperimentError, match=r"a row is .* at 0\.(899|9) s") as error:
         td.find_missing(made, at=["R_A"])
     assert str(error.value).count(what) == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"R_M": lambda log: 1000.0 * log["R_M"]}, "channels.R_M: with 0.001 times"),
+        ({"L": lambda log: -log["L"]}, "channels.L: with -1 times"),
+        ({"R_D": lambda log: log["R_M"], "R_M": lambda log: log["R_D"]}, "exchanged"),
+    ],
+)
+def test_a_column_that_all_cuts_want_otherwise_stops_the_diagnosis(diagram, log, change, words):
+    """Else every block takes up the factor, and four of them are named."""
+    changed = log | {name: made(log) for name, made in change.items()}
+    recorded = experiment(diagram, changed, "R_D", "R_A", "R_M", "L")
+    with pytest.raises(td.ExperimentError, match=words):
+        td.find_missing(recorded)
+
+
+@pytest.mark.parametrize("factor", [0.85, 1.3])
+def test_a_scale_that_a_block_may_have_is_no_wrong_unit(diagram, log, factor):
+    from teleopdesign.block_cuts.channel_doubts import doubt_channels
+
+    changed = log | {"R_M": factor * log["R_M"]}
+    assert not doubt_channels(experiment(diagram, changed, "R_D", "R_A", "R_M", "L"))
