@@ -107,17 +107,6 @@ def test_file_of_a_diagram_holds_the_law(compensated, tmp_path):
     assert pickle.loads(pickle.dumps(compensated)) == compensated
 
 
-def test_file_may_group_parameters_by_effect(tmp_path):
-    path = tmp_path / "short.toml"
-    path.write_text(
-        '[diagram]\nkind = "haptic interface"\n[blocks.C]\nlaw = "cancel"\n'
-        "parameters = { cogging = { amplitude = 0.2, period = 0.5, phase = 0.0 }, zero = 0.1 }\n"
-    )
-    (block,) = td.read_diagram(path).controls
-    stated = {"cogging": {"amplitude": 0.2, "period": 0.5, "phase": 0.0}}
-    assert block.controller == td.cancel(stated, zero=0.1)
-
-
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 def test_c_header_steps_like_the_law(tmp_path):
     law = td.cancel(device(), smoothing_velocity=0.01)
