@@ -124,25 +124,6 @@ def test_along_a_motion_the_friction_is_in_proportion_to_the_load():
     np.testing.assert_allclose(along.friction.value[slides], expected[slides], rtol=1e-9)
 
 
-def test_its_tangents_are_differences_of_residuals():
-    x, u, f = signals()
-    motion = motion_along(encoded(x), u, f, resolution=1e-6)
-    names = ("inertia", "gravity.amplitude", "load_dependent_friction.coefficient")
-    body = geared(0.25)
-    along = residual_along(body, motion, names)
-    slides = motion.direction != 0
-    for j, name in enumerate(names):
-        value = body.parameters[name].value
-        low, high = (
-            residual_along(body.with_values({name: value * (1 + part)}), motion).residual.value
-            for part in (-1e-6, 1e-6)
-        )
-        difference = (high - low) / (2e-6 * value)
-        np.testing.assert_allclose(
-            along.residual.tangent[j][slides], difference[slides], rtol=1e-4, atol=1e-4
-        )
-
-
 def test_friction_of_the_load_takes_nothing_of_the_command():
     """Of the acting force it takes a part: then less of the command moves the body."""
     x, u, f = signals()
