@@ -93,15 +93,6 @@ def test_a_record_without_steady_motion_says_so():
         coulomb_level(td.load_experiment(td.example("rod")), shortest=2.0)
 
 
-@pytest.mark.slow
-def test_the_diagnosis_of_the_same_record_agrees(levels, tmp_path):
-    experiment = td.load_experiment(write(tmp_path / "same", SPEEDS))
-    fitted = td.fit(td.Model.from_experiment(experiment), experiment)
-    value = fitted.parameters["device.coulomb.level"]
-    level, error = levels.level
-    assert abs(level - value.value) < 3 * np.hypot(error, value.stderr)
-
-
 def test_recorded_positioning_system_agrees_with_its_diagnosis():
     """EMPS, 24 runs at one speed and its like: diagnosis 19.99 +- 0.17 N, 208.5 +- 2 N s/m."""
     levels = coulomb_level(td.load_experiment(shared_folder("data") / "emps"))

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clock import takes_less_than
 
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.measurement.reversals import look_back_to_reversal
@@ -53,11 +52,6 @@ def test_what_is_left_is_counted_in_the_floors_that_a_diagnosis_kept_to(rod, ade
     assert whole.is_adequate and not part.is_adequate
 
 
-@pytest.mark.slow
-def test_a_fit_and_its_model_give_the_same_sentences(rod, lacking, failure):
-    assert [str(f) for f in where_it_fails(lacking.model, rod)] == list(map(str, failure.findings))
-
-
 def test_every_finding_has_numbers_and_a_graph_with_units(failure):
     for finding in failure.findings:
         assert finding.numbers and np.isfinite(list(finding.numbers.values())).all()
@@ -88,14 +82,6 @@ def test_without_check_records_blocks_are_held_out(rod, lacking):
     fit_records = replace(rod, stretches=rod.of("fit"))
     description = describe_residual(lacking, fit_records)
     assert description.largest[1].dependence.shape.name == "friction over speed"
-
-
-@pytest.mark.slow
-def test_looking_is_fast(rod, lacking, failure):
-    """`failure` has compiled what is needed."""
-    # 0.5 s on one core for 20 s at 1 kHz; threads of a busy machine count several times
-    with takes_less_than(8.0):
-        describe_residual(lacking, rod)
 
 
 def test_time_and_travel_are_counted_from_where_the_body_set_off():
