@@ -50,6 +50,8 @@ TOGETHER = {
     "test_dependencies": "syntax trees",
     "test_import_circles": "syntax trees",
     "test_imports": "syntax trees",
+    "test_python_control": "syntax trees",
+    "test_registry": "syntax trees",
     "test_words_and_sizes": "syntax trees",
     "test_writing": "syntax trees",
 }

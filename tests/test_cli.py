@@ -60,11 +60,6 @@ def test_help_answers_without_loading_anything_heavy(arguments):
     assert "teleopdesign" in done.stdout
 
 
-def test_help_names_every_command():
-    text = run("--help").stdout
-    assert all(c in text for c in ("diagnose", "effects", "fetch", "demo"))
-
-
 def test_no_command_and_an_unknown_one_exit_with_2():
     for arguments in ([], ["diagnos"]):
         done = run(*arguments)
@@ -97,14 +92,6 @@ def test_a_users_effect_has_a_page(tmp_path, capsys):
 
 
 # mistakes
-
-
-@pytest.mark.slow
-def test_a_missing_folder_is_one_line_also_in_a_separate_process(tmp_path):
-    done = run("diagnose", tmp_path / "nothing")
-    assert done.returncode == 2
-    assert done.stderr.splitlines() == [f"teleopdesign: {'nothing'}: no such folder"]
-    assert done.stdout == ""
 
 
 @pytest.mark.parametrize(
