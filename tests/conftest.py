@@ -48,6 +48,7 @@ TOGETHER = {
     "test_report_command": "a diagnosis of the short rod",
     "test_simulate_command": "a diagnosis of the short rod",
     "test_dependencies": "syntax trees",
+    "test_function_names": "syntax trees",
     "test_import_circles": "syntax trees",
     "test_imports": "syntax trees",
     "test_python_control": "syntax trees",

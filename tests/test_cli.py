@@ -94,24 +94,6 @@ def test_a_users_effect_has_a_page(tmp_path, capsys):
 # mistakes
 
 
-@pytest.mark.parametrize(
-    ("option", "path", "expected"),
-    [
-        ("--json", "answer.txt", "found '.txt', expected .json"),
-        ("--json", "there/is/no/answer.json", "there is no folder"),
-        ("--predictions", "predictions.json", "expected .csv or .csv.gz"),
-        ("--figure", "figure.bmp", "expected .png or .pdf or .svg"),
-        ("--report", "report.pdf", "found '.pdf', expected .html"),
-        ("--report", "there/is/no/report.html", "there is no folder"),
-    ],
-)
-def test_a_result_that_cannot_be_written_is_refused_before_the_work(
-    option, path, expected, rod, tmp_path, capsys
-):
-    line = refused(capsys, "diagnose", rod, option, tmp_path / path)
-    assert expected in line
-
-
 @pytest.mark.parametrize("command", [["effects"], ["diagnose", str(ROD)]])
 def test_a_bad_effect_file_is_one_line(command, tmp_path, capsys):
     file = tmp_path / "own_drag.py"

@@ -33,7 +33,12 @@ def values_of(effect):
     return {n: min(0.3 + 0.1 * i, p.upper / 2) for i, (n, p) in enumerate(stated.items())}
 
 
-@pytest.mark.parametrize("name", [n for n in CANCELLED if n not in STEADY])
+def each(name):
+    """A curve of eight values takes seconds."""
+    return pytest.param(name, marks=pytest.mark.slow if EFFECTS[name].free else ())
+
+
+@pytest.mark.parametrize("name", [each(n) for n in CANCELLED if n not in STEADY])
 def test_law_gives_the_force_that_the_effect_takes(name):
     effects = list(dict.fromkeys(with_needs(name)))
     law = td.cancel({e: values_of(e) for e in effects}, smoothing_velocity=1e-12)

@@ -50,15 +50,6 @@ def test_a_filter_of_high_order_keeps_its_digits():
     np.testing.assert_allclose(steps["R_MBC"], expected.real, atol=1e-12)
 
 
-@pytest.mark.parametrize("dt", [1e-3, True])
-def test_a_discrete_system_is_stepped_as_it_is(dt):
-    discrete = control.sample_system(NOTCH, 1e-3, method="tustin")
-    transfer = control.tf(discrete.num, discrete.den, dt)
-    steps = sampled(from_control(transfer))
-    response = control.forced_response(discrete, steps["time"].values, steps["L"].values)
-    np.testing.assert_allclose(steps["R_MBC"], response.outputs, atol=1e-12)
-
-
 def test_a_nonlinear_system_goes_through_python_control_as_it_is():
     """A cubic damper on its own state: dx/dt = 50 (u - x), y = x^3."""
     cubic = control.nlsys(

@@ -5,8 +5,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from teleopdesign import Model
 from teleopdesign.base.errors import ModelError
@@ -176,22 +174,6 @@ def test_every_effect_that_has_a_rule_on_undetermined_values_is_checked_on_both_
 
 def test_every_effect_with_a_check_is_tested_on_both_sides():
     assert {n for n, e in EFFECTS.items() if e.plausible} == set(MISFITS)
-
-
-@given(amplitude=st.floats(0.01, 10.0), centre=st.floats(-3.0, 3.0), turns=st.integers(1, 9))
-def test_one_sine_tells_no_pattern_about_its_centre_from_a_speed(amplitude, centre, turns):
-    """What is symmetrical about the centre: at each speed one value. A slope has two."""
-    angle = np.linspace(0.0, 2 * np.pi * turns, 4000)
-    facts = replace(FACTS, places=centre + amplitude * np.sin(angle), speeds=np.cos(angle))
-    assert facts.apart_from_speed(lambda x: np.cos((x - centre) / amplitude)) < 0.02
-    assert facts.apart_from_speed(lambda x: x) > 0.9
-    # the same path at another speed as well
-    twice = replace(
-        facts,
-        places=np.concatenate([facts.places, facts.places]),
-        speeds=np.concatenate([facts.speeds, 0.4 * facts.speeds]),
-    )
-    assert twice.apart_from_speed(lambda x: np.cos((x - centre) / amplitude)) > 0.1
 
 
 # in a diagnosis, a user's own effect among them

@@ -127,21 +127,6 @@ def test_floats_are_the_decimals_that_they_are_written_as():
 
 
 @pytest.mark.parametrize(
-    "system",
-    [
-        control.ss(np.diag([-1.0, 5.0]), [[1], [0]], [[1, 1]], [[0.0]]),
-        control.ss(np.diag([-1.0, 5.0]), [[1], [1]], [[1, 0]], [[0.0]]),
-        control.tf([1.0, -5.0], [1.0, -4.0, -5.0]),
-    ],
-    ids=["driven by nothing", "read by nothing", "cancelled"],
-)
-def test_of_a_system_with_a_mode_that_its_port_does_not_show_nothing_is_proved(system):
-    claim = positive_real(system)
-    assert str(impedance(system)) == "1/(s + 1)" and positive_real(1 / (S + 1)).holds
-    assert claim.status == "unknown" and "at s = 5 1/s" in str(claim.verdict)
-
-
-@pytest.mark.parametrize(
     ("system", "message"),
     [
         (S + sp.Symbol("b"), "values are needed for b"),
