@@ -4,15 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cases import make_case, write_case
 from diagnose.simulated_cases import truth_of, write_simulated
 
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.error import force_error
-from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.residual import residuals
-from teleopdesign.diagnose.search import base_of, estimate_from_starts
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.realise import ode_scan
@@ -52,26 +49,6 @@ def test_a_true_model_leaves_what_its_sensors_leave(case):
     assert left < 2.0 * floor
     # its meetings last: without correction it falls out of step
     assert left < 0.5 * force_error(free_running(true), prepared.of("check"))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", [108])  # a tip of 0.15 times the body's inertia
-def test_a_search_finds_a_light_tip(number, tmp_path):
-    """It ended at 10 % of the fit record, where the true values leave 3 %."""
-    rng = np.random.default_rng([9911, number])
-    write_case(make_case(rng, "clear", ["backlash"], "teleoperator", "normal", 1000), tmp_path)
-    truth, experiment = truth_of(tmp_path), load_experiment(tmp_path)
-    (hidden,) = truth["effects"]
-    prepared, stated = prepare(experiment), Model.from_experiment(experiment)
-    true = stated.with_values(truth["model_parameters"]).with_effect(
-        BACKLASH,
-        at=hidden["at"],
-        values={n: hidden["parameters"][n]["value"] for n in BACKLASH.parameters},
-    )
-    base = estimate(stated, prepared)
-    new = base.model.with_effect(BACKLASH, at=hidden["at"])
-    rough = estimate_from_starts(new, prepared, base_of(base, prepared, stated))
-    assert rough.fit_error < 1.3 * force_error(true, prepared.of("fit"))
 
 
 def test_tangents_of_the_led_tip_are_the_slopes_of_the_residual(case, monkeypatch):
