@@ -209,6 +209,7 @@ def _drawing() -> Any:
 
 
 @lru_cache(maxsize=1)
+@lru_cache(maxsize=1)
 def _design() -> td.Design:
     return td.design_compensation(diagnosis())
 
