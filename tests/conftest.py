@@ -48,8 +48,11 @@ TOGETHER = {
     "test_report_command": "a diagnosis of the short rod",
     "test_simulate_command": "a diagnosis of the short rod",
     "test_dependencies": "syntax trees",
+    "test_function_names": "syntax trees",
     "test_import_circles": "syntax trees",
     "test_imports": "syntax trees",
+    "test_python_control": "syntax trees",
+    "test_registry": "syntax trees",
     "test_words_and_sizes": "syntax trees",
     "test_writing": "syntax trees",
 }

@@ -47,7 +47,7 @@ def model() -> td.Model:
 
 @lru_cache(maxsize=1)
 def diagnosis() -> td.Diagnosis:
-    return td.find_missing(experiment())
+    return td.find_missing(experiment(), among=["stribeck", "bias"])
 
 
 @lru_cache(maxsize=1)
@@ -208,6 +208,7 @@ def _drawing() -> Any:
     return draw_diagram(diagram())
 
 
+@lru_cache(maxsize=1)
 @lru_cache(maxsize=1)
 def _design() -> td.Design:
     return td.design_compensation(diagnosis())

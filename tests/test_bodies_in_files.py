@@ -1,7 +1,6 @@
 """A body is the same table, by the same rules, in an experiment, a diagram's file and an answer."""
 
 import json
-import tomllib
 
 import pytest
 from hypothesis import given
@@ -176,11 +175,3 @@ def test_every_parameter_takes_every_unit_of_its_quantity(which, number, index):
     given_effects[name] = {key: {"value": number, "unit": wrong}}
     with pytest.raises(ExperimentError, match=f'{key}.unit: found "{wrong}", expected'):
         body_of(body_from("body", table), ALL)
-
-
-def test_the_lines_of_a_body_are_toml():
-    body = body_with("stribeck", "revolute")
-    text = "\n".join(["[model.device]", *body_lines("model.device", body)])
-    read = tomllib.loads(text)["model"]["device"]
-    assert read["inertia"] == {"value": 0.15, "fixed": True, "stderr": 0.01}
-    assert list(read["effects"]) == [e.name for e in body.effects]

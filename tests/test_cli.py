@@ -60,11 +60,6 @@ def test_help_answers_without_loading_anything_heavy(arguments):
     assert "teleopdesign" in done.stdout
 
 
-def test_help_names_every_command():
-    text = run("--help").stdout
-    assert all(c in text for c in ("diagnose", "effects", "fetch", "demo"))
-
-
 def test_no_command_and_an_unknown_one_exit_with_2():
     for arguments in ([], ["diagnos"]):
         done = run(*arguments)
@@ -97,32 +92,6 @@ def test_a_users_effect_has_a_page(tmp_path, capsys):
 
 
 # mistakes
-
-
-@pytest.mark.slow
-def test_a_missing_folder_is_one_line_also_in_a_separate_process(tmp_path):
-    done = run("diagnose", tmp_path / "nothing")
-    assert done.returncode == 2
-    assert done.stderr.splitlines() == [f"teleopdesign: {'nothing'}: no such folder"]
-    assert done.stdout == ""
-
-
-@pytest.mark.parametrize(
-    ("option", "path", "expected"),
-    [
-        ("--json", "answer.txt", "found '.txt', expected .json"),
-        ("--json", "there/is/no/answer.json", "there is no folder"),
-        ("--predictions", "predictions.json", "expected .csv or .csv.gz"),
-        ("--figure", "figure.bmp", "expected .png or .pdf or .svg"),
-        ("--report", "report.pdf", "found '.pdf', expected .html"),
-        ("--report", "there/is/no/report.html", "there is no folder"),
-    ],
-)
-def test_a_result_that_cannot_be_written_is_refused_before_the_work(
-    option, path, expected, rod, tmp_path, capsys
-):
-    line = refused(capsys, "diagnose", rod, option, tmp_path / path)
-    assert expected in line
 
 
 @pytest.mark.parametrize("command", [["effects"], ["diagnose", str(ROD)]])

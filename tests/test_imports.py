@@ -6,7 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
 from syntax_trees import syntax_trees
 
 import teleopdesign as td
@@ -63,11 +62,6 @@ def test_the_names_are_those_that_type_checkers_see():
     imported_names = [a.asname or a.name for f in block.body for a in f.names if f.module]
     further = [name for names in td.FURTHER.values() for name in names]
     assert sorted(imported_names) == sorted([*td.__all__, *further])
-
-
-def test_an_unknown_name_is_an_attribute_error():
-    with pytest.raises(AttributeError, match="no attribute 'find_mising'"):
-        td.find_mising  # noqa: B018
 
 
 def test_the_map_of_folders_is_that_of_the_package():

@@ -190,26 +190,6 @@ def test_no_two_public_types_have_the_same_name():
     assert {name: kinds for name, kinds in meanings.items() if len(kinds) > 1} == {}
 
 
-@pytest.mark.parametrize(
-    ("code", "defined"),
-    [
-        ("class Rows: ...", ("Rows", "module")),
-        ("Rows = list[int]", ("Rows", "list[int]")),
-        ("ROWS = 3", None),
-        ("_Rows = list[int]", None),
-        ("Key = TypeVar('Key')", None),
-    ],
-)
-def test_a_type_counts_as_a_class_and_as_a_name(code, defined):
-    assert type_of(ast.parse(code).body[0], "module") == defined
-
-
-def test_one_function_is_called_teleoperator():
-    assert [m for m, f in functions() if f.name == "teleoperator"] == [
-        "diagrams/shipped/teleoperator"
-    ]
-
-
 def test_no_file_holds_a_second_concept():
     lengths = {m: len(p.read_text().splitlines()) for m, p in paths().items()}
     long = {m: n for m, n in lengths.items() if n > MOST_LINES_OF_A_FILE}

@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from teleopdesign.app import files
@@ -60,6 +60,7 @@ def test_answers_beside_experiments_are_no_logs(tmp_path):
     assert files.logs_in(tmp_path) == ()
 
 
+@settings(max_examples=10)
 @given(name=st.text(max_size=40))
 def test_a_dropped_file_stays_in_its_folder_whatever_its_name(tmp_path_factory, name):
     folder = tmp_path_factory.mktemp("page")

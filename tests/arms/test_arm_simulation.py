@@ -11,7 +11,6 @@ from arms.arm_simulator import forces, random_arm, urdf, write_experiment
 
 import teleopdesign as td
 from teleopdesign.base.errors import ModelError
-from teleopdesign.cli import main
 from teleopdesign.diagnose import RecordedLoop
 from teleopdesign.diagnose.by_simulation import compare_by_simulation, simulation_data
 from teleopdesign.diagnose.linked_course import ArmLinks
@@ -113,16 +112,3 @@ def test_an_arm_of_one_joint_about_the_vertical_is_one_body(tmp_path):
             )
             # rows are divided into other steps, each of which the scheme resolves: 0.1 % apart here
             assert of_arm == pytest.approx(of_body, rel=5e-3)
-
-
-@pytest.mark.slow
-def test_the_command_writes_what_the_simulation_says_of_every_joint(two, tmp_path, capsys):
-    _, experiment, _ = two
-    path = tmp_path / "answer.json"
-    only = ["--quick", "--only", "bias", "--json", str(path)]
-    arguments = [str(experiment.folder), *only, "--simulate", "--loop", "200", "20"]
-    assert main(["diagnose", *arguments]) == 0
-    assert "Simulation, driven in its loop" in capsys.readouterr().out
-    horizons = json.loads(path.read_text())["simulation"]["horizons"]
-    assert {h["at"] for h in horizons} == {"joint1", "joint2"}
-    assert all(h["of_travel"] < 0.01 for h in horizons)

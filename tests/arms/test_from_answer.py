@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import gzip
 import json
-import shutil
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +12,6 @@ import pytest
 from arms.arm_simulator import random_arm, write_experiment
 
 import teleopdesign as td
-from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import load_answer, write_answer
 from teleopdesign.diagnose.learnable import learnable
@@ -121,15 +117,6 @@ def test_one_joint_is_taken_from_the_answer(
     assert message in capsys.readouterr().out
 
 
-def test_a_pose_gives_the_inertia_that_the_links_have_there(folder, answer, tmp_path, capsys):
-    path = tmp_path / "joint.urdf"
-    arguments = ["--body", "joint2", "--pose", "joint2=0.3", "--output", str(path)]
-    assert main(["export", str(answer), "--to", "urdf", *arguments]) == 0
-    model = load_answer(answer).model
-    expected = inertias_at(td.load_experiment(folder), model.links, np.array([[0.0], [0.3]]))[1, 0]
-    assert f"{expected:.5g}" in capsys.readouterr().out
-
-
 def test_the_body_of_a_joint_has_the_inertia_of_the_final_links(folder, answer):
     """The first links, without the spring, were wrong by more than that."""
     model, experiment = load_answer(answer).model, td.load_experiment(folder)
@@ -145,76 +132,3 @@ def test_a_bad_pose_is_one_line(answer, capsys, pose):
     assert main(["export", str(answer), *arguments]) == 2
     output = capsys.readouterr().err.strip()
     assert f"--pose {pose}" in output and "\n" not in output
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (lambda a: a.pop("models"), 'no key "joint1.inertia"'),
-        (lambda a: a["models"]["ladder"].pop(), "models.ladder: found 1 models, expected 2"),
-        (lambda a: a["models"]["ladder"][-1]["links"].pop(), "base parameters, expected"),
-        (lambda a: a["models"]["ladder"][0].update(links=["1"]), "links"),
-        (lambda a: a["joints"].pop("joint2"), 'no joint "joint2", has joint1'),
-        (lambda a: a["joints"]["joint1"].pop("candidates"), 'joints.joint1: no key "candidates"'),
-        (lambda a: a["joints"].update(joint1={"verdict": "undecided"}), 'joint1: no key "missing"'),
-        (lambda a: a["models"]["ladder"][1].update(arm={}), 'found "arm", expected a name'),
-    ],
-)
-def test_an_answer_that_was_changed_is_refused_in_one_line(
-    folder, answer, tmp_path, change, message
-):
-    content = json.loads(answer.read_text())
-    change(content)
-    path = tmp_path / "changed.json"
-    path.write_text(json.dumps(content))
-    with pytest.raises(ExperimentError, match=message) as caught:
-        load_answer(path, experiment=td.load_experiment(folder)).joints["joint1"].prepared  # noqa: B018
-    assert "\n" not in str(caught.value)
-
-
-def test_folders_of_arms_are_diagnosed_into_one_table(folder, tmp_path, capsys):
-    second = shutil.copytree(folder, tmp_path / "second")
-    out = tmp_path / "out"
-    arguments = ["--quick", "--only", "spring", "quadratic_drag", "--output", str(out)]
-    assert main(["diagnose", str(folder), str(second), *arguments]) == 0
-    first, other = csv.DictReader((out / "table.csv").read_text().splitlines())
-    assert first["missing"] == "spring at joint2" and not first["failure"]
-    # the same records: the same answer
-    assert {k for k in first if first[k] != other[k]} == {"folder", "answer"}
-    for name in (folder.name, "second"):
-        there = load_answer(out / f"{name}.json", experiment=td.load_experiment(folder))
-        assert there.verdict == first["verdict"]
-    assert "2 of 2 folders diagnosed" in capsys.readouterr().out
-
-
-def test_two_effects_at_two_joints_are_both_named(tmp_path):
-    generator = np.random.default_rng(11)
-    arm = random_arm(generator, 2)
-    state = generator.bit_generator.state
-    folder = write_experiment(tmp_path / "arm", arm, generator, ("stribeck", 0, 1.0), seconds=20.0)
-    other = np.random.default_rng()
-    other.bit_generator.state = state
-    second = write_experiment(tmp_path / "b", arm, other, ("quadratic_drag", 1, 1.0), seconds=20.0)
-    join(folder, second, "u2")
-    diagnosis = td.find_missing(td.load_experiment(folder))
-    assert {c.key for c in diagnosis.missing} == {
-        ("stribeck", "joint1"),
-        ("quadratic_drag", "joint2"),
-    }
-
-
-def join(folder, other, column):
-    """Take one column of another experiment's records."""
-    for use in ("fit", "check"):
-        mine, theirs = (
-            [
-                line.split(",")
-                for line in gzip.decompress((f / f"{use}.csv.gz").read_bytes()).decode().split()
-            ]
-            for f in (folder, other)
-        )
-        place = mine[0].index(column)
-        for one, two in zip(mine, theirs, strict=True):
-            one[place] = two[place]
-        text = "\n".join(",".join(one) for one in mine) + "\n"
-        (folder / f"{use}.csv.gz").write_bytes(gzip.compress(text.encode(), 4, mtime=0))

@@ -20,7 +20,6 @@ from teleopdesign.arms import (
     read_urdf,
     rotation_of,
 )
-from teleopdesign.base.errors import ModelError
 
 #: of a force: double precision over some hundred products
 ROUNDING = 1e-9
@@ -157,33 +156,6 @@ def test_base_parameters_say_all_that_the_links_do(count, seed):
     got = np.einsum("kbn,b->kn", chosen, base.initial)
     assert np.allclose(got, expected, rtol=0, atol=1e-7 * max(np.abs(expected).max(), 1.0))
     assert len(base.names) == len(set(base.names)) <= 11 * count
-
-
-def test_a_link_that_turns_about_the_vertical_is_determined_by_one_parameter():
-    arm = Chain((arm_of(random_arm(np.random.default_rng(3), 1)).links[0],))
-    upright = Chain(
-        tuple(
-            Link(
-                x.name, x.joint, x.kind, np.array([0.0, 0.0, 1.0]), np.eye(3), x.origin, x.inertial
-            )
-            for x in arm.links
-        )
-    )
-    assert base_parameters(upright).names == ("link1.izz",)
-
-
-@pytest.mark.parametrize("short", range(3))
-def test_a_motion_whose_parts_have_not_one_length_is_refused(short):
-    arm = arm_of(random_arm(np.random.default_rng(0), 2))
-    parts = [np.zeros((2, 5 - (i == short))) for i in range(3)]
-    with pytest.raises(ModelError, match="n samples each"):
-        force_columns(arm, *parts)
-
-
-def test_a_motion_of_the_wrong_number_of_joints_is_refused():
-    arm = arm_of(random_arm(np.random.default_rng(0), 2))
-    with pytest.raises(ModelError, match="found a motion of 3 joints, expected 2"):
-        force_columns(arm, *np.zeros((3, 3, 4)))
 
 
 @given(count=st.integers(1, 6), seed=st.integers(0, 1000))

@@ -7,14 +7,10 @@ import json
 import numpy as np
 import pytest
 from arms.arm_simulator import random_arm, write_experiment
-from arms.stated_models import stated_models
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.diagnose.answer import load_answer, write_answer
-from teleopdesign.diagnose.other_motion import most_coupled, with_other_motions
-from teleopdesign.diagnose.parts import prepare_parts
-from teleopdesign.diagnose.parts_fit import estimate_parts
 from teleopdesign.diagnose.search_plan import QUICK
 
 pytestmark = pytest.mark.slow  # a diagnosis of an arm
@@ -33,27 +29,6 @@ def made(place, hidden, joints=3):
 def coupled(tmp_path_factory):
     """The motor of joint 2 pushes joint 1, and joint 1 does not push joint 2."""
     return made(tmp_path_factory.mktemp("coupled") / "arm", ("coupling", 0, 1.0))
-
-
-def test_the_motion_of_a_joint_stands_beside_another(coupled):
-    prepared = with_other_motions(prepare_parts(td.load_experiment(coupled)), {"joint1": "joint3"})
-    assert prepared.others == {"joint1": "joint3"}
-    for mine, its in zip(
-        prepared.parts["joint1"].stretches, prepared.parts["joint3"].stretches, strict=True
-    ):
-        assert np.array_equal(mine.motion.further["other_acceleration"], its.motion.acceleration)
-        assert "other_position" not in its.motion.further
-
-
-def test_the_motion_that_acts_on_a_joint_is_chosen_among_all(coupled):
-    experiment = td.load_experiment(coupled)
-    prepared, models = stated_models(experiment)
-    arm = estimate_parts(models, prepared)
-    records, fit = arm.prepared["joint1"], arm.fits["joint1"]
-    assert most_coupled("joint1", records, fit, prepared) == "joint2"
-    # a log that states what moves beside the joint keeps it
-    with_channel = with_other_motions(prepared, {"joint1": "joint3"})
-    assert most_coupled("joint1", records, fit, with_channel) is None
 
 
 def test_a_coupling_of_motors_is_named_at_its_joint_with_the_one_that_acts(coupled, tmp_path):

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import teleopdesign as td
-from teleopdesign.arms import force_columns, read_urdf
+from teleopdesign.arms import read_urdf
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
 
@@ -121,33 +121,6 @@ def test_a_bad_description_of_an_arm_is_one_line(tmp_path, folder, before, after
     with pytest.raises(ExperimentError, match=message) as caught:
         td.Model.from_experiment(td.load_experiment(tmp_path))
     assert "\n" not in str(caught.value)
-
-
-def test_links_in_the_format_of_the_package_read_as_their_urdf(tmp_path, folder):
-    experiment = td.load_experiment(folder)
-    entries = []
-    for i, link in enumerate(experiment.arm.arm.links):
-        rpy = random_arm(np.random.default_rng(5), 2).angles[i]
-        entries.append(
-            f'[[model.arm.links]]\njoint = "joint{i + 1}"\naxis = {link.axis.tolist()}\n'
-            f"xyz = {link.origin.tolist()}\nrpy = {rpy.tolist()}\nmass = 2\ncentre = [0, 0, 0.1]\n"
-        )
-    for file in folder.iterdir():
-        (tmp_path / file.name).write_bytes(file.read_bytes())
-    written = (folder / "experiment.toml").read_text()
-    for i in (1, 2):
-        written = written.replace(f'urdf_joint = "axis{i}"\n', "")
-    written = written.replace('urdf = "arm.urdf"\n', "").replace(
-        "[channels]", "\n".join([*entries, "[channels]"])
-    )
-    (tmp_path / "experiment.toml").write_text(written)
-    arm = td.load_experiment(tmp_path).arm.arm
-    motion = np.random.default_rng(1).normal(size=(3, 2, 4))
-    given_masses = arm.inertial
-    assert given_masses[0] == 2 and given_masses[3] == pytest.approx(0.2)
-    assert np.allclose(
-        force_columns(arm, *motion), force_columns(experiment.arm.arm, *motion), atol=1e-12
-    )
 
 
 def test_an_experiment_on_an_arm_pickles_and_says_itself(folder):

@@ -81,21 +81,6 @@ def test_what_is_read_is_what_was_written(whole):
     assert is_same(from_data(Whole, json.loads(text), "", FORMS), whole)
 
 
-def test_a_field_stands_where_its_annotation_says():
-    whole = Whole("a", (Row("x", alike=("y",)),), Box(1.0, 2.0), 60.0, "stated", secret=7)
-    data = to_data(whole, FORMS)
-    assert data["left"] == 1.0 and data["box"] == {"alone": 2.0}
-    assert data["limit"] == {"value": 60.0, "unit": "Hz", "where": "stated"}
-    assert data["rows"] == [{"name": "x", "error": None, "alike": ["y"], "count": 1}]
-    assert "parts" not in data and "secret" not in data
-    nothing = to_data(Whole("a", whole.rows), FORMS)
-    assert nothing["left"] is None and nothing["box"] is None
-    # keys of a later version are allowed
-    assert from_data(Whole, {**data, "later": 1}, "", FORMS) == Whole(
-        "a", whole.rows, whole.box, 60.0, "stated"
-    )
-
-
 PLAIN = {"verdict": "a", "rows": [{"name": "x"}]}
 
 

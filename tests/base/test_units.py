@@ -11,17 +11,11 @@ from teleopdesign.base.units import (
     converting_factor,
     si_factor,
     to_si,
-    unit_of,
 )
 
 EVERY = [(quantity, axis) for quantity in QUANTITIES for axis in AXES]
 PREFIXES = {"": 1.0, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6}
 PREFIXED = {"m": "position", "s": "time", "N": "force", "Hz": "frequency", "g": "inertia"}
-
-
-@pytest.mark.parametrize(("quantity", "axis"), EVERY)
-def test_the_unit_shown_is_the_one_stored(quantity, axis):
-    assert to_si(3.5, unit_of(quantity, axis), quantity=quantity, axis=axis) == 3.5
 
 
 @pytest.mark.parametrize(("quantity", "axis"), EVERY)
@@ -98,22 +92,6 @@ def test_a_prefix_scales_and_its_inverse_brings_back(value, symbol, prefix):
     plain = to_si(value, symbol, quantity=quantity)
     prefixed = to_si(value / PREFIXES[prefix], prefix + symbol, quantity=quantity)
     assert prefixed == pytest.approx(plain, rel=1e-12)
-
-
-@given(
-    first=st.sampled_from(list(PREFIXES)),
-    second=st.sampled_from(OF_LENGTHS),
-    product=st.sampled_from(["*", "·", " ", " * "]),
-)
-def test_prefixes_of_a_product_multiply(first, second, product):
-    factor = si_factor(f"{first}N{product}{second}m", quantity="force", axis="revolute")
-    assert factor == pytest.approx(PREFIXES[first] * PREFIXES[second], rel=1e-12)
-
-
-@given(first=st.sampled_from(list(PREFIXES)), second=st.sampled_from(OF_LENGTHS))
-def test_prefixes_of_a_quotient_divide(first, second):
-    factor = si_factor(f"{first}N/{second}m", quantity="stiffness")
-    assert factor == pytest.approx(PREFIXES[first] / PREFIXES[second], rel=1e-12)
 
 
 @given(

@@ -5,8 +5,6 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.block_cuts.body import body_experiment
-from teleopdesign.block_cuts.diagram_experiment import last_digit
-from teleopdesign.diagnose.record_shift import record_shifts
 from teleopdesign.measurement.prepare import prepare
 
 H = td.controller("low_pass", {"bandwidth": 15.0}).then(td.controller("gain", {"gain": 1.5}))
@@ -68,17 +66,6 @@ def test_the_error_of_a_hand_is_relative_to_its_force_whatever_pushes_beside(dia
     assert stretch.measured == pytest.approx(stretch.weight * np.sum(low**2), rel=0.01)
 
 
-def test_columns_of_one_pass_have_one_clock(diagram, log):
-    made = experiment(diagram, log, "R_D", "R_A", "R_M", "L")
-    assert record_shifts(body_of(made, "Z_M").stretches, 100).logs == ("Z_M",)
-    tables = {n: dict(t.content) for n, t in made.channels.items()}
-    same = td.diagram_experiment(
-        diagram, log, channels=tables, outside=["R_V"], sample_period=1e-3, one_pass=True
-    )
-    for name in ("Z_M", "Z_H"):
-        assert record_shifts(body_of(same, name).stretches, 100).logs == ()
-
-
 def test_the_sum_of_device_and_hand_needs_a_known_push(diagram, log):
     known = experiment(diagram, log, "R_D", "R_A", "L")
     assert {c.name for c in known.cuts.tested} == {"Z_M"}
@@ -103,22 +90,6 @@ def test_a_floor_is_never_below_the_last_digit_of_its_column(diagram, log):
     (cut,) = [c for c in made.cuts.tested if c.name == "Z_H"]
     force = body_experiment(made, cut).channels["Z_H.actuator_force"]
     assert force.resolution == pytest.approx(0.01)
-
-
-@pytest.mark.parametrize("written", ["%.2f", "%.4f", "%.6g", "%.9g", "%.6e", "single precision"])
-def test_the_last_digit_of_a_column_is_that_of_its_rounding(written):
-    exact = 3.0 * np.random.default_rng(0).normal(size=5000)
-    if written == "single precision":
-        column = exact.astype(np.float32).astype(float)
-    else:
-        column = np.array([float(written % x) for x in exact])
-    # a step leaves its twelfth part, squared
-    assert last_digit(column) == pytest.approx(np.std(column - exact) * np.sqrt(12), rel=0.1)
-    assert last_digit(exact) == 0.0
-
-
-def test_a_signal_of_few_values_is_not_taken_for_rounded():
-    assert last_digit(np.array([0.5, 10.0] * 50)) == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize(("rows", "what"), [((899, 901), "missing"), ((899, 900, 900), "twice")])

@@ -31,13 +31,6 @@ def test_command_motion_and_force_test_computer_mechanism_and_hand():
     assert set(command.separating) >= {"R_FF", "R_MBC"}
 
 
-def test_outputs_that_are_recorded_test_their_blocks_one_by_one():
-    cuts = cuts_of(interface(), ["R_D", "R_A", "L", "R_M", "R_FF", "R_MBC"], ["R_V"])
-    made = blocks(cuts)
-    assert made["R_FF"] == {"H"} and made["R_MBC"] == {"C"}
-    assert [c.name for c in cuts.of("wiring")] == ["R_A"]
-
-
 def test_a_force_of_the_hand_that_is_not_known_leaves_the_hand_untested():
     cuts = cuts_of(interface(), ["R_D", "R_A", "L", "R_M"])
     assert set(cuts.untested) == {"Z_H"} and "R_V" in cuts.untested["Z_H"]
@@ -55,11 +48,6 @@ def test_the_position_loop_is_tested_where_its_force_is_recorded():
     assert blocks(cuts)["R_D"] == {"K"}
     unknown = cuts_of(interface(position_loop=K), recorded[1:], ["R_V"])
     assert "L_D" in unknown.untested["K"]
-
-
-def test_a_junction_with_all_its_terms_is_a_cut_without_blocks():
-    cuts = cuts_of(interface(), ["E", "R_D", "R_A", "L", "R_M"], ["R_V"])
-    assert [c.name for c in cuts.of("wiring")] == ["E"]
 
 
 def test_a_coupling_is_tested_at_both_commands_of_a_teleoperator():
@@ -85,9 +73,3 @@ def test_a_diagram_says_what_must_be_logged_to_test_every_block():
     names = {one.name for one in plan.signals}
     assert {"L_D", "R_D", "R_A", "R_M", "L"} <= names
     assert all(name in plan.code and f'"{name}"' in plan.channels for name in names)
-
-
-def test_a_force_that_no_block_needs_may_have_any_value():
-    law = controller("spring_damper", {"stiffness": 1000.0, "damping": 5.0})
-    plan = what_to_log(teleoperator(RIGID, RIGID, coupling=law))
-    assert plan.zero == () and not plan.cuts.untested

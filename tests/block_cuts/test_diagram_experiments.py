@@ -65,17 +65,3 @@ def test_rows_further_apart_than_the_period_leave_the_computer_untested(edited):
 
     with pytest.raises(UnevenRows, match="log every pass"):
         passes_of(experiment, experiment.logs[0])
-
-
-def test_arrays_in_memory_are_the_same_experiment(folder):
-    stated = td.load_experiment(folder)
-    tables = {n: dict(t.content) for n, t in stated.channels.items()}
-    columns = [dict(log.columns.values) for log in stated.logs]
-    made = td.diagram_experiment(
-        stated.diagram, columns[0], check=columns[1], channels=tables, outside=["R_V"],
-        sample_period=1e-3, bandwidth=60.0,
-    )  # fmt: skip
-    assert made.cuts == stated.cuts
-    for name in stated.recorded:
-        for one, other in zip(made.logs, stated.logs, strict=True):
-            assert np.array_equal(made.signal(name, one), stated.signal(name, other))

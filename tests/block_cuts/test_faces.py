@@ -7,7 +7,6 @@ from block_cuts.interface_simulator import draw_interface, write_case
 import teleopdesign as td
 from teleopdesign.block_cuts import write_answer
 from teleopdesign.cli import main
-from teleopdesign.design.assumptions import device_of_diagram
 from teleopdesign.diagnose.search_plan import QUICK
 
 LATE = 0.003
@@ -53,19 +52,6 @@ def test_a_saved_answer_is_the_diagnosis_that_was_written(diagnosis, folder, cap
     assert "delay at computer" in capsys.readouterr().out
     assert main(["describe", str(path), "--as-is"]) == 2
     assert "whole diagram" in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_a_design_starts_from_the_identified_delay_and_hand(diagnosis):
-    body, place, settings = device_of_diagram(diagnosis, None, None)
-    assert place == "Z_M" and body.model.bodies
-    assert settings.delay == pytest.approx(LATE, rel=0.05) and settings.sample_period == 1e-3
-    hand = diagnosis.bodies["Z_H"].model.parameters["Z_H.inertia"].value
-    assert settings.load == pytest.approx(hand)
-    stated = device_of_diagram(diagnosis, "Z_M", td.Assumptions(delay=0.01))[2]
-    assert stated.delay == 0.01
-    made = td.design(diagnosis)
-    assert made.place == "Z_M" and made.assumptions.load == pytest.approx(hand)
 
 
 @pytest.mark.slow

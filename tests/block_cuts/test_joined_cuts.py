@@ -3,13 +3,11 @@
 import numpy as np
 import pytest
 from block_cuts.interface_simulator import draw_interface, leave_out, write_case
-from block_cuts.teleoperator_simulator import draw_teleoperator, write_teleoperator
 
 import teleopdesign as td
 from teleopdesign.block_cuts.body import body_experiment
 from teleopdesign.block_cuts.cuts import same_effects
 from teleopdesign.cli import main
-from teleopdesign.diagnose.search_plan import QUICK
 
 
 @pytest.fixture(scope="module")
@@ -76,30 +74,3 @@ def test_commands_print_the_cuts_and_what_to_log(folder, capsys):
     assert "fprintf" in capsys.readouterr().out
     assert main(["diagnose", str(folder), "--simulate"]) == 2
     assert "whole diagram" in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_the_laws_of_a_joined_cut_have_a_ranking_beside_that_of_the_body(tmp_path):
-    place, random = tmp_path / "whole", np.random.default_rng(12)
-    interface = draw_interface(random)
-    interface.hidden = {("gain", "H"): 1.3}
-    write_case(interface, place, random, durations=(2.5, 2.0))
-    ranked = td.rank(without(place, "R_A", tmp_path))
-    assert {"Z_M", "Z_M, laws"} <= set(ranked)
-    laws = ranked["Z_M, laws"]
-    assert laws.attempts[0].added.key == ("gain", "H")
-    assert laws.accepted is not None and laws.accepted.added.value == pytest.approx(1.3, rel=0.05)
-
-
-@pytest.mark.slow
-def test_an_effect_of_the_coupling_is_one_row_over_both_cuts(tmp_path):
-    place, random = tmp_path / "teleoperator", np.random.default_rng(5)
-    teleoperator = draw_teleoperator(random)
-    teleoperator.hidden = {("delay", "P"): 0.003}
-    write_teleoperator(teleoperator, place, random, durations=(3.0, 2.5))
-    for signal in ("U_m", "U_s"):
-        leave_out(place, signal)
-    diagnosis = td.find_missing(td.load_experiment(place), among={"bias"}, plan=QUICK)
-    assert [row.added for row in diagnosis.rows] == [None, ("delay", "P")]
-    before, after = diagnosis.rows
-    assert all(after.check[name] < 0.3 * before.check[name] for name in ("Z_m", "Z_s"))

@@ -121,16 +121,3 @@ def test_a_constant_that_any_block_may_have_added_is_listed_at_all_of_them(tmp_p
     assert set(answer["ladder"][-1]["cuts"]) == set(answer["floors"]) == {"R_A"}
     assert answer["assumed"] == {"R_V": 0.0} and answer["check"] == "records"
     assert set(answer["untested"]) == {"Z_M", "Z_H"}
-
-
-@pytest.mark.slow
-def test_the_picture_has_every_block_and_every_cut(adequate):
-    words = {text.get_text() for text in adequate.plot().axes[0].texts}
-    assert {"H", "C", "R_A", "untested"} <= words
-
-
-@pytest.mark.slow
-def test_a_law_that_is_blind_most_of_the_time_names_no_stand_in(tmp_path):
-    """H is at its limit in more than half of the rows: what it says there has no influence."""
-    diagnosis = diagnosis_of(tmp_path, {("saturation", "H"): 0.1}, seed=5)
-    assert diagnosis.verdict == "undecided" and not diagnosis.missing

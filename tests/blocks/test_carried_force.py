@@ -71,13 +71,6 @@ def test_what_is_lost_and_what_is_carried_are_what_acts(force, speed, mu, drivin
     assert friction == pytest.approx(way * expected, rel=1e-9, abs=1e-9)
 
 
-def test_a_body_without_such_a_level_is_left_as_it_is():
-    equation = geared(0.2, share=0.0).equation()
-    plain = Body("revolute", {"inertia": Value(INERTIA)}).with_effect(EFFECTS["coulomb"])
-    assert solve_carried_force(plain.equation(), plain.effects) == plain.equation()
-    assert equation.level.has(SIGNALS["acting_force"])
-
-
 def test_a_level_that_is_not_in_proportion_has_no_simulated_form():
     root = Effect(
         role="friction_level",
@@ -111,36 +104,6 @@ def test_a_load_that_drives_back_brakes_and_does_not_run_away(lost):
     assert braked <= swung + 1e-9
     work = np.abs(free["L_velocity"].values).max(), np.abs(geared_down["L_velocity"].values).max()
     assert work[1] < work[0]
-
-
-def test_along_a_motion_the_friction_is_in_proportion_to_the_load():
-    x, u, f = signals()
-    motion = motion_along(encoded(x), u, f, resolution=1e-6)
-    body = geared(0.25, level=0.0)
-    along = residual_along(body, motion)
-    load = INERTIA * motion.acceleration + GRAVITY * np.sin(motion.position) - motion.interaction
-    slides = motion.direction != 0
-    expected = motion.direction * 0.25 * np.abs(load)
-    np.testing.assert_allclose(along.friction.value[slides], expected[slides], rtol=1e-9)
-
-
-def test_its_tangents_are_differences_of_residuals():
-    x, u, f = signals()
-    motion = motion_along(encoded(x), u, f, resolution=1e-6)
-    names = ("inertia", "gravity.amplitude", "load_dependent_friction.coefficient")
-    body = geared(0.25)
-    along = residual_along(body, motion, names)
-    slides = motion.direction != 0
-    for j, name in enumerate(names):
-        value = body.parameters[name].value
-        low, high = (
-            residual_along(body.with_values({name: value * (1 + part)}), motion).residual.value
-            for part in (-1e-6, 1e-6)
-        )
-        difference = (high - low) / (2e-6 * value)
-        np.testing.assert_allclose(
-            along.residual.tangent[j][slides], difference[slides], rtol=1e-4, atol=1e-4
-        )
 
 
 def test_friction_of_the_load_takes_nothing_of_the_command():

@@ -75,17 +75,6 @@ def test_it_pushes_only_beyond_the_contact_position_and_never_pulls(depth, veloc
     assert float(law) == pytest.approx(force, abs=1e-12)
 
 
-def test_parameters_of_an_environment_bear_its_name_and_belong_to_the_slave(folder):
-    model = Model.from_experiment(load_experiment(folder))
-    assert model.locate("environment.stiffness") == ("slave", "environment.stiffness")
-    assert "slave.environment.stiffness" not in model.parameters
-    other = model.with_values({"environment.stiffness": 123.0})
-    assert other.body("slave").parameters["environment.stiffness"].value == 123.0
-    assert other.canonical().parameters["environment.stiffness"].value == 123.0
-    assert model.parameters["environment.stiffness"].value == 500.0
-    assert model.parameters["environment.damping"].fixed
-
-
 def test_a_measured_force_takes_its_place(folder):
     measured = '"slave.interaction_force" = { column = "f_s", unit = "N" }\n"slave.position"'
     assert not edited(folder, '"slave.position"', measured).body("slave").has("environment")

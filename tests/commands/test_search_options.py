@@ -79,13 +79,3 @@ def test_a_terminal_is_given_colours(monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     expected = f"plain\n\033[{_terminal.STYLES['good']}mverdict\033[0m\n"
     assert styled(Terminal(), monkeypatch) == expected
-
-
-@pytest.mark.parametrize(("variable", "value"), [("NO_COLOR", "1"), ("TERM", "dumb")])
-def test_colours_can_be_switched_off(variable, value, monkeypatch):
-    monkeypatch.setenv(variable, value)
-    assert styled(Terminal(), monkeypatch) == "plain\nverdict\n"
-
-
-def test_a_pipe_is_given_no_colours(monkeypatch):
-    assert styled(io.StringIO(), monkeypatch) == "plain\nverdict\n"

@@ -41,22 +41,6 @@ def test_a_table_holds_every_signal_with_its_unit_and_can_be_read_by_new(expecte
     np.testing.assert_allclose(table, exact, rtol=1e-8, atol=1e-30)
 
 
-def test_values_are_converted_from_their_units(tmp_path):
-    files = [tmp_path / name for name in ("a.nc", "b.nc")]
-    for file, level, start, delay in zip(
-        files, ("300mN", "0.3"), ("5mm", "0.005"), ("1 ms", "0.001"), strict=True
-    ):
-        values = [f"C.smoothed_coulomb.level={level}", f"initial.L={start}"]
-        values += [f"computer.delay = {delay}", "inputs.R_V=1N"]
-        options = [word for value in values for word in ("--value", value)]
-        written = ["--output", str(file)]
-        assert main(["simulate", NAME, "--duration", "0.1", *options, *written]) == 0
-    one, two = (xarray.load_dataset(f) for f in files)
-    xarray.testing.assert_identical(one, two)
-    assert one.attrs["parameter C.smoothed_coulomb.level"] == pytest.approx(0.3)
-    assert float(one["L"][0]) == 0.005
-
-
 def test_a_sine_from_outside_and_continuous_controllers_act(capsys):
     assert main(["simulate", NAME, "--duration", "0.1", "--continuous",
                  "--input", "R_V", "2N", "5Hz", "--error"]) == 0  # fmt: skip

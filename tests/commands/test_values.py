@@ -12,14 +12,6 @@ def read(text, quantity="position", axis="revolute"):
 
 
 @pytest.mark.parametrize(
-    ("text", "value"),
-    [("0.2", 0.2), (" -.5 ", -0.5), ("45deg", np.pi / 4), ("1e2 deg ", np.radians(100)), ("3.", 3)],
-)
-def test_a_number_with_a_unit_or_in_si_is_read(text, value):
-    np.testing.assert_allclose(read(text), value, rtol=1e-15)
-
-
-@pytest.mark.parametrize(
     ("text", "unit", "value"),
     [
         ("5 mm", "m", 5e-3),
@@ -32,12 +24,6 @@ def test_a_number_with_a_unit_or_in_si_is_read(text, value):
 )
 def test_a_value_is_converted_into_a_stated_si_unit(text, unit, value):
     np.testing.assert_allclose(value_in(text, unit=unit, where="--value"), value, rtol=1e-15)
-
-
-@pytest.mark.parametrize(("text", "unit"), [("1 N", "m"), ("50 %", "rad"), ("1 m", "N^2")])
-def test_a_unit_of_another_quantity_is_refused(text, unit):
-    with pytest.raises(ExperimentError, match="^--value: found"):
-        value_in(text, unit=unit, where="--value")
 
 
 @pytest.mark.parametrize("text", ["", "fast", "1.2.3", "deg", "1e999", "2 N", "--1"])

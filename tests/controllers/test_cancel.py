@@ -33,7 +33,12 @@ def values_of(effect):
     return {n: min(0.3 + 0.1 * i, p.upper / 2) for i, (n, p) in enumerate(stated.items())}
 
 
-@pytest.mark.parametrize("name", [n for n in CANCELLED if n not in STEADY])
+def each(name):
+    """A curve of eight values takes seconds."""
+    return pytest.param(name, marks=pytest.mark.slow if EFFECTS[name].free else ())
+
+
+@pytest.mark.parametrize("name", [each(n) for n in CANCELLED if n not in STEADY])
 def test_law_gives_the_force_that_the_effect_takes(name):
     effects = list(dict.fromkeys(with_needs(name)))
     law = td.cancel({e: values_of(e) for e in effects}, smoothing_velocity=1e-12)
@@ -105,17 +110,6 @@ def test_file_of_a_diagram_holds_the_law(compensated, tmp_path):
     td.write_diagram(compensated, path)
     assert td.read_diagram(path) == compensated
     assert pickle.loads(pickle.dumps(compensated)) == compensated
-
-
-def test_file_may_group_parameters_by_effect(tmp_path):
-    path = tmp_path / "short.toml"
-    path.write_text(
-        '[diagram]\nkind = "haptic interface"\n[blocks.C]\nlaw = "cancel"\n'
-        "parameters = { cogging = { amplitude = 0.2, period = 0.5, phase = 0.0 }, zero = 0.1 }\n"
-    )
-    (block,) = td.read_diagram(path).controls
-    stated = {"cogging": {"amplitude": 0.2, "period": 0.5, "phase": 0.0}}
-    assert block.controller == td.cancel(stated, zero=0.1)
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")

@@ -194,42 +194,7 @@ def test_a_declared_smoothing_is_the_speed_of_half_the_bound(made):
     assert sp.simplify(force - bound * speed / (smoothing + speed)) == 0
 
 
-def turning(q, samples=12):
-    """Down at constant speed until friction has its level, then up; q = T sigma abs(v)/F_D."""
-    step = q * 0.5 / TYPICAL["stiffness"]
-    down = -step * np.arange(41)
-    return np.concatenate([down, down[-1] + step * np.arange(1, samples + 1)])
-
-
-def test_forward_euler_leaves_its_level_where_the_exact_step_keeps_it():
-    """P30: from -F_D one step at q = 1.5 reaches (2 q - 1) F_D, twice the level."""
-    euler, exact = (along(law(n), turning(1.5)) for n in ("dahl_forward_euler", "dahl"))
-    # the step that the first velocity upwards makes is seen one sample later
-    assert euler[42] == pytest.approx(2 * 0.5, rel=1e-9)
-    assert np.abs(exact).max() <= 0.5 * (1 + 1e-12)
-    assert np.abs(along(law("dahl_forward_euler"), turning(0.9))).max() <= 0.5 * (1 + 1e-12)
-
-
-def test_forward_euler_diverges_where_the_exact_step_does_not():
-    """P29: pole 1 - q = -1.5 at q = 2.5; after 40 samples of steady motion 1.5^40 = 1e7."""
-    assert np.abs(along(law("dahl_forward_euler"), turning(2.5))).max() > 1e6
-    assert np.abs(along(law("dahl"), turning(2.5))).max() <= 0.5 * (1 + 1e-12)
-
-
-def test_ideal_coulomb_adds_nothing_at_rest():
-    forces = along(law("coulomb"), 1e-3 * np.array([0.0, 1.0, 1.0, 1.0, 0.5, 0.5]))
-    np.testing.assert_array_equal(forces, [0, 0.5, 0, 0, -0.5, 0])
-
-
 def test_lugre_without_stribeck_and_damping_is_dahl():
     positions = 1e-4 * np.random.default_rng(5).standard_normal(50).cumsum()
     made = law("lugre", extra_static_level=0.0, bristle_damping=0.0)
     np.testing.assert_allclose(along(made, positions), along(law("dahl"), positions), atol=1e-12)
-
-
-@pytest.mark.parametrize("bandwidth", [5.0, 50.0, 500.0])
-def test_the_sampled_derivative_of_a_ramp_is_its_slope(bandwidth):
-    """Also where the derivative's bandwidth is of the order of the sample rate."""
-    made = law("proportional_derivative", stiffness=0.0, bandwidth=bandwidth)
-    forces = along(made, 0.05 * PERIOD * np.arange(1000))[-1]
-    assert forces == pytest.approx(2.0 * 0.05, rel=1e-9)

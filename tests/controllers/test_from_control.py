@@ -50,36 +50,6 @@ def test_a_filter_of_high_order_keeps_its_digits():
     np.testing.assert_allclose(steps["R_MBC"], expected.real, atol=1e-12)
 
 
-@pytest.mark.parametrize("dt", [1e-3, True])
-def test_a_discrete_system_is_stepped_as_it_is(dt):
-    discrete = control.sample_system(NOTCH, 1e-3, method="tustin")
-    transfer = control.tf(discrete.num, discrete.den, dt)
-    steps = sampled(from_control(transfer))
-    response = control.forced_response(discrete, steps["time"].values, steps["L"].values)
-    np.testing.assert_allclose(steps["R_MBC"], response.outputs, atol=1e-12)
-
-
-def test_its_linear_form_is_its_transfer_function():
-    plant = FIFTH
-    made = from_control(plant)
-    form = made.linear_form("H", S, sp.S(0))
-    form = form.subs({parameter_symbol("H", n): v for n, v in made.names().items()})
-    for f in (0.01, 0.3, 20.0):
-        point = 2j * np.pi * f
-        assert complex(form.subs(S, point)) == pytest.approx(complex(plant(point)), rel=1e-9)
-
-
-def test_systems_of_one_order_share_one_kernel():
-    from teleopdesign.simulate import prepare
-
-    made = [
-        prepare(haptic_interface(body(0.1), cancellation=from_control(g)), duration=0.1, jit=False)
-        for g in (NOTCH, 1 / NOTCH)
-    ]
-    assert made[0].program.loop is made[1].program.loop
-    assert made[0].program.laws == made[1].program.laws
-
-
 def test_a_nonlinear_system_goes_through_python_control_as_it_is():
     """A cubic damper on its own state: dx/dt = 50 (u - x), y = x^3."""
     cubic = control.nlsys(

@@ -107,15 +107,3 @@ def test_commands_read_the_law_from_its_file(diagram_file, law_file, tmp_path, c
     assert "any compensator within 0.4 N is passive" in capsys.readouterr().out
     assert main(["passivity", str(diagram_file)]) == 2
     assert 'found "round_edge"' in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_a_study_without_python_varies_a_users_law(diagram_file, law_file, tmp_path, capsys):
-    study = tmp_path / "study.toml"
-    study.write_text(
-        '[study]\nmodel = "mine.toml"\n[axes]\n"C.round_edge.level" = [0.2, 0.4]\n[simulation]\n'
-        "duration = 0.2\nmotion.L = { amplitude = 0.01, frequency = 5.0 }\n[measures]\n"
-        "force_error = {}\n"
-    )
-    assert main(["study", str(study), "--law", str(law_file)]) == 0
-    assert "2 C.round_edge.level" in capsys.readouterr().out

@@ -12,7 +12,7 @@ from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_int
 from teleopdesign.frequency import delay_margin, loop_gain
 from teleopdesign.passivity import diagram_claims
 from teleopdesign.realise.iosystem import to_iosystem
-from teleopdesign.simulate import Sampling, simulate, sine
+from teleopdesign.simulate import simulate, sine
 
 MOTION = {"L": sine(amplitude=0.01, frequency=3.0)}
 
@@ -93,25 +93,6 @@ def behind_a_sum(made):
         {"f": "force", "r": "position"},
         measured=("x",),
     )
-
-
-@pytest.mark.parametrize("computer", ["continuous", Sampling()])
-def test_it_may_read_what_a_sum_gives_and_stand_in_series(computer):
-    """A static system that is a gain, behind a low-pass: to rounding as that gain."""
-    times = control.nlsys(None, lambda t, x, u, p: 40.0 * u, inputs=1, outputs=1)
-    low_pass = controller("low_pass", {"bandwidth": 20.0})
-    runs = [
-        simulate(
-            behind_a_sum(low_pass.then(made)),
-            duration=0.05,
-            inputs={"r": 0.01},
-            computer=computer,
-            step=1e-3,
-            jit=False,
-        )["x"].values
-        for made in (from_control(times), controller("gain", {"gain": 40.0}))
-    ]
-    np.testing.assert_allclose(*runs, rtol=1e-12, atol=1e-18)
 
 
 def test_a_system_in_a_loop_without_delay_through_itself_is_refused():

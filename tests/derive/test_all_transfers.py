@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import sympy as sp
 from clock import slowness
-from devices import body
 from diagrams.random_diagrams import diagrams
 from diagrams.test_wiring import pair
 from hypothesis import HealthCheck, Phase, assume, example, given, settings
@@ -158,13 +157,6 @@ def test_a_sum_that_vanishes_only_exactly_determines_nothing():
         transfer(diagram, "j3")
 
 
-def test_an_algebraic_loop_with_a_solution_is_solved():
-    diagram = looped(Junction("b", {"a": 1, "c": -1}), Junction("c", {"b": 1}))
-    assert transfer(diagram, "b")["a"] == sp.Rational(1, 2)
-    self_loop = looped(Junction("b", {"a": 1, "b": -3}))
-    assert transfer(self_loop, "b")["a"] == sp.Rational(1, 4)
-
-
 @pytest.mark.parametrize(
     ("diagram", "words"),
     [
@@ -208,16 +200,6 @@ def test_a_loop_that_has_no_solution_at_its_values_only_is_reported():
         transfers.system()
     (data,) = all_transfers(diagram).as_data()["transfers"]
     assert "no solution" in data["no_system"]
-
-
-def test_numbers_are_those_of_the_blocks():
-    """A mass on a damper: x/f = 1/(m s^2 + d s)."""
-    diagram = haptic_interface(body(0.5, viscous__damping=2.0))
-    transfers = all_transfers(diagram)
-    system, left_out = transfers["L/R_V"].system()
-    assert left_out == ()
-    np.testing.assert_allclose(system.num[0][0], [2.0], rtol=1e-12)  # of s^2 + 4 s
-    np.testing.assert_allclose(system.den[0][0], [1.0, 4.0, 0.0], rtol=1e-12)
 
 
 def test_what_has_no_linear_form_is_named():

@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 
 import teleopdesign as td
-from teleopdesign.derive import return_difference, symbol_values, two_port_functions
+from teleopdesign.derive import return_difference, symbol_values
 from teleopdesign.diagrams import teleoperator
 from teleopdesign.frequency import loop_gain
 from teleopdesign.realise.lti import S, linear_blocks
@@ -63,16 +63,3 @@ def test_the_named_functions_are_those_of_two_masses_on_a_spring():
 def test_the_return_difference_of_a_soft_device_is_that_of_its_loop_gain():
     gain = complex(loop_gain(ONE, controller="C")(AT))
     assert value(return_difference(ONE, "C"), ONE) == pytest.approx(1 + gain, rel=1e-9)
-
-
-def test_the_two_port_of_a_soft_master_shows_its_tip():
-    """A cable that is very stiff leaves the impedance of the stiff master."""
-    hard = teleoperator(
-        BODY.with_effect(td.EFFECTS["transmission_compliance"], {**CABLE, "stiffness": 1e12}),
-        BODY,
-        coupling=TWO.block("P").controller,
-    )
-    whole = teleoperator(BODY, BODY, coupling=TWO.block("P").controller)
-    for name in ("h_11", "h_12", "h_21", "h_22"):
-        stiff = value(two_port_functions(whole)[name], whole)
-        assert value(two_port_functions(hard)[name], hard) == pytest.approx(stiff, rel=1e-6)

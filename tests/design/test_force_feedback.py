@@ -46,15 +46,6 @@ def test_the_largest_gain_is_at_its_limit_with_the_stated_delay(share, bandwidth
         assert loop.largest_delay == pytest.approx(factor * delay, rel=1e-6)
 
 
-def test_at_its_largest_delay_a_loop_has_a_pole_pair_on_the_axis():
-    loop = FeedbackLoop(3.0, 20.0, 1e-3)
-    late = FeedbackLoop(3.0, 20.0, loop.largest_delay)
-    poles = control.poles(control.feedback(nyquist_loop(late)))
-    rightmost = max(poles, key=lambda p: p.real)
-    assert abs(rightmost.imag) == pytest.approx(loop.crossover, rel=1e-3)
-    assert abs(rightmost.real) < 1e-3 * abs(rightmost.imag)
-
-
 def test_a_loop_gain_below_one_bears_any_delay():
     assert FeedbackLoop(0.9, 20.0, 1.0).largest_delay == np.inf
 

@@ -7,7 +7,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
-from teleopdesign.base.sentences import round_down, round_up
 from teleopdesign.blocks import Body, Value
 from teleopdesign.design import Assumptions
 from teleopdesign.design.cancellation import acting_gain, cancelled_level
@@ -113,12 +112,3 @@ def test_the_level_is_commanded_so_that_the_part_that_acts_is_the_same(gain):
     friction, settings = friction_interval(device, REACH, errors=0.0), Assumptions(fraction=0.5)
     level = cancelled_level(friction, device, REACH, gain, settings)
     assert gain * level.value == pytest.approx(0.5, rel=0.005)  # rounded down to three digits
-
-
-@given(st.floats(1e-9, 1e9), st.integers(1, 4))
-def test_rounding_stays_on_its_side(value, digits):
-    low, high = round_down(value, digits=digits), round_up(value, digits=digits)
-    # a part in 1e8: a number of few digits is left as it is
-    assert low <= value * (1 + 1e-8)
-    assert high >= value * (1 - 1e-8)
-    assert high - low <= 1.01 * 10.0 ** (math.floor(math.log10(value)) - digits + 1)

@@ -7,8 +7,9 @@ import pytest
 from teleopdesign.design import refine
 from teleopdesign.design.cancellation import Reason, smoothed_cancellation
 
+pytestmark = pytest.mark.slow  # a whole design
 
-@pytest.mark.slow
+
 def test_tuning_lowers_the_force_error_within_the_conditions(designed):
     refinement = refine(designed, simulations=25)
     assert refinement.after <= refinement.before
@@ -30,7 +31,6 @@ def test_the_error_before_is_the_one_predicted(designed):
     )
 
 
-@pytest.mark.slow
 def test_a_smoothed_cancellation_keeps_its_velocity_above_the_encoders(designed):
     level = Reason("level", 0.49, "N", "made for a test")
     smoothed = smoothed_cancellation(

@@ -85,14 +85,6 @@ def test_a_second_wave_of_cogging_is_named_beside_the_first(parts, tmp_path):
 
 
 @pytest.mark.slow
-def test_one_wave_of_cogging_has_no_second(tmp_path):
-    def force(t, x, v):
-        return friction(v) + 0.05 * np.sin(2 * np.pi * 24 * x / (2 * np.pi) + 1.0)
-
-    assert named(diagnose(tmp_path, force, size=1.2)) == ["cogging"]
-
-
-@pytest.mark.slow
 def test_of_one_sine_no_gain_over_the_place_is_named(tmp_path):
     """Each place is passed at one speed: friction that flattens with speed looks the same."""
 

@@ -1,16 +1,12 @@
 """The residual of one body does not depend on parameters of another, and is not computed anew."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from cases import make_case, write_case
 
 from teleopdesign import Model, load_experiment
-from teleopdesign.diagnose import bodies_apart
 from teleopdesign.diagnose.bodies_apart import select_bodies, separate_bodies
 from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.search_plan import EFFORTS
 from teleopdesign.measurement.prepare import prepare
 
 
@@ -39,34 +35,6 @@ def test_what_one_body_leaves_does_not_depend_on_the_parameters_of_another(two_b
         assert slopes == pytest.approx(whole[1][np.ix_(part.rows, mine)], rel=1e-9, abs=1e-12)
         others = np.delete(whole[1][part.rows], mine, axis=1)
         assert others.size and not others.any()
-
-
-def test_a_fit_that_follows_tangents_ends_where_one_that_computes_all_again_does(
-    two_bodies, monkeypatch
-):
-    prepared, stated = two_bodies
-    there = estimate(stated, prepared).model
-    values = {n: 1.2 * v.value for n, v in there.parameters.items() if not v.fixed}
-    moved = there.with_values({n: v for n, v in values.items() if n.startswith("slave.")})
-    computed = []
-    relative = bodies_apart.Apart.relative
-
-    def counted(part, *arguments):
-        computed.extend(part.bodies)
-        return relative(part, *arguments)
-
-    monkeypatch.setattr(bodies_apart.Apart, "relative", counted)
-    for effort in (EFFORTS.rough, EFFORTS.fine):
-        computed.clear()
-        followed = estimate(moved, prepared, effort=effort)
-        assert computed.count("master") < computed.count("slave")
-        with monkeypatch.context() as patch:
-            patch.setattr(bodies_apart, "EFFORTS", replace(EFFORTS, followed=0.0))
-            again = estimate(moved, prepared, effort=effort)
-        for name in followed.free:
-            one, other = (f.model.parameters[name] for f in (followed, again))
-            # far below what is said of the estimate; a rough fit ends anywhere within its tolerance
-            assert abs(one.value - other.value) < 0.05 * other.stderr, name
 
 
 def test_what_is_gained_at_one_body_does_not_depend_on_effects_at_another(two_bodies):

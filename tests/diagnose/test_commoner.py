@@ -12,7 +12,7 @@ from teleopdesign.diagnose.probability import list_rarer, shares
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.effects import EFFECTS
 
-SPRING, GRAVITY, BIAS, STOPS = map(candidate, ("spring", "gravity", "bias", "stops"))
+SPRING, GRAVITY = map(candidate, ("spring", "gravity"))
 
 
 def rule(names, *, gravity=0.3001, spring=0.3):
@@ -55,24 +55,6 @@ def test_gravity_takes_the_place_of_a_spring_that_is_hardly_distinguished_from_i
     moved = swap(table.search(), table.state(table.rungs(*added)))
     assert set(names(moved)) == {"gravity", *added} - {"spring"}
     assert swap(table.search(), moved) is None, "and stays"
-
-
-@pytest.mark.parametrize(("beside", "stays"), [(0.1, "spring"), (0.13, "stops")])
-def test_a_simpler_effect_takes_the_place_that_is_as_good_beside_later_ones(use, beside, stays):
-    """Stops whose ends meet are a spring; alone they stood in for what hardens, too."""
-    left = {
-        frozenset(): 1.0,
-        frozenset({"stops"}): 0.3,
-        frozenset({"spring"}): 0.4,
-        frozenset({"hardening_spring"}): 0.8,
-        frozenset({"stops", "hardening_spring"}): 0.1,
-        frozenset({"spring", "hardening_spring"}): beside,
-    }
-    table = use(lambda names: left.get(names, 0.9))
-    first, stops, hard = table.rungs("stops", "hardening_spring")
-    stops = replace(stops, ranking=table.rank(first.fit, among=[STOPS, SPRING]))
-    state = table.state((first, stops, hard))
-    assert set(names(swap(table.search(), state) or state)) == {stays, "hardening_spring"}
 
 
 @pytest.mark.parametrize("name", sorted(n for n, e in EFFECTS.items() if e.commoner))

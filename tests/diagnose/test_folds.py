@@ -53,16 +53,6 @@ def test_no_part_holds_most_of_the_motion_in_one_direction(one_stroke_each_way):
             assert np.count_nonzero(held.motion.direction[held.keep] == one) < 0.3 * rows
 
 
-def test_many_reversals_are_held_out_in_blocks_of_successive_rows(one_stroke_each_way):
-    t = H * np.arange(1000)
-    angle = np.sin(2.0 * np.pi * 0.7 * t)
-    stretches = prepare(experiment_of({"t": t, "q": angle, "u": np.cos(t)}), bandwidth=5.0).of(
-        "fit"
-    )
-    for _, (held,) in folds(stretches):
-        assert len(np.unique(np.diff(held.keep))) == 1
-
-
 def screw_of_a_drive(lag, seed):
     """The same, as the recorder of a drive writes it at 25 Hz: whole rpm, ramps of one or two rows,
     means over each row. The angle is the integral of the logged speed."""

@@ -67,22 +67,3 @@ def test_range_that_a_user_states_is_kept_and_not_estimated(recording):
         assert fit.model.parameters[f"device.free_force.{name}"].value == place
         assert f"device.free_force.{name}" not in fit.free
     assert fit.model.parameters["device.free_force.value_5"].value != 0.0
-
-
-@pytest.mark.slow
-def test_fitted_curves_can_be_cancelled_and_simulated():
-    values = {f"value_{i}": 0.1 * (-1) ** i + 0.02 * i for i in range(1, 9)} | RANGE
-    friction = {f"value_{i}": 0.5 - 0.04 * i for i in range(1, 9)} | {"upper": 0.3}
-    body = td.Body("prismatic", {"inertia": 1e-3})
-    body = body.with_effect(td.EFFECTS["free_force"], values)
-    body = body.with_effect(td.EFFECTS["free_friction"], friction)
-    computer = td.Sampling(period=2e-4, delay=0.0, velocity_bandwidth=500.0)
-    motion = {"L": td.sine(amplitude=0.04, frequency=1.0)}
-
-    def left(**parts):
-        diagram = td.haptic_interface(body, **parts)
-        run = td.simulate_diagram(diagram, duration=1.0, motion=motion, computer=computer)
-        return float(np.sqrt(np.mean(np.asarray(run["E"]) ** 2)))
-
-    # left: smoothing near reversals
-    assert left(cancellation=td.cancel(body, smoothing_velocity=2e-3)) < 0.15 * left()

@@ -8,7 +8,6 @@ import pytest
 import teleopdesign as td
 from teleopdesign.cli import main
 from teleopdesign.diagnose.covariance import friction_at
-from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.measurement.prepare import prepare
 
@@ -77,18 +76,10 @@ def test_a_pair_that_no_point_tells_apart_is_missing_beside_a_named_effect():
     assert "less likely than not" not in str(diagnosis)
 
 
-def test_damping_that_differs_by_direction_is_named():
-    diagnosis = td.find_missing(drawn(5, lambda v: 0.4 + 0.25 * v, more=lambda v: 0.05 * abs(v)))
-    (one,) = diagnosis.missing
-    assert one.effect.name == "viscous_asymmetry"
-    value = diagnosis.model.parameters["device.viscous_asymmetry.half_difference"]
-    assert abs(value.value - 0.05) < 4.0 * value.stderr
-
-
 @pytest.mark.slow
 def test_no_effect_is_named_on_coulomb_and_viscous_friction():
     among = ("stribeck", "smoothed_coulomb", "quadratic_drag")
-    answers = [td.find_missing(drawn(s, lambda v: 0.4 + 0.25 * v), among=among) for s in range(30)]
+    answers = [td.find_missing(drawn(s, lambda v: 0.4 + 0.25 * v), among=among) for s in range(12)]
     assert {a.verdict for a in answers} == {"model_adequate"}
 
 
@@ -121,9 +112,9 @@ def test_scatter_of_repeated_points_is_the_noise_floor():
 
 
 def test_band_of_the_curve_holds_the_truth():
-    """Two standard errors: 95 % of normal errors; 60 draws of three speeds are known to 3 %."""
+    """Two standard errors: 95 % of normal errors; 30 draws of three speeds are known to 4 %."""
     at, held = np.array([-1.0, 0.05, 0.8]), []
-    for seed in range(60):
+    for seed in range(30):
         curve = drawn(seed, lambda v: 0.4 + 0.25 * v)
         prepared = prepare(curve)
         fit = estimate_from_starts(td.Model.from_experiment(curve), prepared)
@@ -131,18 +122,6 @@ def test_band_of_the_curve_holds_the_truth():
         truth = (0.4 + 0.25 * np.abs(at)) * np.sign(at)
         held.append(np.abs(force - truth) < 2.0 * error)
     assert np.mean(held) > 0.85
-
-
-def test_order_of_the_rows_changes_nothing():
-    rng = np.random.default_rng(8)
-    v = speeds(rng)
-    force = TRUTHS["stribeck"](np.abs(v)) * np.sign(v)
-    mixed = rng.permutation(len(v))
-    fits = []
-    for rows in (slice(None), mixed):
-        curve = td.friction_curve(v[rows], force[rows], axis="revolute")
-        fits.append(estimate(td.Model.from_experiment(curve), prepare(curve)))
-    assert fits[0].check_error == pytest.approx(fits[1].check_error, rel=1e-9)
 
 
 def test_a_curve_without_a_named_law_is_fitted_by_free_friction():

@@ -8,19 +8,13 @@ import json
 
 import numpy as np
 import pytest
-from diagnose.contract import violations
 from diagnose.made_records import dahl, write_made
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from teleopdesign import Body, Model, find_missing, load_experiment
-from teleopdesign.base.errors import ModelError
-from teleopdesign.diagnose.answer import answer, load_answer, write_answer
-from teleopdesign.diagnose.candidates import Candidate, candidates
+from teleopdesign.diagnose.answer import load_answer, write_answer
+from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.rung import Rung, restore_replaced
 from teleopdesign.effects import EFFECTS
-from teleopdesign.show.diagnose.text import ladder_text
-from teleopdesign.show.report.parameter_table import parameter_rows
 
 pytestmark = pytest.mark.slow  # diagnoses of whole cases
 
@@ -76,30 +70,6 @@ def test_a_damper_that_stood_in_for_hysteresis_gives_way_to_the_bristle(search):
     assert stiffness.value == pytest.approx(4e3, rel=0.1)
 
 
-def test_the_table_of_parameters_holds_what_gave_way(search):
-    _, diagnosis = search
-    rows = {r.name: r for r in parameter_rows(diagnosis)}
-    assert set(diagnosis.before.model.parameters) <= set(rows)
-    gone = rows["device.viscous.damping"]
-    assert gone.gave_way_to == "presliding" and gone.after is None
-    assert gone.before == diagnosis.before.model.parameters["device.viscous.damping"].value
-    assert [r.name for r in rows.values() if r.gave_way_to] == ["device.viscous.damping"]
-
-
-def test_the_answer_says_what_it_takes_the_place_of(search):
-    _, diagnosis = search
-    document = answer(diagnosis)
-    assert document["missing"] == [
-        {"effect": "presliding", "at": "device", "instead_of": "viscous"}
-    ]
-    assert [row["instead_of"] for row in document["ladder"]] == [None, "viscous"]
-    assert not [n for n in document["model_parameters"] if "viscous" in n]
-    assert not violations(document)
-    text = ladder_text(diagnosis)
-    assert "+ presliding at device instead of viscous" in text
-    assert "effects_missing: presliding at device instead of viscous." in text
-
-
 def test_an_answer_read_back_knows_it_too(search, tmp_path):
     experiment, diagnosis = search
     write_answer(diagnosis, tmp_path / "answer.json")
@@ -147,23 +117,3 @@ def test_what_rests_on_either_stays_while_one_gives_way_to_the_other(new, old, o
     back = rung.undo_addition(model)
     assert {n for n, _ in back.effects} == {old, other}
     assert back.parameters[f"device.{old}.{STRENGTH[old]}"].value == 2.0
-
-
-@settings(max_examples=15, deadline=None)
-@given(axis=st.sampled_from(["prismatic", "revolute"]), data=st.data())
-def test_whatever_gave_way_to_whatever_comes_back(axis, data):
-    """Over models of any effects: a candidate in the place of one that the others can spare."""
-    model = Model({"device": Body(axis, {"inertia": 1.0}, ())})
-    for _ in range(data.draw(st.integers(1, 7))):
-        new = data.draw(st.sampled_from(candidates(model)))
-        model = model.with_effect(new.effect, at=new.at)
-    for new in candidates(model):
-        beside = model.with_effect(new.effect, at=new.at)
-        for old in model.body("device").effects:
-            try:
-                instead = beside.without_effect(old.name, at="device")
-            except ModelError:
-                continue  # another effect needs it
-            gave_way = restore_replaced(Candidate(old, "device"), model)
-            back = Rung(new, None, replaced=gave_way).undo_addition(instead)
-            assert set(back.effects) == set(model.effects)

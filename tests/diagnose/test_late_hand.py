@@ -1,6 +1,5 @@
 """A force of the hand that its sensor makes late belongs to the record: no missing effect."""
 
-import json
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,6 @@ from scipy.signal import lfilter
 import teleopdesign as td
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.model_data import model_data, model_from
 from teleopdesign.diagnose.record_shift import name_of_hand
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.effects import EFFECTS
@@ -97,13 +95,6 @@ def test_the_slope_by_the_shift_is_that_of_the_residual(late, effect):
         # where friction holds the residual is no smooth function of the force
         error = np.abs((more - less) / (2 * step) - slope[0])
         assert np.quantile(error, 0.9) < 1e-2 * np.abs(slope).max()
-
-
-def test_a_model_with_a_late_hand_is_written_and_read(diagnosis):
-    data = json.loads(json.dumps(model_data(diagnosis.model)))
-    back = model_from(data, EFFECTS, "models")
-    assert back.record_shift[HAND] == diagnosis.model.record_shift[HAND]
-    assert back.log_late(HAND) == diagnosis.model.record_shift[HAND].value
 
 
 @pytest.mark.parametrize("effect", ["actuator_lag"])

@@ -1,20 +1,17 @@
 """What a black box learns from the motion: a law that the model lacks, and no noise."""
 
-import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from teleopdesign.diagnose import learnable as module
-from teleopdesign.diagnose.answer import load_answer, write_answer
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.learnable import (
     error_near_reversals,
     learnable,
 )
 from teleopdesign.measurement.prepare import prepare
-from teleopdesign.show.diagnose.text import ladder_text
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -69,17 +66,6 @@ def test_a_force_that_does_not_repeat_is_not_learned(diagnosis, prepared):
     stretches = tuple(map(noisy, prepared.stretches))
     learned = learnable(diagnosis.after.model, replace(prepared, stretches=stretches))
     assert learned.part < 0.1 * learned.left
-
-
-def test_an_answer_holds_what_could_be_learned_and_gives_it_back(diagnosis, experiment, tmp_path):
-    write_answer(diagnosis, tmp_path / "answer.json")
-    data = json.loads((tmp_path / "answer.json").read_text())
-    assert data["learnable"] == pytest.approx(diagnosis.learnable.error)
-    assert data["near_reversals"]["check_error"] == pytest.approx(diagnosis.near_reversals.error)
-    back = load_answer(tmp_path / "answer.json", experiment=experiment)
-    assert back.learnable == diagnosis.learnable
-    assert back.near_reversals == diagnosis.near_reversals
-    assert str(diagnosis.learnable) in ladder_text(back)
 
 
 def test_the_error_near_reversals_is_that_of_the_rows_there(diagnosis, prepared):

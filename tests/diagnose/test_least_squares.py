@@ -55,16 +55,6 @@ def test_a_curved_valley_is_followed_to_its_end(start):
     np.testing.assert_allclose(bounded.values, known, atol=1e-3)
 
 
-def test_a_parameter_without_effect_stays_where_it_was():
-    jacobian = np.column_stack([np.ones(5), np.zeros(5)])
-    free = np.full(2, np.inf)
-    optimum = minimise(
-        lambda x: (jacobian @ x - 3.0, jacobian), np.array([0.0, 7.0]), -free, free,
-        tolerance=1e-10, evaluations=50,
-    )  # fmt: skip
-    np.testing.assert_allclose(optimum.values, [3.0, 7.0], rtol=1e-6)
-
-
 def test_no_step_follows_columns_whose_squares_overflow():
     """A motion that grows leaves finite columns of 1e200: neither a step nor a warning."""
     grown = np.array([[1.0, 1e200], [2.0, -1e200]])

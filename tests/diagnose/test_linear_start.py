@@ -7,7 +7,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.diagnose.candidates import make_starts
-from teleopdesign.diagnose.fit import estimate, fit_squares, free_parameters
+from teleopdesign.diagnose.fit import estimate, free_parameters
 from teleopdesign.diagnose.linear_start import Promises, linear_starts
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.diagnose.search_plan import EFFORTS
@@ -15,7 +15,6 @@ from teleopdesign.diagnose.solve import solve
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.experiment import Experiment
 from teleopdesign.measurement.prepare import prepare
-from teleopdesign.measurement.scales import scales
 
 PERIOD, AMPLITUDE, PHASE = 7.3e-4, 0.08, 2.0  # m: travel of some fifty periods; N; rad
 
@@ -42,24 +41,6 @@ def base(cogged):
         "stribeck", values={"extra_static_level": 0.2, "stribeck_velocity": 0.022}
     )
     return estimate(model, prepare(cogged))
-
-
-@pytest.mark.slow
-def test_a_fine_period_is_detected_among_a_hundred(cogged, base):
-    prepared = prepare(cogged)
-    model = base.model.with_effect("cogging")
-    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
-    starts = linear_starts(make_starts(model, unit), EFFECTS["cogging"], "device", prepared, base)
-    best = starts[0].model.parameters
-    # the grid is a cycle and a half apart over the travel: within one of fifty is the nearest
-    assert best["device.cogging.period"].value == pytest.approx(PERIOD, rel=0.03)
-    assert starts[0].promised < fit_squares(base)
-    assert [s.promised for s in starts] == sorted(s.promised for s in starts)
-    fit = estimate_from_starts(model, prepared).model.parameters
-    assert fit["device.cogging.period"].value == pytest.approx(PERIOD, rel=1e-3)
-    # encoder steps of 7 um turn the wave by 0.06 rad at most, which takes 1 % of its mean
-    assert fit["device.cogging.amplitude"].value == pytest.approx(AMPLITUDE, rel=0.03)
-    assert fit["device.cogging.phase"].value == pytest.approx(PHASE, abs=0.1)
 
 
 def test_the_start_of_a_linear_effect_is_where_the_search_ends(cogged, base):

@@ -8,7 +8,7 @@ from diagnose.stand_ins import SHAPE
 from diagnose.stub_models import Names, Table, candidate
 
 from teleopdesign.diagnose import rung as rungs_module
-from teleopdesign.diagnose.moves import add, add_two, remove
+from teleopdesign.diagnose.moves import add, add_two
 from teleopdesign.diagnose.outside_tone import Tone
 from teleopdesign.diagnose.ranking import Ranking
 from teleopdesign.diagnose.search_plan import PLAN
@@ -47,16 +47,6 @@ def looked(table, state, *among, **more):
     return replace(state, ranking=ranking, supported=ranking.ranked, **more)
 
 
-def test_the_simplest_of_those_that_explain_as_well_is_added_with_its_alternatives(use):
-    table = use(shares(spring=0.5, hardening_spring=0.5001, gravity=0.5002, bias=0.4))
-    state = looked(table, table.state(table.rungs()), SPRING, HARD, GRAVITY, BIAS)
-    moved = add(table.search(), state)
-    # gravity leaves least and has two parameters; of one parameter each are the springs
-    assert names(moved) == ["spring"] and moved.rungs[-1].alternatives == (HARD,)
-    assert moved.rungs[-1].ranking is state.ranking and moved.rungs[-1].could_be is None
-    assert moved.rungs[-1].instead_of is None
-
-
 def in_place_of(ranked, effect, fit):
     """A candidate beside which that effect is superfluous: its model lacks it."""
     return replace(ranked, fit=fit, instead_of=effect)
@@ -76,24 +66,6 @@ def test_what_an_added_effect_stood_in_for_takes_its_place(use):
     assert moved.fit.check_error == pytest.approx(0.1)
     again = replace(state, ranking=ranking, supported=(ranked,), visited=frozenset({moved.effects}))
     assert add(table.search(), again) is None
-
-
-def test_an_effect_that_others_made_superfluous_is_removed(use):
-    def rule(names):  # drag helps as long as there is no spring
-        return (
-            1.0
-            - 0.6 * ("spring" in names)
-            - 0.3 * ("bias" in names)
-            - 0.3 * ("quadratic_drag" in names and "spring" not in names)
-        )
-
-    table = use(rule)
-    moved = remove(table.search(), table.state(table.rungs("quadratic_drag", "spring", "bias")))
-    assert names(moved) == ["spring", "bias"] and moved.fit.check_error == pytest.approx(0.1)
-    assert remove(table.search(), moved) is None
-    # the last was added a moment ago, and is no older than what it was held against
-    assert remove(table.search(), table.state(table.rungs("spring", "quadratic_drag"))) is None
-    assert remove(table.search(), table.state(table.rungs("bias"))) is None
 
 
 def masked(names, both=0.1):
@@ -130,8 +102,3 @@ def two_added(use, monkeypatch, rule, *, tone=None):
 ])  # fmt: skip
 def test_two_that_mask_each_other_are_added_where_each_is_needed(use, monkeypatch, rule, added):
     assert two_added(use, monkeypatch, rule) == added
-
-
-def test_two_effects_leave_less_than_a_tone_from_outside(use, monkeypatch):
-    assert two_added(use, monkeypatch, masked, tone=0.5) == {"spring", "bias"}
-    assert two_added(use, monkeypatch, masked, tone=0.05) is None

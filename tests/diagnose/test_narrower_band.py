@@ -59,18 +59,6 @@ def test_a_position_as_its_encoder_reads_it_asks_for_no_narrower_band(experiment
     assert narrower_band(Model.from_experiment(plain), prepare(plain)) is None
 
 
-@pytest.mark.slow
-def test_steps_that_the_experiment_states_are_no_reason_for_a_narrower_band(diagnosis):
-    """Of an adequate model 0.4 % was left up to 31 Hz, 1.4 % up to 62 Hz: noise in both bands."""
-    step, name = 1e-3, "device.position"
-    rounded = with_position(diagnosis.experiment, lambda x, _: step * np.round(x / step))
-    channel = replace(rounded.channels[name], resolution=step)
-    coarse = replace(rounded, channels={**rounded.channels, name: channel})
-    model, prepared = diagnosis.after.model, prepare(coarse, bandwidth=80.0)
-    assert narrower_band(model, prepared) is not None
-    assert not [f for f in check_bandwidth(model, prepared) if "this model leaves" in f.sentence]
-
-
 def test_a_bandwidth_that_is_stated_is_the_users(filtered):
     model, prepared = filtered
     stated = replace(prepared.experiment, bandwidth=prepared.bandwidth)

@@ -14,25 +14,10 @@ from teleopdesign.diagnose.candidates import (
     tells_place_from_time,
     tells_speed_from_time,
 )
-from teleopdesign.effects import EFFECTS, load_effect
+from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
 
 TURN = 2 * np.pi
-GRAVITY = '''"""Gravity: a pendulum."""
-from sympy import sin
-from teleopdesign.effects import Effect, FitSearch, Parameter
-
-def law(now, p):
-    return p.amplitude * sin(now.position + p.phase)
-
-EFFECT = Effect(
-    role="force", law=law, absent={"amplitude": 0.0},
-    parameters={
-        "amplitude": Parameter("force", "A", lower=-9e9, search=FitSearch(starts=(0.3,))),
-        "phase": Parameter("angle", "phi", lower=-9e9, search=FitSearch(starts=(0.0,))),
-    },
-)
-'''
 
 
 @dataclass
@@ -113,18 +98,6 @@ def write_pendulum(folder):
         effects=MODEL,
         step=1e-5,
         noise=0.02,
-    )
-
-
-@pytest.mark.slow
-def test_a_pendulum_at_constant_speeds_shows_its_gravity(tmp_path):
-    (tmp_path / "pendulum.py").write_text(GRAVITY)
-    gravity = load_effect(tmp_path / "pendulum.py")
-    experiment = load_experiment(write_pendulum(tmp_path / "case"))
-    diagnosis = find_missing(experiment, Model.from_experiment(experiment, known(gravity)))
-    assert [str(c) for c in diagnosis.missing] == ["pendulum at device"]
-    assert diagnosis.model.parameters["device.pendulum.amplitude"].value == pytest.approx(
-        8.0, rel=0.02
     )
 
 

@@ -5,8 +5,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from teleopdesign import Model
 from teleopdesign.base.errors import ModelError
@@ -159,18 +157,6 @@ UNTOLD = {
 }
 
 
-@pytest.mark.parametrize(
-    ("hertz", "ratio", "is_reported"),
-    [(59.0, 0.02, True), (59.0, 0.2, False), (40.0, 0.02, False), (51.0, 0.05, True)],
-)
-def test_a_ringing_tip_beside_the_mains_may_be_a_hum(hertz, ratio, is_reported):
-    natural, inertia = 2 * np.pi * hertz, 0.05
-    tip = SimpleNamespace(
-        tip_inertia=inertia, stiffness=inertia * natural**2, damping=2 * ratio * inertia * natural
-    )
-    assert bool(EFFECTS["transmission_compliance"].undetermined(tip, FACTS)) == is_reported
-
-
 @pytest.mark.parametrize("name", sorted(UNTOLD))
 def test_what_records_never_carried_is_undetermined(name):
     within, beyond, known = UNTOLD[name]
@@ -188,34 +174,6 @@ def test_every_effect_that_has_a_rule_on_undetermined_values_is_checked_on_both_
 
 def test_every_effect_with_a_check_is_tested_on_both_sides():
     assert {n for n, e in EFFECTS.items() if e.plausible} == set(MISFITS)
-
-
-def test_an_element_that_slips_one_way_only_is_a_spring_beside_those_that_slip():
-    plausible = EFFECTS["maxwell_slip"].plausible
-    # gives by 0.6 rad before it slips, of a travel of 1 rad: a loop would take 1.2 rad
-    soft = {**ELEMENTS, "level_2": 0.3, "stiffness_2": 0.5, "stiffness_1": 3e6}
-    assert plausible(SimpleNamespace(**{**soft, "stiffness_1": 50.0}), FACTS) is None
-    assert "a spring" in plausible(SimpleNamespace(**soft), FACTS)
-    assert plausible(SimpleNamespace(**{**soft, "stiffness_2": 0.7}), FACTS) is None
-    # what carries nothing is of no consequence
-    idle = {**soft, "level_2": 0.01, "stiffness_2": 0.016}
-    assert plausible(SimpleNamespace(**idle), FACTS) is None
-
-
-@given(amplitude=st.floats(0.01, 10.0), centre=st.floats(-3.0, 3.0), turns=st.integers(1, 9))
-def test_one_sine_tells_no_pattern_about_its_centre_from_a_speed(amplitude, centre, turns):
-    """What is symmetrical about the centre: at each speed one value. A slope has two."""
-    angle = np.linspace(0.0, 2 * np.pi * turns, 4000)
-    facts = replace(FACTS, places=centre + amplitude * np.sin(angle), speeds=np.cos(angle))
-    assert facts.apart_from_speed(lambda x: np.cos((x - centre) / amplitude)) < 0.02
-    assert facts.apart_from_speed(lambda x: x) > 0.9
-    # the same path at another speed as well
-    twice = replace(
-        facts,
-        places=np.concatenate([facts.places, facts.places]),
-        speeds=np.concatenate([facts.speeds, 0.4 * facts.speeds]),
-    )
-    assert twice.apart_from_speed(lambda x: np.cos((x - centre) / amplitude)) > 0.1
 
 
 # in a diagnosis, a user's own effect among them

@@ -43,15 +43,6 @@ def test_it_is_a_probability(left, share, score):
         assert 0.0 <= one <= 1.0
 
 
-def test_it_is_judged_by_its_form_alone_where_more_than_noise_is_left():
-    one = replace(EVIDENCE, belief=Belief(0.6, 0.0, "velocity"))
-    probabilities = [
-        replace(one, left=x).probability() for x in (0.8, CRITERIA.adequate, 2.5, 4.0, 30.0)
-    ]
-    assert probabilities[0] == probabilities[1] > 0.9
-    assert probabilities[2] == probabilities[3] == probabilities[4] < 0.5
-
-
 def test_beside_a_model_that_leaves_only_noise_an_effect_is_believed_by_what_it_takes_away():
     """Of 1.6 floors 1.4 are left: less than half of what sensors do not explain."""
     part = (1.6**2 - 1.4**2) / (1.6**2 - 1.0)

@@ -6,32 +6,22 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.base.errors import ModelError
-from teleopdesign.blocks import Body
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.reading_error import (
     ReadingError,
     as_read,
-    reading_error,
     with_reading_error,
 )
 from teleopdesign.diagnose.simulated_course import (
     as_led,
-    dead_times,
-    grid,
     simulated_course,
 )
-from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.realise.along_motion import residual_along
 
 
 def always(_):
     return True
-
-
-def never(_):
-    return False
 
 
 @pytest.fixture(scope="module")
@@ -43,16 +33,6 @@ def rod():
         "stribeck", values={"extra_static_level": 0.2, "stribeck_velocity": 0.022}
     )
     return estimate(model, prepared), prepared
-
-
-def test_the_simulated_body_goes_about_where_the_device_did(rod):
-    fit, prepared = rod
-    motion = prepared.of("fit")[0].motion
-    course = simulated_course(fit.model.body("device"), motion, deflection=0.1)
-    assert np.std(course.position - motion.position) < 0.02 * np.std(motion.position)
-    # what leads it is a small part of the command
-    led = motion.lowpassed(motion.at_rows(course.command - motion.command))
-    assert np.std(led) < 0.1 * np.std(motion.lowpassed(motion.at_rows(motion.command)))
 
 
 @pytest.mark.parametrize(
@@ -72,38 +52,6 @@ def test_bodies_with_hidden_states_start_with_the_record(rod, effect):
     course = simulated_course(model.body("device"), motion, deflection=0.1)
     # a tip that began elsewhere would fling the body off
     assert np.max(np.abs(course.position - motion.position)) < 0.2 * np.ptp(motion.position)
-
-
-@pytest.mark.slow
-def test_a_dead_time_must_lie_on_the_grid(rod):
-    fit, prepared = rod
-    motion = prepared.of("fit")[0].motion
-    body: Body = fit.model.body("device").with_effect(
-        EFFECTS["actuation_delay"], {"delay": 1.4 * grid(motion)}
-    )
-    assert dead_times(body) == ("actuation_delay.delay",)
-    with pytest.raises(ModelError, match="no whole number of steps"):
-        simulated_course(body, motion, deflection=0.1)
-    late = fit.model.with_effect("actuation_delay", values={"delay": 1.4 * grid(motion)})
-    assert reading_error(estimate(late, prepared), prepared, np.random.default_rng(1)) is not None
-
-
-@pytest.mark.slow
-def test_a_coarse_encoder_makes_friction_look_higher_and_damping_lower(rod):
-    fit, prepared = rod
-    error = reading_error(fit, prepared, np.random.default_rng(1))
-    shift = dict(zip(fit.free, error.shift, strict=True))
-    spread = dict(zip(fit.free, error.spread, strict=True))
-    assert shift["device.coulomb.level"] > 0
-    assert shift["device.viscous.damping"] < 0
-    for name in fit.free:
-        # a reading of 7 um of a travel of centimetres: small against every value
-        value = fit.model.parameters[name].value
-        assert abs(shift[name]) + spread[name] < 0.03 * (1.0 if name in LOG else abs(value))
-
-
-#: estimated on a logarithmic scale: their shift is relative already
-LOG = {"device.inertia", "device.stribeck.stribeck_velocity"}
 
 
 @pytest.mark.slow
@@ -142,16 +90,6 @@ def test_a_second_simulation_predicts_by_how_much_estimates_miss(rod):
     assert np.any(misses > 2.0 * chance)
 
 
-@pytest.mark.slow
-def test_a_model_that_leaves_more_keeps_its_values_with_wider_errors(rod):
-    fit, prepared = rod
-    wide = with_reading_error(fit, prepared, np.random.default_rng(1), adequate=never)
-    for name in fit.free:
-        before, after = fit.model.parameters[name], wide.model.parameters[name]
-        assert after.value == before.value
-        assert before.stderr < after.stderr < 20 * before.stderr
-
-
 def test_what_reading_moves_to_another_magnitude_is_not_corrected(rod, monkeypatch):
     rod_fit, prepared = rod
     far = np.where(np.arange(len(rod_fit.free)) == 0, 5.0, 0.01)  # the inertia, on a log scale
@@ -188,20 +126,3 @@ def test_what_is_simulated_is_what_the_residual_knows(rod, effects):
     whole = motion.lowpassed(motion.at_rows(motion.command) + motion.interaction)[fit.keep]
     # 0.8 % without friction of the tip, 0.6 % with it; 1.6 % with a bristle of 10 um
     assert np.std(left) < 0.011 * np.std(whole)
-
-
-def test_a_right_model_leaves_only_its_sensors_errors_at_turns(rod):
-    """Friction that balances is found where it counts: the simulated truth leaves no more."""
-    rod_fit, prepared = rod
-    fit = prepared.of("fit")[0]
-    body = rod_fit.model.body("device")
-    course = simulated_course(body, fit.motion, deflection=0.1)
-    read = as_read(
-        replace(fit, motion=as_led(fit.motion, course)), prepared, np.random.default_rng(3)
-    )
-    left = read.motion.lowpassed(residual_along(body, read.motion).residual.value)[read.keep]
-    moving = read.motion.direction[read.keep] != 0
-    turns = np.flatnonzero(np.diff(read.motion.direction) != 0)
-    far = np.min(np.abs(read.keep[:, None] - turns[None, :]), axis=1) > 30
-    # next to a turn less than twice of what is left far from one (4 with too few steps)
-    assert np.std(left[moving & ~far]) < 2.0 * np.std(left[moving & far])

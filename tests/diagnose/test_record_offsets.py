@@ -115,17 +115,3 @@ def test_the_file_says_it_and_the_answer_gives_it_back(rod, tmp_path):
     last = rows[rows["record"] == offset["record"]]
     # the bias is part of the model's force: what is left has no mean
     assert abs(last["deviceresidual_after"].mean()) < 0.05 * BIAS
-
-
-def test_experiment_files_declare_it(tmp_path):
-    folder = td.example("rod")
-    for path in folder.iterdir():
-        if path.is_file():
-            (tmp_path / path.name).write_bytes(path.read_bytes())
-    text = (tmp_path / "experiment.toml").read_text()
-    (tmp_path / "experiment.toml").write_text(
-        text.replace('use = "check"', 'use = "check"\nbias = "own"\nfriction_level = "own"')
-    )
-    experiment = td.load_experiment(tmp_path)
-    assert experiment.check_records[0].offset_names == {"bias", "friction_level"}
-    assert experiment.fit_records[0].offset_names == frozenset()

@@ -77,19 +77,6 @@ def test_a_motion_that_is_never_made_again_says_nothing(tmp_path):
     assert fitted(tmp_path, never)[2] is None
 
 
-def test_a_joint_beside_that_moves_otherwise_ends_the_comparison(tmp_path):
-    fit, prepared, repeats = fitted(tmp_path, again)
-    motions = [s.motion for s in prepared.stretches]
-    same = repeatability(fit.model, prepared, beside=[[m] for m in motions])
-    assert same == repeats
-    paths = [never(m.time + k * LATER) for k, m in enumerate(motions)]
-    others = [
-        replace(m, position=x, velocity=np.gradient(x, m.sample_time))
-        for m, x in zip(motions, paths, strict=True)
-    ]
-    assert repeatability(fit.model, prepared, beside=[[m] for m in others]) is None
-
-
 def with_noise(prepared, size, seed):
     """The same records with other noise of this size (N m) in each command."""
     rng = np.random.default_rng(seed)
@@ -129,21 +116,6 @@ def test_a_motion_that_is_only_nearly_made_again_leaves_no_missing_force_to_chan
         bandwidth=10, rate=100, seconds=60.0,
     )  # fmt: skip
     assert repeats is None or repeats.error < 0.35 * repeats.left
-
-
-def test_the_part_of_the_squares_is_that_of_the_rows_that_are_repeated(tmp_path):
-    """A quiet motion is made again, a fast one is not, and a force of the speed is missing."""
-    write_made(
-        tmp_path / "made",
-        {"fit": [(20.0, lambda t: 0.2 * again(t)), (15.0, lambda t: 3.0 * never(t))]},
-        lambda t, x, v: 2.0 * np.sign(v) + v + np.maximum(np.abs(v) - 1.0, 0.0) * v,
-        effects="coulomb = {}\nviscous = { damping = { value = 1.0, fixed = true } }",
-        step=1e-5, noise=0.1, rate=400,
-    )  # fmt: skip
-    experiment = load_experiment(tmp_path / "made")
-    prepared = prepare(experiment)
-    repeats = repeatability(Model.from_experiment(experiment), prepared)
-    assert repeats.share > 0.5 and repeats.squares < 0.2
 
 
 @pytest.mark.parametrize(("gain", "size"), [(0.8, 3.0), (1.0, 0.0)])

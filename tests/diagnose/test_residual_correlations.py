@@ -28,18 +28,3 @@ def test_a_right_model_stays_within_the_band_and_one_that_lacks_an_effect_does_n
     # one in a hundred by chance
     assert share_outside(right, experiment) <= 0.03
     assert share_outside(stated, experiment) > 0.06
-
-
-def test_the_motion_is_drawn_over_the_measured_one_with_its_fit(rod):
-    experiment, _, right = rod
-    comparison = td.compare(right, experiment, by="simulation")
-    motion, itself, command = comparison.plot().axes
-    text = motion.get_legend().get_texts()
-    fit = comparison.error(float("inf")).fit
-    assert f"{fit:.1f} %" in text[1].get_text()
-    measured, simulated = motion.lines[:2]
-    spread = np.std(measured.get_ydata())
-    off = np.sqrt(np.mean((simulated.get_ydata() - measured.get_ydata()) ** 2))
-    assert fit == pytest.approx(100 * (1 - off / spread), abs=0.01)
-    assert motion.get_ylabel() == "position (m)"
-    assert "ms" in itself.get_xlabel() and "command" in command.get_ylabel()

@@ -184,16 +184,6 @@ def test_any_body_comes_back_even_where_its_effects_are_absent(name):
     assert_same(model_from(data, EFFECTS, "models"), model)
 
 
-@pytest.mark.parametrize(("key", "wrong"), [("value", "1"), ("fixed", None), ("stderr", "small")])
-def test_a_wrong_entry_of_a_records_shift_is_one_line_with_its_place(key, wrong):
-    model = Model({"device": Body("prismatic", {"inertia": Value(0.2)})}, EFFECTS)
-    data = model_data(model.with_record_shift({"device": Value(1e-3)}))
-    data["record_shift"]["device"][key] = wrong
-    place = rf"^models: record_shift\.device\.{key}: found"
-    with pytest.raises(ExperimentError, match=place):
-        model_from(data, EFFECTS, "models")
-
-
 MISTAKES = {
     "no JSON": ("not json", "line 1: no JSON"),
     "no text": (b"\xff\xfe\x00", "not UTF-8 text"),
@@ -233,27 +223,9 @@ def test_a_wrong_key_is_named_with_its_value_and_what_was_expected(key, changed)
         load_answer(changed(**values))
 
 
-def test_what_a_diagnosis_says_is_what_its_answer_says_again(path, diagnosis):
-    written = json.loads(path.read_text())
-    written["experiment"].pop("folder", None)  # as seen from the file
-    assert written == json.loads(json.dumps(answer(diagnosis)))
-
-
 @pytest.mark.parametrize("command", ["design", "describe", "next", "passivity"])
 def test_every_command_refuses_the_answer_to_another_experiment(command, path, capsys):
     assert main([command, str(td.example("rod")), "--answer", str(path)]) == 2
     error = capsys.readouterr().err
     assert "is not an answer to rod but to another experiment: title" in error
     assert error.count("\n") == 1
-
-
-@pytest.mark.slow
-def test_describe_takes_a_diagnosis_up_from_its_answer(path, stribeck_case, tmp_path, capsys):
-    out = tmp_path / "left.json"
-    arguments = ["describe", str(stribeck_case), "--answer", str(path), "--json", str(out)]
-    assert main(arguments) == 0
-    output = capsys.readouterr().out
-    assert output.startswith("Your model with stribeck at device:\n")
-    assert json.loads(out.read_text())["model"] == "Your model with stribeck at device:"
-    assert main([*arguments, "--as-is"]) == 0
-    assert capsys.readouterr().out.startswith("Your model, re-estimated:\n")

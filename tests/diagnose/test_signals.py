@@ -6,9 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from teleopdesign.measurement.encoder import grid_of
-from teleopdesign.measurement.filtering import spectrum
 from teleopdesign.measurement.motion import (
-    SMOOTHING,
     TRAVEL,
     direction_of,
     motion_of,
@@ -18,31 +16,6 @@ from teleopdesign.measurement.motion import (
 RATE = 1000.0
 T = np.arange(4000) / RATE
 INSIDE = slice(700, -700)  # the ends feel how the record is continued
-
-
-def rough(seed=0, n=4000):
-    """A record with content at every frequency and a drift."""
-    rng = np.random.default_rng(seed)
-    return np.cumsum(rng.standard_normal(n)) / 30 + rng.standard_normal(n)
-
-
-@pytest.mark.parametrize("frequency", [0.7, 6.0, 40.0])
-def test_derivatives_of_a_sine_are_exact(frequency):
-    w = 2 * np.pi * frequency
-    s = spectrum(len(T), 1 / RATE)
-    for order, expected in ((1, w * np.cos(w * T)), (2, -(w**2) * np.sin(w * T))):
-        gain = s.derivative(order) * s.lowpass(300.0, order=8)
-        derivative = s.multiply(np.sin(w * T), gain)
-        # the continuation has a kink in curvature at either end, low-passed it dies out inside
-        np.testing.assert_allclose(derivative[INSIDE], expected[INSIDE], atol=1e-4 * w**order)
-
-
-@pytest.mark.parametrize("n", [3, 10, 601, 602, 1999])
-def test_every_length_of_record_comes_back_as_it_was(n):
-    y = rough(n=n)
-    s = spectrum(n, 1 / RATE)
-    np.testing.assert_allclose(s.multiply(y, np.ones(len(s.frequency))), y, atol=1e-12)
-    assert s.multiply(np.vstack([y, 2 * y]), s.lowpass(100.0)).shape == (2, n)
 
 
 # direction
@@ -154,28 +127,6 @@ def test_a_motion_within_the_band_keeps_position_velocity_and_acceleration():
         # what an encoder step of 1e-3 of the amplitude leaves of its own, 0.3 of a step rms
         size = np.abs(expected).max()
         assert np.std((signal - expected)[INSIDE]) < (2e-4 + 1e-3 * k) * size
-
-
-def test_smoothing_leaves_the_band_of_the_comparison_untouched():
-    m = motion(0.01 * np.sin(2 * np.pi * 3 * T), bandwidth=60.0)
-    band = m.spectrum.frequency <= 60.0
-    assert m.smoothing[band].min() > 0.998
-    assert m.smoothing[m.spectrum.frequency > 2 * SMOOTHING * 60.0].max() < 1e-4
-    half = m.spectrum.lowpass(60.0)[np.argmin(abs(m.spectrum.frequency - 60.0))]
-    assert half == pytest.approx(0.5, abs=0.01)
-
-
-def test_the_low_pass_is_the_same_in_time_and_in_frequency():
-    rng = np.random.default_rng(1)
-    y = np.cumsum(rng.standard_normal((3, len(T))), axis=1)
-    m = motion(0.01 * np.sin(2 * np.pi * 3 * T), bandwidth=60.0)
-    before = y.copy()
-    in_time = m.lowpassed(y)
-    in_frequency = m.spectrum.multiply(y, m.spectrum.lowpass(60.0))
-    # both continue the record by 0.6 s, forty time constants of the filter
-    assert np.abs(in_time - in_frequency).max() < 1e-9 * np.abs(y).max()
-    assert np.array_equal(m.lowpassed(y[0]), in_time[0])
-    assert np.array_equal(y, before), "what is filtered stays as it was"
 
 
 def test_noisy_readings_tell_the_motion_that_clean_ones_tell():

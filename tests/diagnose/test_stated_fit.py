@@ -41,16 +41,6 @@ def test_effects_without_values_explain_what_they_do_where_they_are_added_one_by
 
 
 @pytest.mark.slow
-def test_values_and_what_is_held_stay_as_they_are_stated(lacking):
-    prepared, model = lacking
-    stated = model.with_effect("presliding").with_effect("stribeck")
-    name = "device.stribeck.stribeck_velocity"
-    held = td.Value(0.013, fixed=True)
-    fit = estimate_stated(stated.with_values({name: held}), prepared)
-    assert fit.model.parameters[name].value == 0.013 and name not in fit.free
-
-
-@pytest.mark.slow
 def test_an_effect_at_the_end_of_its_search_range_begins_anew_beside_a_candidate(lacking):
     """At an endless Stribeck speed the law is one more Coulomb level: no search returns."""
     prepared, model = lacking

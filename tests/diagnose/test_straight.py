@@ -49,26 +49,9 @@ def test_a_spring_with_a_rest_position_is_a_spring_and_a_constant(tmp_path, stif
 
 
 @pytest.mark.slow
-def test_a_spring_on_a_slide_whose_zero_is_far_away_is_a_spring_and_a_constant(tmp_path):
-    """An absolute encoder: the position never comes near the zero of its log."""
-    diagnosis = diagnosed(tmp_path, lambda x: 0.6 * (x - 2.0), prismatic=True)
-    assert {c.effect.name for c in diagnosis.missing} == {"bias", "spring"}
-    assert diagnosis.rungs[-1].check_error < 0.05
-
-
-@pytest.mark.slow
 def test_a_pendulum_whose_bend_is_visible_stays_one(tmp_path):
     diagnosis = diagnosed(tmp_path / "pendulum", lambda x: 0.8 * np.sin(x + 0.4))
     assert [c.effect.name for c in diagnosis.missing] == ["gravity"]
-
-
-@pytest.mark.slow
-def test_a_users_spring_that_a_pendulum_takes_the_place_of_is_not_added_again(tmp_path):
-    user = f"{USER}\nspring = {{}}"
-    pendulum = diagnosed(tmp_path / "pendulum", lambda x: 0.8 * np.sin(x + 0.4), user)
-    assert "gravity" in {c.effect.name for c in pendulum.missing}
-    line = diagnosed(tmp_path / "line", lambda x: 0.6 * (x - 0.35), user)
-    assert [c.effect.name for c in line.missing] == ["bias"]
 
 
 @pytest.mark.slow

@@ -24,7 +24,7 @@ from teleopdesign.frequency import delay_margin, loop_gain
 from teleopdesign.passivity import diagram_claims, ports
 from teleopdesign.passivity.linear.family import family_at
 from teleopdesign.realise.lti import S
-from teleopdesign.simulate import Sampling, simulate
+from teleopdesign.simulate import simulate
 
 BANDWIDTH = 20.0
 POLE = 2 * np.pi * BANDWIDTH
@@ -78,38 +78,6 @@ def test_its_loop_bears_the_delay_of_an_integrator(mass, inertia):
     loop = loop_gain(observed(body(mass), inertia=inertia), controller="N_M")
     assert sp.simplify(loop.expression * S * sp.nsimplify(mass)).is_number
     assert delay_margin(loop) == pytest.approx(np.pi / 2 / (POLE * inertia / mass), rel=1e-6)
-
-
-@pytest.mark.parametrize(("share", "grows"), [(0.7, False), (1.3, True)])
-def test_a_computer_later_than_that_margin_makes_it_grow(share, grows):
-    """g M_n/M = 126 rad/s: 12.5 ms, of which hold and difference take one period of 0.5 ms."""
-    made = observed(body(0.5), inertia=0.5)
-    late = round(share * np.pi / 2 / POLE / 5e-4) * 5e-4
-    simulation = simulate(
-        made,
-        duration=1.0,
-        inputs={"f": lambda t: 1.0 * (t < 0.01)},
-        computer=Sampling(period=5e-4, delay=late, velocity="difference"),
-        jit=False,
-        step=5e-4,
-    )
-    speed = np.abs(simulation["x_velocity"].values)
-    assert bool(speed[-400:].max() > speed[:400].max()) is grows
-
-
-def test_friction_hardly_holds_a_body_back_that_has_one():
-    """0.4 N of Coulomb friction, pushed by 0.5 N: 0.1 N are left without an observer.
-
-    10 %: the bristle of 10 um gives before it slides, which leaves 5 mm/s; g = 126 1/s.
-    """
-    made = body(0.3, coulomb__level=0.4)
-    ways = {}
-    for name, diagram in (("bare", axis(made)), ("observed", observed(made, inertia=0.3))):
-        simulation = simulate(diagram, duration=0.5, inputs={"w": 0.5}, jit=False, step=2.5e-4)
-        ways[name] = float(simulation["x"].values[-1])
-    ideal = 0.5 * 0.5 / 0.3 * 0.5**2
-    assert ways["bare"] == pytest.approx(0.2 * ideal, rel=0.1)
-    assert ways["observed"] == pytest.approx(ideal, rel=0.1)
 
 
 def test_it_goes_around_the_bodies_of_shipped_wirings_and_into_files(tmp_path):

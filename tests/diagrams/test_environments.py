@@ -15,7 +15,7 @@ from teleopdesign.blocks import (
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.frequency import transfer_function
 from teleopdesign.realise.iosystem import to_iosystem
-from teleopdesign.simulate import Trajectory, sampled_motion, simulate, sine
+from teleopdesign.simulate import sampled_motion, simulate
 
 HERTZ = {"stiffness": 2e3, "depth": 1e-3, "reference_velocity": 0.5}
 RUBBER = {"stiffness": 800.0, "damping": 0.0, "level": 0.3, "give": 5e-4}
@@ -109,25 +109,6 @@ def test_no_motion_gets_energy_out_of_a_wall(name, seed):
     assert work.min() > -1e-3 * work.max()
 
 
-@pytest.mark.slow
-def test_rubber_loses_the_same_energy_in_slow_loading():
-    """Pressed between 2 and 6 mm, 1 and 0.25 Hz: the loop of Dahl's friction inside it."""
-    lost = []
-    for frequency in (1.0, 0.25):
-        swing = sine(amplitude=2e-3, frequency=frequency)
-        pressed = Trajectory(
-            lambda t, s=swing: 4e-3 + s.position(t), swing.velocity, swing.acceleration
-        )
-        time, x, v, force = felt(
-            lambda b: soft_rubber(b, **RUBBER), pressed, 2 / frequency, step=5e-4
-        )
-        cycle = time >= 1 / frequency - 1e-9
-        lost.append(np.trapezoid(force[cycle], x[cycle]))
-    u = 2e-3 / 5e-4
-    expected = 4 * 0.3 * 2e-3 * (1 - np.tanh(u) / u)  # P34
-    assert lost == pytest.approx([expected, expected], rel=1e-3)
-
-
 def test_a_gripping_hand_is_grip_and_arm_in_series():
     """At rest two springs in series; far above the arm's resonance the grip alone."""
     made = hand(mass=0.1, damping=2.0, stiffness=400.0, arm=ARM)
@@ -138,28 +119,3 @@ def test_a_gripping_hand_is_grip_and_arm_in_series():
     grip, held = 2.0 * s + 400, 8.0 * s + 120
     behind = 1.2 * s**2 + held
     assert 1 / system(s) == pytest.approx(0.1 * s**2 + grip * behind / (grip + behind), rel=1e-9)
-
-
-def test_a_gripping_hand_moves_as_its_linear_form():
-    """Order four at 0.1 ms: 1e-7."""
-    diagram = haptic_interface(body(0.15), hand=hand(mass=0.1, damping=2.0, stiffness=400, arm=ARM))
-    system, _ = transfer_function(diagram, output="L", input="R_D")
-    simulation = simulate(diagram, duration=0.3, inputs={"R_D": 1.0}, jit=False)
-    _, expected = control.step_response(system, simulation["time"].values)
-    assert np.abs(simulation["L"].values - expected).max() < 1e-7 * np.abs(expected).max()
-
-
-def test_a_voluntary_motion_is_the_force_that_leads_the_free_hand_along_it():
-    made = hand(mass=0.2, damping=4.0, stiffness=300.0)
-    wanted = sine(amplitude=0.02, frequency=1.0)
-    force = run(made, motion={"L": wanted}, duration=0.5)["R_V"]
-    at = force["time"].values
-    start = {"L_velocity": float(wanted.velocity(np.zeros(1))[0])}
-    free = run(
-        made,
-        inputs={"R_V": lambda t: np.interp(t, at, force.values)},
-        initial=start,
-        duration=0.5,
-    )
-    # force as linear between steps of 0.1 ms: 1e-8 of it
-    np.testing.assert_allclose(free["L"].values, wanted.position(at), atol=1e-7 * 0.02)

@@ -39,21 +39,3 @@ def test_what_depends_on_the_place_and_on_time_is_that_of_the_physics(name):
     assert depends_on_position(KNOWN[name]) == (name in REPEATS)
     assert period(KNOWN[name]) == REPEATS.get(name)
     assert depends_on_time(KNOWN[name]) == (name == "friction_drift")
-
-
-#: rate at which a tip is led, over its natural frequency in contact and its part of the inertia
-FOLLOWING = {"backlash": 3.0, "transmission_compliance": 1.0}
-
-
-@pytest.mark.parametrize("name", sorted(FOLLOWING))
-def test_the_force_left_unexplained_leads_the_tip_by_the_stated_rate(name):
-    effect = KNOWN[name]
-    (law,) = effect.corrections().values()
-    m, k, body, left = 0.2, 800.0, 0.5, 3.0
-    values = {f"{name}_tip_inertia": m, f"{name}_stiffness": k, "inertia": body}
-    values |= {"unexplained": left}
-    led = float(law.subs({s: values[s.name] for s in law.free_symbols}))
-    assert led == pytest.approx(-FOLLOWING[name] * (k / m) ** 0.5 * (m / body) * left / k)
-    momentum = effect.led_momentum()
-    led_momentum = float(momentum.subs({s: values[s.name] for s in momentum.free_symbols}))
-    assert led_momentum == pytest.approx(m * led)

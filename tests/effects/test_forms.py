@@ -199,19 +199,6 @@ def test_the_direction_of_motion_is_known_within_a_few_steps_of_every_reversal()
     assert np.mean(motion.direction[moving] == np.sign(motion.velocity[moving])) > 0.99
 
 
-def test_a_bristle_stiffer_than_the_encoder_sees_is_coulomb_friction():
-    x, u, f = signals(4)
-    motion = motion_along(encoded(x, STEP), u, f, resolution=STEP)
-    hard = residual_along(
-        body_of("coulomb", "presliding", values={"presliding.stiffness": 1e7}), motion
-    )
-    plain = residual_along(body_of("coulomb"), motion)
-    moving = motion.direction != 0
-    # bristle length 0.05 um: it slides within a sample wherever the motion is told, except at
-    # the first sample after a reversal
-    assert np.mean(np.abs(hard.friction.value - plain.friction.value)[moving] < 1e-3 * LEVEL) > 0.97
-
-
 PARAMETERS = [(name, p) for name in NAMES for p in EFFECTS[name].parameters]
 
 
@@ -241,20 +228,3 @@ def test_tangents_are_the_slopes_of_the_residual(name, parameter, seed):
     assert np.linalg.norm(slope) > 0
     # second order of h is 1e-12; rounding 1e-9 of the residual; a sample or two may change sides
     assert np.linalg.norm(tangent - slope) < 1e-3 * np.linalg.norm(slope)
-
-
-@pytest.mark.parametrize("name", ["actuator_lag", "actuation_delay"])
-def test_tangents_of_friction_pass_through_presliding_and_actuation_together(name):
-    x, u, f = signals(7)
-    motion = motion_along(encoded(x, STEP), u, f, resolution=STEP)
-    body = body_of("coulomb", "presliding", "viscous", name)
-    names = [n for n, _ in body.declared()]
-    tangents = residual_along(body, motion, names).residual.tangent
-    for full, tangent in zip(names, tangents, strict=True):
-        value = body.parameters[full].value
-        sides = [
-            residual_along(body.with_values({full: value * (1 + e)}), motion).residual.value
-            for e in (1e-6, -1e-6)
-        ]
-        slope = (sides[0] - sides[1]) / (2e-6 * value)
-        assert np.linalg.norm(tangent - slope) < 1e-3 * np.linalg.norm(slope), full

@@ -2,15 +2,12 @@
 
 import math
 
-import numpy as np
 import pytest
 import sympy as sp
-from effects.along import body_of, encoded, motion_along, signals
 from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.effects import EFFECTS, SIGNALS
-from teleopdesign.realise.along_motion import residual_along
 
 EFFECT = EFFECTS["load_dependent_friction"]
 USED = ("acting_force", "carried_force", "velocity", "direction")
@@ -50,20 +47,3 @@ def test_the_difference_of_the_directions_is_odd_in_who_drives(force, v, mu, d):
     driving, driven = level(force, v, mu=mu, d=d), level(force, -v, mu=mu, d=d)
     assert driving + driven == pytest.approx(2 * mu * force)
     assert driving - driven == pytest.approx(2 * mu * d * force, abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"driving_difference": 0.0, "extra_at_rest": 0.0, "stribeck_velocity": 0.0},
-        {"driving_difference": 0.3, "extra_at_rest": 0.0, "stribeck_velocity": 0.0},
-        {"driving_difference": 0.0, "extra_at_rest": 0.5, "stribeck_velocity": 0.05},
-    ],
-)
-def test_its_optional_parameters_may_be_zero_along_a_motion(values):
-    x, u, f = signals()
-    motion = motion_along(encoded(x), u, f, resolution=1e-6)
-    numbers = {f"{EFFECT.name}.{n}": v for n, v in values.items()}
-    wrt = tuple(f"{EFFECT.name}.{n}" for n in EFFECT.parameters)
-    along = residual_along(body_of("coulomb", EFFECT.name, values=numbers), motion, wrt)
-    assert np.isfinite(along.residual.value).all() and np.isfinite(along.residual.tangent).all()

@@ -3,14 +3,8 @@
 import re
 from dataclasses import fields
 
-import numpy as np
 import pytest
 import sympy as sp
-from effects.along import (
-    body_of,
-    motion_along,
-    signals,
-)
 from users_effect import SOURCE
 
 from teleopdesign.base.errors import ModelError
@@ -21,7 +15,6 @@ from teleopdesign.effects import (
     catalogue,
     load_effect,
 )
-from teleopdesign.realise.along_motion import residual_along
 
 
 @pytest.fixture
@@ -38,17 +31,6 @@ def test_a_users_file_becomes_an_effect_under_the_files_name(users_effect):
     assert effect.title == "Own drag: a force in proportion to the square of velocity."
     v, drag = SIGNALS["velocity"], effect.symbols()["drag"]
     assert effect.expression() == drag * v * sp.Abs(v)
-
-
-def test_a_users_effect_takes_part_in_the_residual(users_effect):
-    x, u, f = signals()
-    motion = motion_along(x, u, f)
-    bare = body_of()
-    body = bare.with_effect(load_effect(users_effect), {"drag": 3.0})
-    force = (
-        residual_along(bare, motion).residual.value - residual_along(body, motion).residual.value
-    )
-    np.testing.assert_allclose(force, 3.0 * motion.velocity * abs(motion.velocity), atol=1e-12)
 
 
 def test_a_users_effect_takes_the_place_of_one_of_the_same_name(tmp_path):

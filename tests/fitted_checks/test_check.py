@@ -6,18 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from check.made_channels import ask
 from fitted_checks.asking import ask_fitted, disagreements
 from shared_data import shared_folder
 
 import teleopdesign as td
 from teleopdesign import Model, example, load_experiment
 from teleopdesign.cli import main
-from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.search_plan import EFFORTS
 from teleopdesign.effects import catalogue
 from teleopdesign.fitted_checks import check_experiment
-from teleopdesign.fitted_checks.bandwidth import check_bandwidth
 from teleopdesign.measurement.experiment import excerpt
 from teleopdesign.measurement.prepare import prepare
 
@@ -201,39 +197,6 @@ def test_a_rich_record_shows_every_candidate_and_from_which_size(rod, few):
     assert findings["motion"].concern == "fine"
 
 
-def test_the_least_size_that_shows_is_where_the_error_reaches_the_bound(rod, few):
-    """Planted at that size, an effect raises a fitted model's error to 1.8 noise floors."""
-    from teleopdesign.diagnose.candidates import candidates
-    from teleopdesign.diagnose.criteria import CRITERIA
-    from teleopdesign.fitted_checks._visibility import visibilities
-
-    model = Model.from_experiment(rod, few).with_effect("stribeck")
-    prepared = prepare(rod)
-    base = estimate(model, prepared, effort=EFFORTS.rough)
-    spring = [c for c in candidates(base.model) if c.effect.name == "spring"]
-    floor = base.fit_error
-    (visibility,) = visibilities(base, prepared, spring, floor)
-    stiffness = visibility.strength["stiffness"]
-    # a spring that the machine has and the model lacks: its force is missing from the command
-    planted = replace(
-        rod,
-        records=tuple(
-            replace(
-                r,
-                signals={
-                    **r.signals,
-                    "device.actuator_force": r.signals["device.actuator_force"]
-                    + stiffness * r.signals["device.position"],
-                },
-            )
-            for r in rod.records
-        ),
-    )
-    after = estimate(model, prepare(planted), effort=EFFORTS.rough)
-    # the size is found to 20 %, and what is left of Stribeck is in the floor used here
-    assert after.fit_error / floor == pytest.approx(CRITERIA.adequate, rel=0.2)
-
-
 def one_way(experiment):
     """A motion that only ever goes on, and the force that a friction of 0.5 N and 0.2 kg take."""
     record = experiment.records[0]
@@ -261,22 +224,6 @@ def test_a_motion_one_way_cannot_show_what_needs_both_and_says_so(rod, few):
     motion = findings["motion"]
     assert motion.numbers["forth"] > 0.99 and motion.numbers["reversals"] == 0
     assert "no interaction force is measured" in motion.sentence
-
-
-def test_an_effect_of_the_user_is_judged_like_any_other(rod, few, tmp_path):
-    path = tmp_path / "magnet.py"
-    path.write_text(
-        '"""Magnet: pulls towards the middle, ever less far away."""\n'
-        "from teleopdesign.effects import Effect, FitSearch, Parameter\n"
-        "def law(now, p):\n"
-        "    return p.pull * now.position / (p.reach**2 + now.position**2)\n"
-        "EFFECT = Effect(role='force', law=law, absent={'pull': 0.0}, parameters={\n"
-        "    'pull': Parameter('dimensionless', 'pull'),\n"
-        "    'reach': Parameter('position', 'reach', search=FitSearch(starts=(0.3, 1.0)))})\n"
-    )
-    known = {**few, "magnet": catalogue([path])["magnet"]}
-    numbers = shows(rod, known)["what the record can show"].numbers
-    assert 0.0 < numbers["magnet"] < 0.1
 
 
 # the whole, long records, the command
@@ -324,31 +271,3 @@ def test_shared_measurements_raise_no_false_warning():
         if warned:
             topics[folder.name] = list(map(str, warned))
     assert topics == {}
-
-
-def test_a_bandwidth_that_hides_the_motion_in_the_steps_of_the_encoder_is_doubted():
-    rate, step = 200.0, 1e-4
-    t = np.arange(6000) / rate
-    position = step * np.round(0.004 * np.sin(2 * np.pi * 0.3 * t) / step)
-    force = np.sign(np.cos(2 * np.pi * 0.3 * t))
-    data = {"t": t, "x": position, "F": force}
-
-    def recorded_below(bandwidth):
-        return td.experiment(
-            data,
-            axis="prismatic",
-            time="t",
-            position={"column": "x", "resolution": step},
-            actuator_force="F",
-            inertia=0.1,
-            bandwidth=bandwidth,
-        )
-
-    model = Model.from_experiment(recorded_below(40.0))
-    (doubt,) = ask("hidden_motion", recorded_below(40.0))
-    assert doubt.topic == "bandwidth" and doubt.concern == "warning"
-    assert doubt.numbers["seen"] < 0.5 * doubt.numbers["could"]
-    assert 'write bandwidth = { value = 10, unit = "Hz" } at comparison' in doubt.sentence
-    # what the finding says to type is taken
-    mended = recorded_below(doubt.numbers["proposed"])
-    assert ask("hidden_motion", mended) == [] == list(check_bandwidth(model, prepare(mended)))

@@ -2,24 +2,8 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from teleopdesign.frequency.sinusoid import distortion, lock_in, phasors
-
-GRID = 2 * np.pi * np.arange(2000) / 2000
-
-
-@given(real=st.floats(-5, 5), imaginary=st.floats(-5, 5), offset=st.floats(-5, 5))
-def test_a_phasor_counts_sine_as_one_and_cosine_as_j(real, imaginary, offset):
-    wave = offset + real * np.sin(GRID) + imaginary * np.cos(GRID) + np.sin(3 * GRID)
-    # 1e-12: rounding of 2000 terms of size 10
-    assert phasors(wave) == pytest.approx(real + 1j * imaginary, abs=1e-12)
-
-
-def test_distortion_of_a_square_wave_is_the_known_one():
-    # sqrt(pi^2/8 - 1) = 0.4834; 2000 points to a cycle leave 1e-3
-    assert distortion(np.sign(np.sin(GRID + 1e-3))) == pytest.approx(0.4834, abs=1e-3)
+from teleopdesign.frequency.sinusoid import lock_in
 
 
 def test_a_cycle_need_not_be_a_whole_number_of_steps():

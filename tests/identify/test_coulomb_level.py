@@ -4,12 +4,12 @@ import shutil
 
 import numpy as np
 import pytest
-from identify.runs import BIAS, DAMPING, LEVEL, noise, write
+from identify.runs import BIAS, DAMPING, LEVEL, write
 from shared_data import shared_folder
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.identify import coulomb_level, mean_error, steady_runs
+from teleopdesign.identify import coulomb_level, steady_runs
 
 SPEEDS = (0.02, 0.04, 0.08)
 
@@ -60,16 +60,6 @@ def test_runs_are_compared_where_both_were_however_far_one_of_them_went(tmp_path
     )
 
 
-def test_standard_errors_hold_under_correlated_noise():
-    """Of 200 means of noise with a memory of 20 samples, the errors stated hold the scatter."""
-    generator = np.random.default_rng(3)
-    drawn = [noise(2000, size=1.0, memory=0.95, generator=generator) for _ in range(200)]
-    stated = np.sqrt(np.mean([mean_error(x) ** 2 for x in drawn]))
-    scatter = np.std([x.mean() for x in drawn])
-    # 200 draws tell a scatter to 5 %; white noise would be stated at 0.16 of it
-    assert 0.8 < stated / scatter < 1.25
-
-
 def test_runs_one_way_give_a_line_but_no_level(tmp_path):
     folder = write(tmp_path / "one_way", SPEEDS)
     path = folder / "fit.csv"
@@ -91,15 +81,6 @@ def test_runs_one_way_give_a_line_but_no_level(tmp_path):
 def test_a_record_without_steady_motion_says_so():
     with pytest.raises(ExperimentError, match="coulomb_level: no run of 2 s at a speed within 5 %"):
         coulomb_level(td.load_experiment(td.example("rod")), shortest=2.0)
-
-
-@pytest.mark.slow
-def test_the_diagnosis_of_the_same_record_agrees(levels, tmp_path):
-    experiment = td.load_experiment(write(tmp_path / "same", SPEEDS))
-    fitted = td.fit(td.Model.from_experiment(experiment), experiment)
-    value = fitted.parameters["device.coulomb.level"]
-    level, error = levels.level
-    assert abs(level - value.value) < 3 * np.hypot(error, value.stderr)
 
 
 def test_recorded_positioning_system_agrees_with_its_diagnosis():

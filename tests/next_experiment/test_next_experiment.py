@@ -3,27 +3,20 @@
 The proof runs on a simulator that shares nothing with the package: it runs the proposed reference.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from next_experiment.next_cases import KNOWN, POOR, RATE, Rod
 
 from teleopdesign import Model, find_missing
 from teleopdesign.base.errors import ModelError
-from teleopdesign.diagnose.answer import load_answer, write_answer
-from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.statements import OpenQuestion, OpenRival
 from teleopdesign.effects import EFFECTS
 from teleopdesign.next_experiment import (
-    proposal_data,
     propose,
     show_in_simulation,
     shown_limits,
     write_reference,
 )
 from teleopdesign.next_experiment.prediction import refit, with_records
-from teleopdesign.next_experiment.synthesis import command_along, exact_motion
 
 pytestmark = pytest.mark.slow  # motions are optimised
 
@@ -46,13 +39,6 @@ def one_speed(tmp_path_factory):
     return rod, experiment, propose(diagnosed(experiment, FEW))
 
 
-def test_a_proposal_from_the_answer_is_the_same(one_speed, tmp_path):
-    _, experiment, proposal = one_speed
-    write_answer(proposal.diagnosis, tmp_path / "answer.json")
-    again = propose(load_answer(tmp_path / "answer.json", FEW, experiment=experiment))
-    assert proposal.rivals and proposal_data(again) == proposal_data(proposal)
-
-
 # the motion
 
 
@@ -66,24 +52,6 @@ def test_the_motion_keeps_within_the_limits_that_the_records_have_shown(one_spee
     assert signals[0].min() >= limits.low - 1e-9 and signals[0].max() <= limits.high + 1e-9
     for signal, name in zip(signals[1:], ("speed", "acceleration", "jerk"), strict=True):
         assert np.abs(signal).max() <= 1.001 * getattr(limits, name)
-
-
-def test_the_command_moves_the_model_as_asked(one_speed):
-    """Inverse dynamics through an actuator that lags: what is left is a thousandth of the force."""
-    _, _, proposal = one_speed
-    from teleopdesign.realise.along_motion import residual_along
-
-    lag = EFFECTS["actuator_lag"]
-    model = proposal.rivals[0].model.with_effect(lag, values={"time_constant": 0.005})
-    body = model.without_effect("coulomb").body("device")
-    t = np.arange(0.0, 4.0, 1e-3)
-    motion = exact_motion(
-        "device", 0.02 * np.sin(2 * np.pi * t) ** 3, sample_time=1e-3, bandwidth=50.0
-    )
-    command = command_along(body, motion, deflection=1e-6)
-    left = residual_along(body, replace(motion, command=command)).residual.value
-    whole = motion.lowpassed(motion.at_rows(command))
-    assert np.std(motion.lowpassed(left)) < 2e-3 * np.std(whole)
 
 
 def test_the_reference_is_written_with_header_units_and_sample_time_of_the_experiment(
@@ -235,11 +203,3 @@ def test_a_rod_that_stands_for_itself_needs_no_next_experiment(tmp_path):
 
     experiment = write_experiment(tmp_path / "null", rod, poor.fit, poor.check, poor.effects)
     assert propose(diagnosed(experiment, FEW)).reference is None
-
-
-def test_one_candidate_beside_named_effects_has_no_rival(diagnosis):
-    """More is missing, and one effect comes near: only longer check records decide."""
-    nearest = OpenRival(Candidate(EFFECTS["cogging"], "device"), diagnosis.model)
-    proposal = propose(replace(diagnosis, open=(OpenQuestion(None, (nearest,)),)))
-    assert not proposal.separations
-    assert "only cogging at device comes near" in proposal.sentence

@@ -16,7 +16,6 @@ from teleopdesign.papers import (
     Figure,
     NotProved,
     Numbers,
-    ProofSteps,
     check,
 )
 from teleopdesign.papers._proof import (
@@ -285,7 +284,3 @@ def test_an_unknown_statement_is_one_line(capsys):
     assert 'no statement "P66", expected P1 to P65; did you mean' in capsys.readouterr().err
     assert main(["check-papers", "P1", "--json", "papers.csv"]) == 2
     assert ".json" in capsys.readouterr().err
-
-
-def test_a_proof_object_is_what_the_words_say():
-    assert isinstance(STATEMENTS["P2"].shown_by(), ProofSteps)

@@ -7,7 +7,6 @@ X X^-1 = I, with denominators multiplied out. Exact rational matrices guard the 
 import pytest
 import sympy as sp
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.derive import (
     as_latex,
     block_symbol,
@@ -166,18 +165,3 @@ def test_text_and_latex_read_as_a_paper():
     assert "Zhat_M = Gamma^-1 (Z_M - C)" in DERIVED.text()
     assert as_latex(Z_H * (Z_H + Z_M) ** -1) == r"Z_{H} \left(Z_{H} + Z_{M}\right)^{-1}"
     assert r"T_{\mathrm{MBC}} &= " in DERIVED.latex()
-
-
-@pytest.mark.parametrize(
-    ("build", "words"),
-    [
-        (lambda: ALL.signal("R_m"), 'no signal "R_m"'),
-        (lambda: ALL.block("Z_N"), 'did you mean "Z_M"?'),
-        (lambda: transfer(ALL, "R_M", ("R_D",)), '"R_D" is not from outside'),
-        (lambda: DERIVED["T_X"], 'no "T_X"'),
-    ],
-)
-def test_a_wrong_name_is_answered_with_the_nearest_one(build, words):
-    with pytest.raises(ModelError, match=".") as caught:
-        build()
-    assert words in str(caught.value) and "\n" not in str(caught.value)

@@ -226,9 +226,3 @@ def refuse_all(make, number, seed):
 @pytest.mark.parametrize("make", FALSE)
 def test_false_certificates_are_refused(make):
     refuse_all(make, 10, 1)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("make", FALSE)
-def test_a_thousand_false_certificates_are_refused(make):
-    refuse_all(make, 70, 2)

@@ -4,22 +4,14 @@ import math
 
 import numpy as np
 import pytest
-import sympy as sp
 
 from teleopdesign.passivity import (
     dahl_compensation,
-    largest_passive_level,
     lugre_passivity,
-    onset_amplitude,
     read_record,
     region,
     self_motion_speed,
     write_record,
-)
-from teleopdesign.passivity.rate_independent import (
-    Dahl,
-    dahl_loss,
-    symmetric_cycle,
 )
 
 
@@ -30,50 +22,6 @@ def compensated(level, stiffness=1e4, **true):
 
 
 # --- cycles -----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("u", [1e-4, 0.03, 0.7, 3.0, 40.0])
-def test_the_loss_of_a_cycle_is_the_closed_form(u):
-    """4 f A (1 - tanh(u)/u) from travel by travel, once the start is forgotten."""
-    level, stiffness = 0.7, 2e4
-    amplitude = u * level / stiffness
-    cycle = symmetric_cycle(Dahl(level, stiffness), [], amplitude)
-    expected = 4 * level * amplitude * (1 - math.tanh(u) / u) if u > 1e-2 else None
-    loss = dahl_loss(level, stiffness, amplitude)
-    if expected is not None:
-        assert loss == pytest.approx(expected, rel=1e-9)
-    assert cycle.energy == pytest.approx(loss, rel=1e-6)
-
-
-ONSETS = {1.02: 51.0, 1.05: 21.0, 1.1: 11.0, 1.2: 6.0, 1.5: 2.985, 2.0: 1.915}
-
-
-@pytest.mark.parametrize("ratio", ONSETS)
-def test_the_onset_agrees_with_a_search_to_a_tenth_of_a_percent(ratio):
-    """f_D (1 - tanh(u)/u) = f_C at u = sigma_D A/f_D; figures of the closed form."""
-    from scipy.optimize import brentq
-
-    stiffness = 2e4
-    onset = onset_amplitude(
-        coulomb_level=1, compensator_level=ratio, compensator_stiffness=stiffness
-    )
-    u = onset * stiffness / ratio
-    exact = brentq(lambda x: ratio * (1 - math.tanh(x) / x) - 1, 0.1, 100)
-    assert u == pytest.approx(exact, rel=1e-3)
-    assert u == pytest.approx(ONSETS[ratio], rel=1e-3)
-
-
-def test_a_soft_compensator_hides_over_compensation_until_motion_is_large():
-    """The curve of largest level over amplitude; where it is finite, a cycle just balances."""
-    for amplitude in (3e-4, 1e-3, 1e-2):
-        level = largest_passive_level(coulomb_level=1, stiffness=1e4, amplitude=amplitude)
-        if math.isfinite(level):
-            assert dahl_loss(level, 1e4, amplitude) == pytest.approx(4 * amplitude, rel=1e-9)
-    soft, stiff = (
-        largest_passive_level(coulomb_level=1, stiffness=k, amplitude=1e-2) for k in (1e3, 1e5)
-    )
-    assert 1 < stiff < soft
-    assert largest_passive_level(coulomb_level=1, stiffness=1e3, amplitude=1e-4) == math.inf
 
 
 def test_viscous_damping_bounds_the_speed_of_self_motion():
@@ -92,19 +40,6 @@ def test_the_region_is_the_wedge_of_the_formula():
     expected = (softness[None, :] ** 2 <= share[:, None]) & (share[:, None] <= 1)
     assert np.array_equal(plane.status == "proved", expected)
     assert np.array_equal(plane.status == "refuted", ~expected)
-
-
-def test_the_storage_function_is_the_one_in_the_documentation():
-    """V >= 0, and 0 only at rest: both bristles relaxed."""
-    d, p, sigma_D, sigma_p = sp.symbols("d p sigma_D sigma_p")
-    claim = compensated(0.9, 1e3, presliding_stiffness=2e3)
-    storage = sp.sympify(
-        claim.certificates[0].content["storage"],
-        locals={x.name: x for x in (d, p, sigma_D, sigma_p)},
-    )
-    total, softer = sigma_p + sigma_D, sigma_p - sigma_D
-    expected = (total * (p**2 / sigma_p + d**2 / sigma_D) / 2 - 2 * p * d) / softer
-    assert sp.simplify(storage - expected) == 0
 
 
 # --- LuGre ------------------------------------------------------------------------------------

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import sympy as sp
 
-import teleopdesign as td
 from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import (
     absolutely_stable,
@@ -127,39 +126,6 @@ def test_floats_are_the_decimals_that_they_are_written_as():
     assert str(impedance(cancels)) == "s + 1/5"
 
 
-def test_relative_to_position_is_divided_by_s():
-    """The blocks of a diagram are N/m: a body's impedance is m s^2 + b s + k."""
-    body = td.Body("prismatic", {"inertia": td.Value(0.15)})
-    body = body.with_effect(td.EFFECTS["viscous"], {"damping": 4.0})
-    z, left_out = body.impedance(S)
-    assert not left_out
-    claim = positive_real(z.subs(body.numbers()), motion="position")
-    assert claim.status == "proved"
-    assert claim.verdict.margin == pytest.approx(4.0)
-
-
-def test_python_control_systems_are_read():
-    transfer = control.tf([0.1, 0.8, 1.7], [1, 3, 2])
-    space = control.ss([[-1.0, 1], [0, -2]], [[0], [1]], [[1, 0.5]], [[0.1]])
-    assert str(impedance(transfer)) == str(impedance(space))
-    assert positive_real(control.tf([0.15, 4], [1])).status == "proved"
-
-
-@pytest.mark.parametrize(
-    "system",
-    [
-        control.ss(np.diag([-1.0, 5.0]), [[1], [0]], [[1, 1]], [[0.0]]),
-        control.ss(np.diag([-1.0, 5.0]), [[1], [1]], [[1, 0]], [[0.0]]),
-        control.tf([1.0, -5.0], [1.0, -4.0, -5.0]),
-    ],
-    ids=["driven by nothing", "read by nothing", "cancelled"],
-)
-def test_of_a_system_with_a_mode_that_its_port_does_not_show_nothing_is_proved(system):
-    claim = positive_real(system)
-    assert str(impedance(system)) == "1/(s + 1)" and positive_real(1 / (S + 1)).holds
-    assert claim.status == "unknown" and "at s = 5 1/s" in str(claim.verdict)
-
-
 @pytest.mark.parametrize(
     ("system", "message"),
     [
@@ -190,18 +156,6 @@ def test_numbers_of_sixteen_digits_are_decided_in_seconds_and_what_is_proved_is_
         assert claim.status == status and claim.holds
         assert all(c.check() for c in getattr(claim.verdict, "certificates", ()))
         assert positive_real(sum(lags) - 1).status == "refuted"
-
-
-def test_a_wave_is_the_response_of_a_stable_system_from_rest():
-    """The force of the record against python-control's simulation of the same motion."""
-    z = 1 / (S + 1) ** 2
-    record = positive_real(z).record
-    t = np.linspace(-12 / float(record.rate), 0, 4001)
-    wave = np.exp(record.s * t)[:, None] * np.array(record.velocity)
-    v, f = wave.real, (wave @ record.value.T).real
-    simulated = control.forced_response(control.tf([1], [1, 2, 1]), t - t[0], v[:, 0]).outputs
-    # the start is e^-12 of the end, and its transient has gone by then
-    assert simulated[2000:] == pytest.approx(f[2000:, 0], abs=1e-3 * np.abs(f).max())
 
 
 ONE = control.tf([1, 2], [1, 1])

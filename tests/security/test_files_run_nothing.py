@@ -171,29 +171,6 @@ def test_an_entry_of_an_answer_is_refused_in_one_line(guard, tmp_path, capsys, k
     one_line(caught.value)
 
 
-@pytest.mark.parametrize(
-    "content",
-    ["[" * 100_000, "{}", "[]", "1", '"x"', "NaN", '{"model_parameters": 1e999}', "\x00",
-     '{"model_parameters": [], "candidates": {}, "missing": 1, "ladder": 2}',
-     '{"model_parameters": {"device.inertia": 3}, "candidates": [4], "missing": [], "ladder": [5]}',
-     '{"model_parameters": {}, "candidates": [], "missing": [], "ladder": []}',
-     '{"model_parameters": {"a": {"value": ' + "9" * 5000 + "}}}"],
-    ids=range(12),
-)  # fmt: skip
-def test_another_content_of_an_answer_is_refused_in_one_line(guard, tmp_path, capsys, content):
-    from teleopdesign.diagnose import load_answer
-
-    path = tmp_path / "answer.json"
-    path.write_text(content)
-    with in_time():
-        assert main(["passivity", str(path), "--dahl", "0.4", "1e4"]) == 2
-        output = capsys.readouterr().err
-        assert output.count("\n") == 1 and one_line(output.strip())
-        with pytest.raises(ExperimentError) as caught:
-            load_answer(path, experiment=load_experiment(write_rod(tmp_path / "rod")))
-    one_line(caught.value)
-
-
 TITLES = (*CODE, '"' * 7, "\\", "\\N{x}", '\\"""', "'''" + '"""')
 
 

@@ -1,7 +1,5 @@
 """Where and how often a study is stopped, killed or spread changes its time, never its numbers."""
 
-import random
-import signal
 import subprocess
 import time
 
@@ -16,16 +14,6 @@ from teleopdesign.base.errors import ExperimentError
 
 
 @pytest.mark.slow
-def test_two_processes_give_the_data_set_of_one(no_process_is_left):
-    one = td.study(models.product, AXES, measures=models.value, workers=1)
-    two = td.study(models.product, AXES, measures=models.value, workers=2)
-    xarray.testing.assert_identical(one.data, two.data)
-    np.testing.assert_array_equal(
-        one["value"].values, [[x * np.sin(y) for y in AXES["y"]] for x in AXES["x"]]
-    )
-
-
-@pytest.mark.slow
 def test_simulations_in_processes_give_the_data_set_of_one(no_process_is_left):
     """Of 512 points side by side; the measure of a user needs each simulation by itself."""
     side_by_side = {"C.dahl.level": np.linspace(0.2, 1.2, 600), "C.dahl.stiffness": [1e4, 2e4]}
@@ -33,19 +21,6 @@ def test_simulations_in_processes_give_the_data_set_of_one(no_process_is_left):
     one = td.study(models.interface(), side_by_side, workers=1, **arguments)
     two = td.study(models.interface(), side_by_side, workers=2, **arguments)
     xarray.testing.assert_identical(one.data, two.data)
-
-
-@pytest.mark.slow
-def test_an_interrupt_ends_all_processes(no_process_is_left, monkeypatch):
-    def interrupt(progress):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("teleopdesign.studies.outcomes._BETWEEN", 0.05)
-    axes, begin = {"x": np.arange(1e5), "y": 0.5}, time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
-        arguments = {"measures": models.value, "workers": 2, "progress": interrupt}
-        td.study(models.slow_product, axes, **arguments)
-    assert time.monotonic() - begin < 60
 
 
 @pytest.mark.slow
@@ -94,16 +69,6 @@ def test_a_file_that_holds_the_study_is_not_computed_again(tmp_path):
     assert out.stat().st_mtime_ns == written
     np.testing.assert_array_equal(first["value"].values, again["value"].values)
     assert [p.name for p in tmp_path.iterdir()] == ["s.nc"]
-
-
-@pytest.mark.slow
-def test_another_study_never_takes_the_place_of_one(tmp_path):
-    out = tmp_path / "s.nc"
-    td.study(models.product, AXES, measures=models.value, out=out)
-    with pytest.raises(ExperimentError, match="holds another study"):
-        td.study(models.product, {**AXES, "x": [1.0]}, measures=models.value, out=out)
-    with pytest.raises(ExperimentError, match="holds another study"):
-        td.study(models.slow_product, AXES, measures=models.value, out=out)
 
 
 def test_what_an_interrupted_study_has_finished_is_not_computed_again(tmp_path):
@@ -247,37 +212,3 @@ def test_a_full_disk_ends_in_one_line_and_keeps_every_finished_point(tmp_path):
     np.testing.assert_array_equal(
         dataset["value"].values, [models.product(x, 0.5) for x in np.arange(500.0)]
     )
-
-
-@pytest.mark.slow
-def test_after_kills_at_random_times_no_finished_point_is_lost_and_none_is_wrong(tmp_path):
-    out, choose = tmp_path / "s.nc", random.Random(1)
-    part, points, kept = tmp_path / "s.nc.part", 40_000, 0
-    for run in range(2):  # with one process and with two
-        process = in_a_process(
-            study_code(out, points=points, workers=1 + run % 2), stderr=subprocess.DEVNULL
-        )
-        with process:
-            wait_for_points(out, kept + 1)
-            time.sleep(choose.uniform(0.0, 0.3))
-            assert process.poll() is None
-            process.send_signal(signal.SIGKILL)
-        now = part.read_bytes().count(b'"point":')
-        assert now > kept  # what was there stays, and each run adds to it
-        kept = now
-    values = _kept_values(part)
-    assert len(values) >= kept - 1  # the last line may be broken
-    assert all(v == models.product(i, 0.5) for i, v in values.items())
-    assert len(values) == len(set(values))
-
-
-def _kept_values(part):
-    import json
-
-    values = {}
-    for line in part.read_bytes().splitlines(keepends=True):
-        if b'"point":' in line and line.endswith(b"\n"):
-            content = json.loads(line.split(b" ", 1)[1])
-            assert content["point"] not in values
-            values[content["point"]] = content["values"][0]
-    return values

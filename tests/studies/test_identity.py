@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 import teleopdesign as td
-from teleopdesign.base.errors import ExperimentError
 
 
 def samples(experiment):
@@ -17,22 +16,6 @@ def samples(experiment):
 @pytest.fixture
 def rod(tmp_path):
     return Path(shutil.copytree(td.example("rod"), tmp_path / "rod"))
-
-
-@pytest.mark.slow
-def test_a_record_that_has_changed_makes_another_study(rod, tmp_path):
-    out = tmp_path / "study.nc"
-
-    def study():
-        measures = {"samples": lambda count: count}
-        axes = {"experiment": [str(rod)]}
-        return td.study(samples, axes, measures=measures, out=out, workers=1)
-
-    first = study()
-    assert study().data.attrs["study"] == first.data.attrs["study"]
-    shutil.copy(rod / "check.csv.gz", rod / "fit.csv.gz")
-    with pytest.raises(ExperimentError, match="holds another study"):
-        study()
 
 
 def test_a_folder_that_does_not_vary_counts_as_well(rod):

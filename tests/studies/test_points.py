@@ -23,14 +23,6 @@ def test_two_axes_are_their_product_with_the_last_one_first():
     assert len(points) == 6
 
 
-def test_points_drawn_together_are_multiplied_with_a_grid():
-    points = points_of([{"c": [0, 1]}, latin_hypercube(TWO, 5, seed=1)])
-    assert points.sizes == {"c": 2, "sample": 5}
-    first, again = points.at(3), points.at(8)
-    assert (first["a"], first["b"]) == (again["a"], again["b"])
-    assert (first["c"], again["c"]) == (0, 1)
-
-
 @given(st.integers(1, 40), st.integers(0, 5))
 def test_the_table_of_points_is_each_point(size, seed):
     points = points_of([{"c": [0, 1, 2]}, random_samples(TWO, size, seed=seed)])

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import study_models as models
-import xarray
 
 import teleopdesign as td
 from teleopdesign.studies.chosen_measures import measures_of
@@ -41,30 +40,3 @@ def test_a_point_does_not_depend_on_those_beside_it():
     for first, last in ((0, 7), (6, 23), (30, 42)):
         part = evaluate_unit(whole, range(first, last))
         assert part == blocks[first:last]
-
-
-@pytest.mark.slow
-def test_blocks_in_two_processes_and_after_a_stop_give_the_same_data(tmp_path):
-    axes = {"C.dahl.level": np.linspace(0.1, 1.5, 240), "computer.delay": [0.0, 1e-3]}
-    arguments = {"measures": MEASURES, **models.SIMULATED}
-    one = td.study(models.interface(), axes, workers=1, **arguments)
-    two = td.study(models.interface(), axes, workers=2, **arguments)
-    xarray.testing.assert_identical(one.data, two.data)
-    out = tmp_path / "s.nc"
-
-    def stop(progress):
-        if progress.done > 150:
-            raise KeyboardInterrupt
-
-    td.studies.outcomes._BETWEEN, before = -1.0, td.studies.outcomes._BETWEEN
-    try:
-        with pytest.raises(KeyboardInterrupt):
-            td.study(models.interface(), axes, workers=1, out=out, progress=stop, **arguments)
-    finally:
-        td.studies.outcomes._BETWEEN = before
-    kept = []
-    again = td.study(
-        models.interface(), axes, workers=1, out=out, progress=kept.append, **arguments
-    )
-    assert kept[0].kept == 151  # in the middle of a block
-    xarray.testing.assert_identical(one.data, again.data)

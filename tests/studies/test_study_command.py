@@ -1,12 +1,5 @@
 """`teleopdesign study`: a study from a TOML or a Python file, and one line for what is wrong."""
 
-import os
-import signal
-import subprocess
-import sys
-import time
-from functools import partial
-
 import numpy as np
 import pytest
 
@@ -73,35 +66,6 @@ def test_a_toml_study_is_the_study_of_its_diagram(folder, capsys):
     assert (folder / "s.png").stat().st_size > 10_000
 
 
-USERS = '''"""A spring of the user's.
-
-    F = K x
-
-It holds the device at zero.
-"""
-
-from teleopdesign.effects import Effect, Parameter
-
-EFFECT = Effect(
-    role="force",
-    law=lambda now, p: p.stiffness * now.position,
-    parameters={"stiffness": Parameter("stiffness", "K: stiffness")},
-    absent={"stiffness": 0.0},
-    linear=True,
-    source="a test",
-)
-'''
-
-
-def test_a_study_takes_the_effects_of_a_users_file(folder, capsys):
-    (folder / "rubber.py").write_text(USERS)
-    (folder / "interface.toml").write_text(
-        DIAGRAM.replace("[blocks.C]", "effects.rubber.stiffness = 10.0\n[blocks.C]")
-    )
-    assert main(["study", "s.toml", "--workers", "1", "--effect", "rubber.py"]) == 0
-    assert "6 of 6 points" in capsys.readouterr().err
-
-
 def test_samples_computer_inputs_and_states_come_from_the_file_too(folder):
     text = STUDY.replace('"computer.delay" = [0, 1e-3]', '"Z_M.inertia" = 0.2')
     text = text.replace("motion.L = { amplitude = 0.01, frequency = 5.0 }", "")
@@ -161,43 +125,3 @@ def test_a_bad_toml_study_is_one_line_and_status_two(folder, capsys, old, new, m
         assert status == 2 and error.count("\n") == 1
         assert error.startswith("teleopdesign: ")
     assert re.search(message, error), error
-
-
-@pytest.mark.slow
-def test_ctrl_c_ends_in_one_line_and_the_same_command_goes_on(folder):
-    (folder / "s.py").write_text(
-        "import os, time\n"
-        "def model(x):\n"
-        "    while x > 100 and not os.path.exists('go_on'):\n        time.sleep(0.01)\n"
-        "    return x\n"
-        "STUDY = dict(model=model, axes={'x': range(600)}, measures={'x2': lambda r: 2 * r})\n"
-    )
-    root = str(td.__path__[0]).removesuffix("/teleopdesign")
-    command = [sys.executable, "-m", "teleopdesign.cli", "study", "s.py", "--out", "s.nc"]
-    options = {
-        "env": {**os.environ, "PYTHONPATH": root},
-        "stderr": subprocess.PIPE,
-        "text": True,
-        "start_new_session": True,
-        # tests that run in the background of a shell are deaf to Ctrl-C: the study is not
-        "preexec_fn": partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
-    }
-    with subprocess.Popen([*command, "--workers", "2"], **options) as process:
-        end = time.monotonic() + 300
-        while time.monotonic() < end and (
-            not (part := folder / "s.nc.part").exists() or part.read_bytes().count(b'"point":') < 50
-        ):
-            time.sleep(0.02)
-        os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all of its processes
-        _, output = process.communicate(timeout=300)
-    assert process.returncode == 130
-    *progress, last = output.splitlines()  # a line each ten seconds, where it takes so long
-    assert all(" of 600 points" in line for line in progress), output
-    assert "kept in s.nc.part, the same command continues" in last
-    (folder / "go_on").touch()
-    kept = part.read_bytes().count(b'"point":')
-    assert kept >= 50
-    again = subprocess.run(command, **options, check=True)
-    assert f"goes on after {kept} points" in again.stderr
-    np.testing.assert_array_equal(read_study(folder / "s.nc")["x2"].values, 2.0 * np.arange(600))
-    assert not part.exists()

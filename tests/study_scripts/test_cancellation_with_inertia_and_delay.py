@@ -4,7 +4,7 @@ import cancellation_with_inertia_and_delay as study
 import numpy as np
 import pytest
 
-from teleopdesign.passivity import cancelled_inertia, sampled_passivity
+from teleopdesign.passivity import cancelled_inertia
 
 
 @pytest.fixture(scope="module")
@@ -43,39 +43,6 @@ def test_growth_against_the_worst_hand_is_the_damping_that_lacks(trials):
     expected = (chosen["over_limit"] - 1) * study.late.DAMPING / (2 * study.late.INERTIA)
     # the device alone moves, lightened or burdened by a few percent of its inertia
     assert chosen["rate"].values == pytest.approx(expected.values, rel=0.15)
-
-
-def test_sampled_differences_alone_allow_eight_ninths_of_b_t():
-    late = study.late
-    expected = 8 * late.DAMPING * study.PERIOD / (9 * late.INERTIA)
-    # the exact test bounds the damping within 1e-12
-    assert study.sampled_share(np.inf) == pytest.approx(expected, rel=1e-9)
-
-
-def test_the_sampled_limit_is_where_the_exact_test_turns():
-    late, bandwidth = study.late, 30.0
-    limit = study.sampled_share(bandwidth)
-    results = []
-    for over in (0.999, 1.001):
-        law = over * limit * late.sampled_law(bandwidth, study.PERIOD)
-        claim = sampled_passivity(law, damping=late.DAMPING, sample_time=study.PERIOD)
-        results.append(claim.status)
-    assert results == ["proved", "refuted"]
-
-
-@pytest.mark.parametrize("bandwidth", [3.0, 30.0])
-def test_a_slow_sampled_law_costs_what_the_continuous_one_does(bandwidth):
-    # within the lag of the samples against the low-pass: T w_c / 2
-    apart = study.PERIOD * study.late.pole(bandwidth)
-    assert study.sampled_share(bandwidth) == pytest.approx(
-        study.passive_share(bandwidth), rel=apart
-    )
-
-
-@pytest.mark.parametrize("delay", [1e-4, 1e-3, 1e-2])
-def test_a_low_pass_of_order_one_makes_the_limit_independent_of_delay(delay):
-    expected = study.late.DAMPING / (study.late.pole(30.0) * study.late.INERTIA)
-    assert study.passive_share(30.0, delay=delay, order=1) == pytest.approx(expected)
 
 
 def test_delay_alone_is_refuted_and_no_delay_is_proved():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hidden_effects
 import numpy as np
 import pytest
 from _campaign import plan
@@ -53,42 +52,6 @@ def test_one_effect_is_judged_by_what_is_named_first_and_what_else(response, out
     assert judge(truth(STRIBECK), response) == outcome
 
 
-@pytest.mark.parametrize(
-    ("response", "outcome"),
-    [
-        (answer(groups=[(BIAS, ASYMMETRY)]), "look-alike"),
-        (answer(ASYMMETRY, groups=[(BIAS, ASYMMETRY)]), "look-alike"),
-        (answer(ASYMMETRY, STRIBECK, groups=[(BIAS, ASYMMETRY)]), "right first"),
-        (answer(groups=[(BIAS, ASYMMETRY, STRIBECK)]), "wide group"),
-        (answer(ASYMMETRY), "wrong"),  # sure of what nobody could know
-    ],
-)
-def test_look_alikes_count_only_where_the_answer_lists_them(response, outcome):
-    assert judge(truth(BIAS, groups=[(BIAS, ASYMMETRY)]), response) == outcome
-
-
-@pytest.mark.parametrize(
-    ("response", "outcome"),
-    [
-        (answer(BIAS, STRIBECK), "right"),
-        (answer(ASYMMETRY, STRIBECK, groups=[(BIAS, ASYMMETRY)]), "right"),
-        (answer(STRIBECK, BIAS, ("spring", "device")), "right first"),
-        (answer(STRIBECK, groups=[(BIAS, ASYMMETRY)]), "right"),
-        (answer(STRIBECK, groups=[(BIAS, ASYMMETRY, ("spring", "device"))]), "half"),
-        (answer(STRIBECK), "half"),
-        (answer(STRIBECK, ("spring", "device")), "wrong"),
-        (answer(STRIBECK, STRIBECK), "wrong"),
-        (answer(), "undecided"),
-        (ADEQUATE, "missed"),
-    ],
-)
-def test_two_effects_are_right_when_exactly_the_two_are_named(response, outcome):
-    assert (
-        judge(truth(STRIBECK, BIAS, level="double", groups=[(BIAS, ASYMMETRY)]), response)
-        == outcome
-    )
-
-
 def test_an_adequate_model_called_anything_else_is_a_false_alarm():
     assert judge(truth(level="null"), ADEQUATE) == "right"
     assert judge(truth(level="null"), answer()) == "false alarm"
@@ -130,25 +93,6 @@ def test_a_plan_hides_every_effect_of_the_catalogue_on_both_kinds_of_machine():
     for name in ("level", "excitation", "rate"):  # each together with each kind
         pairs = {(getattr(c, name), c.kind) for c in cases}
         assert len(pairs) == 2 * len({getattr(c, name) for c in cases})
-
-
-@pytest.mark.slow
-def test_the_study_writes_tables_rows_and_figures(tmp_path, capsys):
-    """Of one case, the quickest; `make studies STUDY_ARGS=--quick` runs the study as users do."""
-    written = tmp_path / "written"
-    arguments = ["--cases", "1", "--levels", "null", "--kind", "device", "--baselines"]
-    arguments += ["--folder", str(tmp_path / "cases"), "--output", str(written)]
-    hidden_effects.main(arguments)
-    assert "one clear effect" in capsys.readouterr().out
-    assert {p.name for p in written.iterdir()} == {
-        "hidden_effects.md", "hidden_effects_more.md", "hidden_effects.csv", "hidden_effects.nc",
-        "hidden_effects_parameters.csv", "hidden_effects_confusion.pdf",
-        "hidden_effects_confusion.png", "hidden_effects_confusion.svg",
-        "hidden_effects_calibration.pdf", "hidden_effects_calibration.png",
-        "hidden_effects_calibration.svg",
-    }  # fmt: skip
-    rows = (written / "hidden_effects.csv").read_text()
-    assert rows.count("\n") == 2 and "no answer" not in rows
 
 
 @pytest.mark.parametrize("shift", [-1.0, 0.4, 1.0])

@@ -1,17 +1,15 @@
 """Whatever a command meets ends in one line that names the file, and in no traceback."""
 
-import argparse
 import errno
 import io
-import json
 from pathlib import Path
 
 import pytest
 
 import teleopdesign
 from teleopdesign.base.files import harmless_cell
-from teleopdesign.cli import _parser, main
-from teleopdesign.commands import _options, effects
+from teleopdesign.cli import main
+from teleopdesign.commands import effects
 from teleopdesign.commands._command_line import TRACEBACK
 from teleopdesign.commands._terminal import PrintableStream
 
@@ -88,16 +86,6 @@ def test_an_effect_file_that_is_no_python_is_one_line_with_its_name(what, tmp_pa
     file = tmp_path / "own_drag.py"
     file.write_bytes(NO_PYTHON[what])
     assert "own_drag.py" in one_line(capsys, ["effects", "--effect", file])
-
-
-def test_a_law_that_raises_later_is_still_the_users_file(tmp_path, capsys, monkeypatch):
-    file = tmp_path / "own_drag.py"
-    file.write_text("def law():\n    raise ValueError('late')\n")
-    names = {}
-    exec(compile(file.read_text(), str(file), "exec"), names)
-    monkeypatch.setattr(effects, "run", lambda options: names["law"]())
-    line = one_line(capsys, ["effects", "--effect", file])
-    assert line == f"teleopdesign: {file}: line 2: ValueError: late\n"
 
 
 NO_TOML = {
@@ -223,45 +211,12 @@ def test_a_terminal_is_given_text_alone(text, expected):
     assert raw.getvalue().decode() == expected
 
 
-def test_a_files_title_reaches_a_terminal_escaped(tmp_path, capsys):
-    file = tmp_path / "own.toml"
-    title = "\x1b[31m\u202e\r"
-    file.write_text(
-        f"""
-        [diagram]
-        name = {json.dumps(title)}
-        measured = ["x"]
-        [outside]
-        f = "force"
-        [blocks.M]
-        kind = "moving"
-        motion = "x"
-        loads = {{ f = 1 }}
-        driver = "f"
-        """
-    )
-    main(["derive", str(file)])
-    out = capsys.readouterr()
-    for stream in out:
-        assert all(c.isprintable() or c in "\n\t" for c in stream)
-
-
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@x", "\t=1", "\r=1"])
 def test_a_cell_that_a_spreadsheet_would_compute_is_made_a_text(text):
     assert harmless_cell(text) == f"'{text}"
 
 
 # what is read is not written over
-
-
-def test_every_path_of_every_command_is_an_input_or_an_output():
-    subparsers = next(
-        a for a in _parser()._actions if isinstance(a, argparse._SubParsersAction)
-    ).choices
-    paths = {a.dest for p in subparsers.values() for a in p._actions if a.type is Path}
-    assert len(paths) > 8
-    assert paths <= {*_options.INPUTS, *_options.OUTPUTS}
-    assert not set(_options.INPUTS) & set(_options.OUTPUTS)
 
 
 @pytest.fixture

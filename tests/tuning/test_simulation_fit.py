@@ -95,15 +95,6 @@ def test_a_value_beyond_the_interval_ends_at_its_end():
 
 
 @pytest.mark.slow
-def test_a_start_is_a_parameter_too():
-    data = measured(initial={"L": 2e-3, "L_velocity": 0.05})
-    starts = {"initial.L": (-0.01, 0.01), "initial.L_velocity": (-0.5, 0.5)}
-    fitted = td.fit_simulation(SPRUNG, data, starts, **PUSHED)
-    assert fitted.values["initial.L"] == pytest.approx(2e-3, abs=4 * fitted.errors["initial.L"])
-    assert fitted.case.initial["L_velocity"] == pytest.approx(0.05, abs=1e-3)
-
-
-@pytest.mark.slow
 def test_dry_friction_and_its_cancellation_come_back_from_the_force_of_a_measured_motion():
     truth = models.interface()
     simulation = td.simulate_diagram(truth, **models.SIMULATED)

@@ -23,10 +23,6 @@ def less_gain(diagram):
     return -gain(diagram)
 
 
-def bandwidth_error(diagram):
-    return (diagram.values["H.low_pass.bandwidth"] - 7.0) ** 2
-
-
 def most_gain(inertia, damping, bandwidth):
     """Largest passive gain of (m s + b)/(1 + g/(1 + s/a)): Re Z >= 0 at every frequency.
 
@@ -62,32 +58,6 @@ def test_a_limit_over_intervals_holds_at_the_worst_hand_and_device():
     assert 0.99 * limit < tuned.values["H.gain.gain"] <= limit * (1 + 1e-9)
     assert tuned.limits[0].how == "proved over the whole box (in continuous time)"
     assert claim_over_intervals(tuned.diagram, over).status == "proved"
-
-
-def test_the_same_seed_gives_the_same_point():
-    first, second = (
-        td.tune(LOOP, PARAMETERS, bandwidth_error, evaluations=40, seed=3) for _ in range(2)
-    )
-    assert first == second
-    assert first.values["H.low_pass.bandwidth"] == pytest.approx(7.0, abs=0.1)
-
-
-@pytest.mark.slow
-def test_margins_of_the_loop_and_measures_are_limits_too():
-    tuned = td.tune(
-        LOOP,
-        {"H.gain.gain": (0.05, 20.0)},
-        less_gain,
-        subject_to=[
-            td.limit("delay margin", least=5e-3),
-            td.limit("phase margin", least=40.0),
-            td.limit(gain, most=3.0),
-        ],
-        evaluations=30,
-    )
-    assert tuned.keeps_limits and 2.5 < tuned.values["H.gain.gain"] <= 3.0
-    assert [one.how for one in tuned.limits] == ["computed at this point"] * 3
-    assert tuned.limits[0].value >= 5e-3
 
 
 def load(diagram):
@@ -131,15 +101,6 @@ def test_trade_offs_are_points_that_no_other_one_beats_in_both():
         assert values["H.gain.gain"] <= bound * (1 + 1e-9)
     axes = front.plot().axes[0]
     assert axes.get_xlabel() == "less gain (1)" and len(axes.lines) == 4
-
-
-@pytest.mark.slow
-def test_more_processes_give_the_same_answer():
-    moved = {"duration": 0.2, "motion": {"L": td.sine(amplitude=0.01, frequency=10.0)}}
-    one, two = (
-        td.tune(LOOP, PARAMETERS, "force_error", evaluations=4, workers=n, **moved) for n in (1, 2)
-    )
-    assert one == two
 
 
 @pytest.mark.slow

@@ -7,12 +7,10 @@ import pytest
 from unexplained.planting import planted, sentence_on
 
 from teleopdesign.unexplained.curve import curve_of
-from teleopdesign.unexplained.dependence import Dependence, contrasts, dependences, model_columns
+from teleopdesign.unexplained.dependence import dependences
 from teleopdesign.unexplained.rows import rows_of
 from teleopdesign.unexplained.shapes import (
     FORCE,
-    SHAPES,
-    Shape,
 )
 
 
@@ -98,15 +96,6 @@ def test_a_hum_is_detected_at_its_frequency(rows, floor_squares, frequency):
 
 
 @pytest.mark.slow
-def test_cogging_of_many_periods_is_detected_at_its_period(rows, floor_squares):
-    here = planted(rows, lambda a: a.push * 0.1 * np.sin(2 * np.pi * position(a) / 1.2e-3))
-    shapes, _ = dependences(here, floor_squares)
-    assert shapes[0].shape.name == "force repeating over position"
-    assert 1.0 / shapes[0].knots[0] == pytest.approx(1.2e-3, rel=1e-3)
-    assert "every 1.2 mm of travel" in sentence_on(here, shapes[0])[0]
-
-
-@pytest.mark.slow
 def test_only_one_direction_is_reported(rows, floor_squares):
     here = planted(
         rows, lambda a: a.push * np.where(a.signals["velocity"] > 0, a.signals["velocity"], 0.0)
@@ -118,25 +107,6 @@ def test_only_one_direction_is_reported(rows, floor_squares):
         "friction over speed",
     )
     assert "forward" in sentence_on(here, shapes[0])[0]
-
-
-def test_only_after_a_rest_is_reported(rows):
-    """A friction at low speed that is there only where the body had rested before."""
-    shape = Shape(SHAPES[1].carrier, next(s.variable for s in SHAPES if "over speed" in s.name))
-
-    def low(a):
-        return a.grip * 0.3 * np.exp(-((a.signals["speed"] / 0.03) ** 2))
-
-    whole = rows.lowpassed(lambda a: low(a)[None])[:, 0] * rows.root
-    after = rows.lowpassed(lambda a: (low(a) * (a.signals["rested"] >= 0.2))[None])[:, 0]
-    here = replace(rows, residual=rows.residual + after)
-    columns = replace(model_columns(rows), values=whole[:, None], penalty=np.zeros((1, 1)))
-    one = Dependence(
-        shape, np.zeros(1), columns, np.ones(1), np.zeros(0), np.zeros(0), 9.0, 0.0, 1.0
-    )
-    sides = contrasts(here, one, here.residual * here.root)
-    assert [c.only for c in sides if "rested" in c.sides[0]] == ["after it has rested"]
-    assert [c.only for c in sides if "forward" in c.sides[0]] == [""]
 
 
 @pytest.mark.slow

@@ -130,14 +130,6 @@ def test_in_any_drawing_everything_is_there_once_and_wires_keep_clear(diagram):
     check(diagram)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", SHOWN)
-def test_the_same_diagram_gives_the_same_bytes(name):
-    first = draw_diagram(SHOWN[name]).svg()
-    assert first == draw_diagram(SHOWN[name]).svg()
-    ElementTree.fromstring(first)
-
-
 def test_every_term_of_a_sum_has_its_sign_or_weight():
     signs = [t.plain for t in of(draw_diagram(SHOWN["figure 3"]), Text) if t.role == "sign"]
     # E: + -, R_A: + + +, forces on Z_M: + -, R_M: - -

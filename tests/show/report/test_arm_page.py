@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import pytest
 
-from teleopdesign.base.finding import Finding
 from teleopdesign.diagnose import Diagnosis, LadderRow
 from teleopdesign.diagnose.recording import DiagnosedRecording
 from teleopdesign.diagnose.statements import EstimatedValue, JointErrors
@@ -55,21 +54,6 @@ def test_each_joint_has_separate_errors_and_a_page(two_joints, diagnosis):
     assert (page.before, page.after, page.left) == (0.08, 0.02, first.left)
     assert page.floor == two_joints.floor.value
     assert page.named == ("stribeck",) and page.added == () == page.parameters == page.views
-
-
-def test_findings_on_what_is_left_stand_at_their_joint(two_joints):
-    one = Finding("topic", "note", "rises with speed")
-    page = page_of(two_joints, unexplained={"j2": [one]}, soundness=[one, one])
-    assert [j.page.unexplained for j in page.joints] == [(), (one,)]
-    assert page.soundness == (one, one) and page.unexplained == ()
-
-
-def test_base_parameters_come_with_their_errors_and_units(two_joints):
-    rows = page_of(two_joints).links
-    assert [(r.name, r.unit, r.value, r.stderr) for r in rows] == [
-        ("I1zz", "kg*m^2", 0.5, 0.01),
-        ("m2x2", "kg*m", 0.25, None),
-    ]
 
 
 @pytest.mark.slow

@@ -8,14 +8,12 @@ import pytest
 from teleopdesign.blocks import Value
 from teleopdesign.diagnose.answer import with_recording
 from teleopdesign.diagnose.by_simulation import simulated_if_possible
-from teleopdesign.diagnose.comparison import residual_data
 from teleopdesign.diagnose.recording import DiagnosedRecording
 from teleopdesign.diagnose.statements import Alternative
 from teleopdesign.show.report.cannot_tell import cannot_tell
 from teleopdesign.show.report.motion import simulated_motions
-from teleopdesign.show.report.page import record_rows
 from teleopdesign.show.report.parameter_table import parameter_rows
-from teleopdesign.show.report.residuals import CELLS, body_views
+from teleopdesign.show.report.residuals import body_views
 
 
 def with_experiment(diagnosis, experiment):
@@ -42,13 +40,6 @@ def test_the_rms_of_each_step_is_its_error_times_the_measured_force(page, diagno
         assert step.rms == pytest.approx(rung.check_error * measured, rel=0.01)
 
 
-def test_correlations_are_those_of_the_last_fit_each_once(page, diagnosis):
-    rows, known = page.correlations, diagnosis.last_fit.correlations
-    assert [len(row.values) for row in rows] == list(range(1, len(rows) + 1))
-    assert sum(len(row.values) - 1 for row in rows) == len(known)
-    assert rows[2].values[1] == known[rows[2].name, rows[1].name]
-
-
 def test_the_right_model_has_the_recorded_impedance_along_the_motion(page):
     (view,) = page.impedances
     known = np.isfinite(view.recorded.magnitude[0]) & (view.recorded.frequency < 30.0)
@@ -67,26 +58,6 @@ def test_the_simulated_motion_lies_over_the_measured_one_with_its_fit(diagnosis)
     assert restarted.name == "restarted each 1 s"
     low, high = np.nanmin(measured.y), np.nanmax(measured.y)
     assert np.nanmax(simulated.y) <= high + 0.5 * (high - low)
-
-
-def test_a_map_holds_the_mean_residual_of_each_cell(page, diagnosis):
-    (view,) = page.views
-    data = residual_data(diagnosis.model, diagnosis.prepared)
-    rows = (data["use"].values == "check") & data["counts"].values
-    x, v, r = (data[n].values[rows] for n in ("position", "velocity", "residual"))
-    assert view.steps[-1].mean.shape == CELLS[::-1]
-    j, i = np.argwhere(np.isfinite(view.steps[-1].mean))[7]
-    inside = (x >= view.position[i]) & (x < view.position[i + 1])
-    inside &= (v >= view.velocity[j]) & (v < view.velocity[j + 1])
-    assert view.steps[-1].mean[j, i] == pytest.approx(r[inside].mean())
-
-
-def test_the_trace_holds_the_extremes(page, diagnosis):
-    data = residual_data(diagnosis.before.model, diagnosis.prepared)
-    rows = (data["use"].values == "check") & data["counts"].values
-    residual = data["residual"].values[rows]
-    assert page.views[0].steps[0].high.max() == residual.max()
-    assert page.views[0].steps[0].low.min() == residual.min()
 
 
 def test_parameters_stand_beside_what_was_stated(diagnosis):
@@ -132,24 +103,6 @@ def test_records_come_with_the_digest_of_their_files(page, diagnosis):
     folder = diagnosis.experiment.folder
     for row in page.records:
         assert row.digest == hashlib.sha256((folder / row.file).read_bytes()).hexdigest()
-
-
-def test_a_record_that_is_a_part_of_a_log_or_a_bag_comes_with_its_digest(tmp_path, diagnosis):
-    import hashlib
-
-    (tmp_path / "log.csv").write_bytes(b"whole")
-    (tmp_path / "bag").mkdir()
-    for name, content in (("b.db3", b"ole"), ("a.yaml", b"wh")):
-        (tmp_path / "bag" / name).write_bytes(content)
-    record = diagnosis.experiment.records[0]
-    files = ("log.csv", "log.csv 0-14.4 s", "log.csv 1e-05-2.5e+03 s", "bag", "bag 0-2 s")
-    whole = replace(
-        diagnosis.experiment,
-        folder=tmp_path,
-        records=tuple(replace(record, file=file) for file in files),
-    )
-    digest = hashlib.sha256(b"whole").hexdigest()
-    assert [row.digest for row in record_rows(whole)] == [digest] * len(files)
 
 
 def test_a_record_too_short_for_any_cell_of_the_map_has_a_page(diagnosis):
