@@ -243,7 +243,7 @@ class _Study:
                     there = set_case(self.diagram, self.columns, int(cases[i]))
                     if 0 in there.values.values():
                         refuse_massless(self._form(there), self.arguments["motion"] or ())
-                inner = ladder.next(timing, float(outcome.worst[i]), bool(outcome.is_finite[i]))
+                inner = ladder.next(grid[0], float(outcome.worst[i]), bool(outcome.is_finite[i]))
                 setup.check_size(setup.timing(inner, grid[1]))
                 finer[int(i)] = inner
             except ModelError as error:
