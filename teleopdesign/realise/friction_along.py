@@ -34,9 +34,9 @@ from ..measurement.zero_phase import (
     sections,
     windows,
 )
-from .scan import driven_scan
+from .scan import exact_scan
 from .shape_scan import shape_bounds
-from .traced import Along, Traced, constant, joined_rows
+from .traced import Along, Traced, choose, constant, joined_rows
 
 _DIRECTION, _ACTING = SIGNALS["direction"], SIGNALS["acting_force"]
 
@@ -48,7 +48,8 @@ def level_along(body: Body, along: Along) -> tuple[sp.Expr, Along]:
         if effect.is_absent(along.values):
             level = level.subs(effect.expression(), sp.Abs(SIGNALS["velocity"]))
         else:
-            along = along.with_signals(driven_scan(effect, along))
+            (speed,) = effect.state_symbols().values()
+            along = along.with_signals({speed: exact_scan(effect, along, speed)[0]})
     return level, along
 
 
@@ -86,18 +87,8 @@ def _bound_sliding(motion: Motion, forward: Traced, backward: Traced) -> tuple[T
     ahead, back = motion.direction > 0, motion.direction < 0
     if forward is backward:
         return forward.times(np.where(ahead, 1.0, -1.0)), forward.times(np.where(back, -1.0, 1.0))
-    moving = joined_rows(forward, backward)
-    low = Traced(
-        np.where(ahead, forward.value, -backward.value),
-        np.where(ahead, forward.tangent, -backward.tangent),
-        moving,
-    )
-    high = Traced(
-        np.where(back, -backward.value, forward.value),
-        np.where(back, -backward.tangent, forward.tangent),
-        moving,
-    )
-    return low, high
+    against = backward.times(-1.0)
+    return choose(ahead, forward, against), choose(back, against, forward)
 
 
 def balance_friction(motion: Motion, needed: Traced, low: Traced, high: Traced) -> Traced:

@@ -73,8 +73,8 @@ class Traced:
                 tangent[j] -= other.tangent[j]
         return Traced(value, tangent, joined_rows(self, *changing))
 
-    def times(self, factor: Array) -> Traced:
-        """The signal times a factor at each sample (n,)."""
+    def times(self, factor: Array | float) -> Traced:
+        """The signal times a factor, (n,) or the same at each sample."""
         if self.is_constant or self.moving is None:
             tangent = self.tangent if self.is_constant else self.tangent * factor
             return Traced(self.value * factor, tangent, self.moving)
@@ -106,6 +106,17 @@ def in_rows(value: Array, tangent: Array, rows: Collection[int], parameters: int
     whole = np.zeros((parameters, len(value)))
     whole[list(rows)] = tangent
     return Traced(value, whole, tuple(rows))
+
+
+def choose(condition: NDArray[np.bool_], one: Traced, other: Traced) -> Traced:
+    """One signal at the samples where the condition (n,) holds, the other elsewhere."""
+    if one is other:
+        return one
+    rows, parameters = joined_rows(one, other), len(one.tangent)
+    rows = tuple(range(parameters)) if rows is None else rows
+    chosen = [np.where(condition, one.tangent[j], other.tangent[j]) for j in rows]
+    tangent = np.array(chosen).reshape(len(rows), len(condition))
+    return in_rows(np.where(condition, one.value, other.value), tangent, rows, parameters)
 
 
 def constant(value: Array, parameters: int) -> Traced:
@@ -148,6 +159,10 @@ class Along:
     def __post_init__(self) -> None:
         if not isinstance(self.columns, TangentColumns):
             object.__setattr__(self, "columns", TangentColumns(self.columns))
+
+    def __len__(self) -> int:
+        """Number of samples."""
+        return len(next(iter(self.signals.values())).value)
 
     def with_signals(self, signals: Mapping[sp.Symbol, Traced]) -> Along:
         """The same with additional or other signals."""
@@ -196,7 +211,7 @@ class NumericLaw:
     def __call__(self, along: Along) -> Traced:
         signals, values, columns = along.signals, along.values, along.columns
         arrays = [signals[s].value for s in self.signals]
-        n = len(next(iter(signals.values())).value)
+        n = len(along)
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
             out = self.call(*arrays, *self._numbers(values, n))
         value = np.empty(n)

@@ -18,7 +18,7 @@ from teleopdesign.diagnose.search import base_of, estimate_from_starts
 from teleopdesign.diagnose.stated_fit import estimate_stated
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
-from teleopdesign.realise import ode_scan
+from teleopdesign.realise import scan
 
 BACKLASH = EFFECTS["backlash"]
 GAP_PARAMETERS = tuple(f"device.backlash.{n}" for n in BACKLASH.parameters)
@@ -101,7 +101,7 @@ def test_draws_lead_to_a_wide_gap(seed, tmp_path):
 
 
 def test_tangents_of_the_led_tip_are_the_slopes_of_the_residual(case, monkeypatch):
-    monkeypatch.setattr(ode_scan, "GROWTH", np.inf)  # whatever they grow to
+    monkeypatch.setattr(scan, "GROWTH", np.inf)  # whatever they grow to
     _, prepared, _, true = case
     stretches = prepared.of("check")[:1]
     names = ("device.inertia", "device.coulomb.level", *GAP_PARAMETERS)
@@ -136,7 +136,7 @@ def test_tangents_say_what_a_change_that_could_be_made_does(case, monkeypatch):
 
     kept = largest()
     assert kept < 2
-    monkeypatch.setattr(ode_scan, "GROWTH", np.inf)
+    monkeypatch.setattr(scan, "GROWTH", np.inf)
     assert largest() > 4 * kept
 
 
