@@ -138,6 +138,11 @@ class Setup:
     motion: Mapping[str, Trajectory]
     initial: Mapping[str, float]
 
+    @property
+    def samples(self) -> int:
+        """Number of samples of a run."""
+        return samples_of(self.duration, self.sampling.period)
+
     @cached_property
     def delays(self) -> list[float]:
         """Delay (s) of each delayed signal: of analog signals, then of signals in the computer."""
@@ -197,7 +202,7 @@ class Setup:
         return Timing(
             step,
             inner,
-            samples_of(self.duration, s.period),
+            self.samples,
             whole_steps(s.delay, step, "the computer's delay"),
             tuple(late),
             s.encoder_step,
