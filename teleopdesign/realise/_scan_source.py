@@ -22,13 +22,9 @@ from .compiled import PHI, head
 from .laws import assignments, indent
 from .traced import TRACED
 
-#: further signals of laws on states: velocity at the rows beside that of the travel of readings,
-#: length by which the position is uncertain, friction level forward and backward
-ROW_VELOCITY, UNCERTAIN, FORWARD, BACKWARD = (
-    sp.Symbol(name, real=True)
-    for name in ("row_velocity", "uncertain", "forward_level", "backward_level")
-)
-_SIGNALS = (*SIGNALS.values(), ROW_VELOCITY, UNCERTAIN, FORWARD, BACKWARD)
+#: velocity at the rows, in laws on states that follow a velocity of another kind
+ROW_VELOCITY = sp.Symbol("row_velocity", real=True)
+_SIGNALS = (*SIGNALS.values(), ROW_VELOCITY)
 
 
 @lru_cache(maxsize=256)
@@ -42,7 +38,7 @@ def list_drivers(effect: Effect, more: tuple[sp.Expr, ...] = ()) -> tuple[sp.Sym
 
 def list_traced(drivers: tuple[sp.Symbol, ...]) -> list[int]:
     """Places of the driving signals that have tangents."""
-    return [i for i, s in enumerate(drivers) if s in TRACED or s in (FORWARD, BACKWARD)]
+    return [i for i, s in enumerate(drivers) if s in TRACED]
 
 
 @lru_cache(maxsize=256)
@@ -74,19 +70,14 @@ class ScanLaws:
     names: Mapping[sp.Symbol, str]
     by: Mapping[sp.Symbol, str]
 
-    def derive(self, what: str, law: sp.Expr) -> tuple[dict[str, sp.Expr], str]:
-        """A law and its derivatives by their names in the code, and the code of its tangent."""
+    def with_tangent(self, what: str, law: sp.Expr) -> tuple[list[str], str]:
+        """Lines that compute a law and its derivatives, and the code of its tangent."""
         results, terms = {what: law}, []
         for i, (symbol, tangent) in enumerate(self.by.items()):
             if (slope := sp.diff(law, symbol)) != 0:
                 results[f"{what}_{i}"] = slope
                 terms.append(f"{what}_{i} * {tangent}")
-        return results, " + ".join(terms) or "0.0"
-
-    def with_tangent(self, what: str, law: sp.Expr) -> tuple[list[str], str]:
-        """Lines that compute a law and its derivatives, and the code of its tangent."""
-        results, tangent = self.derive(what, law)
-        return assignments(results, self.names), tangent
+        return assignments(results, self.names), " + ".join(terms) or "0.0"
 
 
 def laws_of(effect: Effect, drivers: tuple[sp.Symbol, ...], state: str) -> ScanLaws:
@@ -129,13 +120,10 @@ def write_exact(effect: Effect, wanted: tuple[sp.Expr, ...]) -> str:
     drivers = list_drivers(effect, wanted)
     laws, traced = laws_of(effect, drivers, "d[{i}, j]"), list_traced(drivers)
     step = _stopped_step(effect, laws) if effect.stops() else _affine_step(effect, laws)
-    results: dict[str, sp.Expr] = {}
     for i, law in enumerate(wanted):
-        values, tangent = laws.derive(f"law{i}", law)
-        results |= values
+        values, tangent = laws.with_tangent(f"law{i}", law)
+        step.each.extend([*values, f"out[{i}, k] = law{i}"])
         step.column.append(f"dout[{i}, j, k] = {tangent}")
-    step.each.extend(assignments(results, laws.names, shared="common"))
-    step.each.extend(f"out[{i}, k] = law{i}" for i in range(len(wanted)))
     if not wanted:
         tangent = "dbefore * p1 + before * s1 * h * da + h * p2 * db + b * h * s2 * h * da"
         step.each.extend(["out[0, k] = before * p1 + b * h * p2", "s2 = p2 - 2.0 * p3"])
@@ -147,10 +135,10 @@ def scan(h, part, dpart, p, unit, first, dfirst, u, du, out, dout):
 {read_parameters(effect)}
     q = dout.shape[1]
     d = np.zeros(({len(effect.states)}, q))
-{indent([f"u_{i} = first[{i}, 0]" for i in range(len(drivers))], 4)}
+{indent([f"u_{i} = first[{i}]" for i in range(len(drivers))], 4)}
 {indent(step.start, 4)}
     for j in range(q):
-{indent([f"du_{i} = dfirst[{t}, 0, j]" for t, i in enumerate(traced)], 8)}
+{indent([f"du_{i} = dfirst[{t}, j]" for t, i in enumerate(traced)], 8)}
 {indent(step.start_column, 8)}
 {indent(step.once, 4)}
     for k in range(out.shape[1]):

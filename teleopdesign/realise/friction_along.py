@@ -237,7 +237,7 @@ def balance_within_bounds(
     for window in _list_windows(is_open.tobytes(), bandwidth, sample_time):
         here = window.here
         friction[:, here.start + window.rows] = _friction_at_open_rows(
-            needed.between(here), low.between(here), high.between(here), window
+            needed.at(here), low.at(here), high.at(here), window
         )
     return Traced(friction[0], friction[1:], joined_rows(needed, low, high))
 

@@ -36,7 +36,7 @@ from ..measurement.filtering import Array
 from ._coupled_source import write_coupled
 from ._scan_source import list_drivers, list_parameters, list_traced, write_exact
 from .compiled import compile_source
-from .traced import Along, Traced, constant, in_rows, joined_rows
+from .traced import Along, Traced, in_rows, joined_rows
 
 #: angle of the fastest mode (rad) that one sub-step should cover (at half a radian the mode swings
 #: 0.05 % too slowly, at one radian 0.8 %); most sub-steps; and angle that one may cover at most
@@ -63,22 +63,26 @@ def exact_scan(
     part: (1,) part of where they stay at which they start; None: all of it
     at_start: signals that differ there, of which the first sample counts
     """
-    symbols, parameters = list_drivers(effect, laws), len(along.columns)
-    part = part or constant(np.ones(1), parameters)
-    signals = [along.signals[s] for s in symbols]
-    first = [at_start.get(s, along.signals[s]).between(_FIRST) for s in symbols]
-    traced = list_traced(symbols)
-    numbers, unit, rows = _parameters(effect, along, [*(signals[i] for i in traced), part])
-    start = float(part.value[0]), part.tangent[rows, 0].copy()
-    starts, known = (_arrays(x, [x[i] for i in traced], rows) for x in (first, signals))
+    symbols, count = list_drivers(effect, laws), len(along.columns)
+    signals, traced = [along.signals[s] for s in symbols], list_traced(symbols)
+    driving = [signals[i] for i in traced]
+    parameters, unit, rows = _parameters(
+        effect, along, driving if part is None else [*driving, part]
+    )
+    u, du = _arrays(signals, driving, rows)
+    first, dfirst = u[:, 0].copy(), du[:, 0].copy()
+    for symbol in at_start.keys() & set(symbols):
+        i, start = symbols.index(symbol), at_start[symbol]
+        first[i] = start.value[0]
+        if i in traced:
+            dfirst[traced.index(i)] = start.tangent[rows, 0]
+    share = 1.0 if part is None else float(part.value[0])
+    dshare = np.zeros(len(rows)) if part is None else part.tangent[rows, 0].copy()
     out = np.empty((max(len(laws), 1), len(along)))
     tangent = np.empty((len(out), len(rows), len(along)))
     scan = compile_source(write_exact(effect, laws), "scan")
-    scan(along.step, *start, numbers, unit, *starts, *known, out, tangent)
-    return [in_rows(y, dy, rows, parameters) for y, dy in zip(out, tangent, strict=True)]
-
-
-_FIRST = slice(0, 1)
+    scan(along.step, share, dshare, parameters, unit, first, dfirst, u, du, out, tangent)
+    return [in_rows(y, dy, rows, count) for y, dy in zip(out, tangent, strict=True)]
 
 
 def _parameters(

@@ -17,7 +17,7 @@ import sympy as sp
 
 from ..effects import SIGNALS, Effect
 from ..measurement.motion import Motion
-from ._scan_source import BACKWARD, FORWARD, ROW_VELOCITY, UNCERTAIN
+from ._scan_source import ROW_VELOCITY
 from .scan import exact_scan
 from .traced import Along, Traced, choose, constant, joined_rows
 
@@ -28,21 +28,13 @@ _VELOCITY, _LEVEL = SIGNALS["velocity"], SIGNALS["level"]
 
 
 @lru_cache(maxsize=64)
-def _laws_of_bounds(effect: Effect, way: sp.Symbol, back: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
-    """Least and largest friction.
-
-    way, back: symbols of the friction level forward and backward
-    """
+def _force_and_stiffness(effect: Effect) -> tuple[sp.Expr, sp.Expr]:
+    """The force, and its derivative by the position, from the states that follow the motion."""
     law = effect.expression()
     rates = [sp.diff(rate, _VELOCITY) for rate, _ in effect.stops().values()] or [sp.S(1)]
     pairs = zip(effect.state_symbols().values(), rates, strict=True)
     stiffness = sp.Add(*(sp.diff(law, z) * rate for z, rate in pairs))
-    law, stiffness = (x.xreplace({_VELOCITY: ROW_VELOCITY}) for x in (law, stiffness))
-    open_by = UNCERTAIN * sp.Abs(stiffness)
-    return tuple(
-        sp.Piecewise((end, (UNCERTAIN > 0) & (sign * force > sign * end)), (force, True))
-        for sign, end, force in ((-1, -back, law - open_by), (1, way, law + open_by))
-    )
+    return law.xreplace({_VELOCITY: ROW_VELOCITY}), stiffness.xreplace({_VELOCITY: ROW_VELOCITY})
 
 
 def shape_bounds(
@@ -71,14 +63,26 @@ def shape_bounds(
         _VELOCITY: constant(np.ones(1), len(along.columns)),
         _LEVEL: _positive(forward if part.value[0] >= 0.0 else backward),
     }
+    followed = {ROW_VELOCITY: along.signals[_VELOCITY], _VELOCITY: along.constant(travel)}
+    force, stiffness = exact_scan(
+        effect,
+        along.with_signals({**followed, _LEVEL: level}),
+        *_force_and_stiffness(effect),
+        part=part,
+        at_start=at_start,
+    )
+    still = np.flatnonzero(motion.direction == 0)
+    if not len(still):
+        return force, force
     # where the reading shows no motion, the position is uncertain by half a step
-    known = {UNCERTAIN: along.constant(np.where(motion.direction == 0, 0.5 * motion.step, 0.0))}
-    known |= {ROW_VELOCITY: along.signals[_VELOCITY], _VELOCITY: along.constant(travel)}
-    known |= {_LEVEL: level, FORWARD: forward, BACKWARD: backward}
-    ends = (_LEVEL, _LEVEL) if forward is backward else (FORWARD, BACKWARD)
-    laws, along = _laws_of_bounds(effect, *ends), along.with_signals(known)
-    low, high = exact_scan(effect, along, *laws, part=part, at_start=at_start)
-    return low, high
+    here, slope = force.rows(still), stiffness.rows(still)
+    open_by = 0.5 * motion.step * np.sign(slope[0]) * slope
+    least, most = -backward.rows(still), forward.rows(still)
+    low, high = here - open_by, here + open_by
+    low = np.where(low[0] < least[0], least, low)
+    high = np.where(high[0] > most[0], most, high)
+    moving = joined_rows(force, forward, backward)
+    return force.with_rows(still, low, moving), force.with_rows(still, high, moving)
 
 
 def _positive(level: Traced) -> Traced:

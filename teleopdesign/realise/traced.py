@@ -34,9 +34,17 @@ class Traced:
         """Value and tangents as rows of one array (1 + p, n);  at: selected samples."""
         return np.vstack([self.value[at][None], self.tangent[:, at]])
 
-    def between(self, at: slice) -> Traced:
+    def at(self, samples: slice) -> Traced:
         """The signal at a slice of samples."""
-        return Traced(self.value[at], self.tangent[:, at], self.moving)
+        return Traced(self.value[samples], self.tangent[:, samples], self.moving)
+
+    def with_rows(
+        self, samples: NDArray[np.intp], rows: Array, moving: tuple[int, ...] | None
+    ) -> Traced:
+        """The signal with other value and tangents at some samples, as `rows` gives them."""
+        value, tangent = self.value.copy(), np.array(self.tangent)
+        value[samples], tangent[:, samples] = rows[0], rows[1:]
+        return Traced(value, tangent, moving)
 
     @property
     def is_constant(self) -> bool:
