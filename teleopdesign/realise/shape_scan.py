@@ -16,6 +16,7 @@ import numpy as np
 import sympy as sp
 
 from ..effects import SIGNALS, Effect
+from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ._scan_source import ROW_VELOCITY
 from .scan import exact_scan
@@ -82,7 +83,13 @@ def shape_bounds(
     low = np.where(low[0] < least[0], least, low)
     high = np.where(high[0] > most[0], most, high)
     moving = joined_rows(force, forward, backward)
-    return force.with_rows(still, low, moving), force.with_rows(still, high, moving)
+
+    def bound(there: Array) -> Traced:
+        value, tangent = force.value.copy(), np.array(force.tangent)
+        value[still], tangent[:, still] = there[0], there[1:]
+        return Traced(value, tangent, moving)
+
+    return bound(low), bound(high)
 
 
 def _positive(level: Traced) -> Traced:
