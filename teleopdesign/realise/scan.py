@@ -69,7 +69,7 @@ def exact_scan(
     parameters, unit, rows = _parameters(
         effect, along, driving if part is None else [*driving, part]
     )
-    u, du = _arrays(signals, driving, rows)
+    u, du = _arrays(signals, driving, len(along), rows)
     first, dfirst = u[:, 0].copy(), du[:, 0].copy()
     for symbol in at_start.keys() & set(symbols):
         i, start = symbols.index(symbol), at_start[symbol]
@@ -101,14 +101,14 @@ def _parameters(
 
 
 def _arrays(
-    signals: Sequence[Traced], traced: Sequence[Traced], rows: list[int], more: int = 0
+    signals: Sequence[Traced], traced: Sequence[Traced], n: int, rows: list[int], more: int = 0
 ) -> tuple[Array, Array]:
     """Signals (m, n), and in these rows the tangents (t, n, q) of the traced ones.
 
     more: further columns of zeros
     """
-    values = np.array([signal.value for signal in signals])
-    tangents = np.zeros((len(traced), values.shape[-1], len(rows) + more))
+    values = np.array([signal.value for signal in signals]).reshape(len(signals), n)
+    tangents = np.zeros((len(traced), n, len(rows) + more))
     for mine, signal in zip(tangents, traced, strict=True):
         if not signal.is_constant:
             mine[:, : len(rows)] = signal.tangent[rows].T
@@ -190,7 +190,7 @@ def coupled_scan(
     if covered <= STABLE * MOST_STEPS:
         steps = int(np.clip(np.ceil(covered / MODE_STEP), 1, MOST_STEPS))
         more = 1 if rows else 0  # a difference without input
-        u, du = _arrays(signals, traced, rows, more)
+        u, du = _arrays(signals, traced, len(along), rows, more)
         bends = _bends(u, [_slope_of(s, along) for s in symbols], along.step)
         # scale: a difference of 1 in position, and of the rate of the fastest mode in velocity
         rate = max(fastest, 1e-300)
