@@ -71,18 +71,7 @@ class Generator:
             key=str,
         )
         self.motion_signals = [f(m) for m in self.motions for f in (signal, velocity, acceleration)]
-        self.variables = self._name_variables()
         self.names = self._name_symbols()
-
-    def _name_variables(self) -> dict[str, str]:
-        """Quantity -> its variable in the source; no such variable name begins another one."""
-        e = self.equations
-        symbols = [*self.states, *self.computer_states, *e.inputs, *self.late, *self.sensors]
-        symbols += self.sampled_late
-        symbols += [f(m) for m in self.motions for f in (travel_rate, estimate)]
-        symbols += [*self.sampled_inputs, *self.motion_signals]
-        names = [*map(str, symbols), *self.commands, *e.signals, *e.computer.signals]
-        return {name: f"v{i}_" for i, name in enumerate(dict.fromkeys(names))}
 
     def _name_symbols(self) -> dict[sp.Symbol, str]:
         """Symbol of the equations -> its private name."""
@@ -90,11 +79,11 @@ class Generator:
         names = {p: f"p{i}" for i, p in enumerate(self.parameters)}
         names |= {s: f"i{i}_" for i, s in enumerate(self.inverses.values())}
         names |= {s: f"j{i}_" for i, s in enumerate(e.joined)} | {TIME: "time", PERIOD: "period"}
-        used = set().union(*(x.free_symbols for x in self._expressions()))
-        used |= {*self.states, *self.computer_states, *e.inputs, *e.commands.values(), *self.late}
-        used |= {*self.sensors, *self.sampled_inputs, *self.motion_signals, *self.sampled_late}
-        used |= {f(m) for m in self.motions for f in (travel_rate, estimate)}
-        return names | {s: self.variables[s.name] for s in used if s not in names}
+        read = {*self.states, *self.computer_states, *e.inputs, *e.commands.values(), *self.late}
+        read |= {*self.sensors, *self.sampled_inputs, *self.motion_signals, *self.sampled_late}
+        read |= {f(m) for m in self.motions for f in (travel_rate, estimate)}
+        # "_": no such name begins another one
+        return names | {s: f"v{i}_" for i, s in enumerate(sorted(read - names.keys(), key=str))}
 
     def _computer_expressions(self) -> list[sp.Expr]:
         computer = self.equations.computer

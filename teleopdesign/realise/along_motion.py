@@ -14,10 +14,9 @@ sympy law. Hidden states advance exactly where their rate is affine in them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-import sympy as sp
 
 from ..base.errors import ModelError
 from ..blocks import Body
@@ -32,7 +31,7 @@ from ..effects import (
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from .friction_along import balance_friction, bound_friction, friction_of_acting_force, level_along
-from .ode_scan import ode_scan
+from .scan import coupled_scan
 from .stages_along import (
     COMMAND_LATE,
     INTERACTION_LATE,
@@ -41,7 +40,7 @@ from .stages_along import (
     acting_along,
 )
 from .tangent_columns import LinkParameter, Probe, TangentColumns
-from .traced import Along, Traced, filter_traced, joined_rows
+from .traced import Along, Traced, filter_traced
 
 #: signal of a law -> its name in a motion, for signals that are known from the records alone
 _MEASURED = {
@@ -56,9 +55,6 @@ _MEASURED = {
 
 
 _INERTIAL_FORCE = INERTIA * SIGNALS["acceleration"]
-#: shift of the hand's force, in rows, for a numerical derivative of hidden states. Apart from a gap
-#: the states are linear in the shift: it is far below a row, and far above rounding
-DRIVE_STEP = 1e-3
 
 
 @dataclass(frozen=True)
@@ -198,35 +194,8 @@ def _force(effect: Effect, along: Along, rest: Sequence[Traced] = ()) -> Traced:
     rest: signals that correct the states: force needed without the effect, bounds of friction
     """
     if effect.states:
-        states = ode_scan(effect, along, rest)
-        along = along.with_signals(_with_late_drive(effect, along, rest, states))
+        along = along.with_signals(coupled_scan(effect, along, rest))
     return along.evaluate(effect.expression())
-
-
-def _with_late_drive(
-    effect: Effect, along: Along, rest: Sequence[Traced], states: dict[sp.Symbol, Traced]
-) -> dict[sp.Symbol, Traced]:
-    """The states, with tangents by a delay of the hand's force log, from a finite difference.
-
-    A scan computes no tangents by the signals that drive it.
-    """
-    force = SIGNALS["interaction_force"]
-    if INTERACTION_LATE not in along.columns:
-        return states
-    if not any(rate.has(force) for rate in effect.rates().values()):
-        return states
-    place, step = along.columns.index(INTERACTION_LATE), DRIVE_STEP * along.step
-    signal = along.signals[force]
-    later = replace(signal, value=signal.value + step * signal.tangent[place])
-    none = np.zeros((0, len(signal.value)))
-    bare = replace(along, columns=TangentColumns()).with_signals({force: later})
-    moved = ode_scan(effect, bare, [Traced(r.value, none) for r in rest])
-    changed = {}
-    for symbol, state in states.items():
-        tangent = np.array(state.tangent)
-        tangent[place] += (moved[symbol].value - state.value) / step
-        changed[symbol] = Traced(state.value, tangent, joined_rows(state, more=[place]))
-    return changed
 
 
 def _leading_force(effect: Effect, motion: Motion, along: Along, unexplained: Traced) -> Traced:

@@ -34,9 +34,9 @@ from ..measurement.zero_phase import (
     sections,
     windows,
 )
-from .scan import driven_scan
+from .scan import exact_scan
 from .shape_scan import shape_bounds
-from .traced import Along, Traced, constant, joined_rows
+from .traced import Along, Traced, choose, constant, joined_rows
 
 _DIRECTION, _ACTING = SIGNALS["direction"], SIGNALS["acting_force"]
 
@@ -48,7 +48,8 @@ def level_along(body: Body, along: Along) -> tuple[sp.Expr, Along]:
         if effect.is_absent(along.values):
             level = level.subs(effect.expression(), sp.Abs(SIGNALS["velocity"]))
         else:
-            along = along.with_signals(driven_scan(effect, along))
+            (speed,) = effect.state_symbols().values()
+            along = along.with_signals({speed: exact_scan(effect, along, speed)[0]})
     return level, along
 
 
@@ -86,18 +87,8 @@ def _bound_sliding(motion: Motion, forward: Traced, backward: Traced) -> tuple[T
     ahead, back = motion.direction > 0, motion.direction < 0
     if forward is backward:
         return forward.times(np.where(ahead, 1.0, -1.0)), forward.times(np.where(back, -1.0, 1.0))
-    moving = joined_rows(forward, backward)
-    low = Traced(
-        np.where(ahead, forward.value, -backward.value),
-        np.where(ahead, forward.tangent, -backward.tangent),
-        moving,
-    )
-    high = Traced(
-        np.where(back, -backward.value, forward.value),
-        np.where(back, -backward.tangent, forward.tangent),
-        moving,
-    )
-    return low, high
+    against = backward.times(-1.0)
+    return choose(ahead, forward, against), choose(back, against, forward)
 
 
 def balance_friction(motion: Motion, needed: Traced, low: Traced, high: Traced) -> Traced:
@@ -131,32 +122,6 @@ def friction_of_acting_force(level: sp.Expr, friction: Traced, along: Along) -> 
 STEPS = 8
 
 
-#: four columns of one row. All are read before any is written: else LLVM makes no vectors of them,
-#: for it cannot tell that the arrays do not overlap
-_Four = tuple[float, float, float, float]
-
-
-@compile_and_keep
-def _four(values: Array, i: int, j: int) -> _Four:
-    return values[i, j], values[i, j + 1], values[i, j + 2], values[i, j + 3]
-
-
-@compile_and_keep
-def _set_four(values: Array, i: int, j: int, four: _Four) -> None:
-    values[i, j], values[i, j + 1], values[i, j + 2], values[i, j + 3] = four
-
-
-@compile_and_keep
-def _sum(one: _Four, other: _Four, factor: float = 1.0) -> _Four:
-    """One plus the other times a factor."""
-    return (
-        one[0] + factor * other[0],
-        one[1] + factor * other[1],
-        one[2] + factor * other[2],
-        one[3] + factor * other[3],
-    )
-
-
 @compile_and_keep
 def _balance(
     left: Array,
@@ -173,7 +138,6 @@ def _balance(
     m: samples by which records are continued;  filters: of `sections`
     """
     n, r = left.shape
-    whole = r - r % 4
     (rows, lengths), (sos, steady) = open_rows, filters
     needed = there[0]
     extended = np.zeros((n + 2 * m, r))
@@ -194,17 +158,7 @@ def _balance(
             # where the value is clipped, its tangents are the bound's
             clipped = 2 if value >= there[2, i, 0] else 1 if value <= there[1, i, 0] else 0
             bound = there[clipped]
-            for j in range(0, whole, 4):
-                smoothed = _sum(_four(smooth, i, j), _four(extended, m + k, j))
-                before = _four(ahead, i, j)
-                now = _four(bound, i, j) if clipped else _sum(before, smoothed, length)
-                change = _sum(now, _four(friction, i, j), -1.0)
-                next_ahead = _sum(now, change, carried)
-                _set_four(smooth, i, j, smoothed)
-                _set_four(left, k, j, _sum(before, next_ahead, -1.0))
-                _set_four(ahead, i, j, next_ahead)
-                _set_four(friction, i, j, now)
-            for j in range(whole, r):
+            for j in range(r):
                 smooth[i, j] += extended[m + k, j]
                 one = bound[i, j] if clipped else ahead[i, j] + length * smooth[i, j]
                 one_ahead = one + carried * (one - friction[i, j])
@@ -246,7 +200,7 @@ def balance_within_bounds(
     for window in _list_windows(is_open.tobytes(), bandwidth, sample_time):
         here = window.here
         friction[:, here.start + window.rows] = _friction_at_open_rows(
-            needed.between(here), low.between(here), high.between(here), window
+            needed.at(here), low.at(here), high.at(here), window
         )
     return Traced(friction[0], friction[1:], joined_rows(needed, low, high))
 

@@ -1,43 +1,29 @@
-"""A diagram as an interconnected nonlinear python-control system: interchange and reference.
+"""A diagram as a nonlinear python-control system: interchange and reference.
 
-Bodies and their connections are one system. Each controller and each of its junctions is another
-one; they are connected by the names of their signals. Controllers act in continuous time:
-python-control cannot mix sampled and continuous blocks. With its computer the diagram is one system
-in discrete time (`sampled_iosystem.py`).
+Its laws are those of the simulation with controllers in continuous time, as plain Python; their
+integration is python-control's, which cannot mix sampled and continuous blocks. With its computer
+the diagram is a system in discrete time (`sampled_iosystem.py`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from types import MappingProxyType
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import sympy as sp
 
 from ..base.arguments import check_types
 from ..base.errors import ModelError
 from ..controllers import Controller, Stage, from_control
-from ..diagrams import Control, Diagram, Junction, Kinematics, with_shared_states
-from .equations import Equations, build_equations
-from .laws import PrivateNames, needed_steps, private_names
+from ..diagrams import Diagram, with_shared_states
+from .kernel import first_memory
+from .program import Program, program
 from .sampled_iosystem import sampled_iosystem
-from .signal_symbols import TIME, motion_of, signal, sum_inputs, velocity
 from .simulated import prepare_for_simulation
 
 if TYPE_CHECKING:
     import control
-
-MECHANICS = "mechanics"
-
-
-@dataclass(frozen=True)
-class SymbolValues:
-    """Values of symbols in the equations: parameters, with the user's names, and fixed values."""
-
-    parameters: dict[sp.Symbol, tuple[str, float]]
-    fixed: dict[sp.Symbol, float]
 
 
 @check_types
@@ -76,13 +62,9 @@ def to_iosystem(
     diagram = prepare_for_simulation(diagram, give, prescribed)
     if dt is not None:
         return _build_sampled(diagram, prescribed, delay_order, dt, step)
-    diagram = with_shared_states(_approximate_delays(diagram, delay_order))
-    blocks = tuple(
-        replace(b, analog=False) if isinstance(b, Control) else b for b in diagram.blocks
+    return _build_continuous(
+        with_shared_states(_approximate_delays(diagram, delay_order)), prescribed
     )
-    names = private_names(replace(diagram, blocks=blocks))
-    with names.in_errors():
-        return _join_parts(names, tuple(names.private.get(motion, motion) for motion in prescribed))
 
 
 def _build_sampled(
@@ -130,165 +112,74 @@ def _approximate_delays(
     return diagram
 
 
-def _join_parts(names: PrivateNames, prescribed: tuple[str, ...]) -> control.InterconnectedSystem:
-    """The parts of the diagram, built on private names, connected by the user's names."""
+def _build_continuous(diagram: Diagram, prescribed: tuple[str, ...]) -> control.NonlinearIOSystem:
     from ..base import python_control as control
 
-    diagram = names.diagram
-    parts = build_equations(_replace_code_by_wires(diagram), prescribed=prescribed)
-    if parts.late:
+    made = program(diagram, prescribed=prescribed, sampled=False, jit=False)
+    layout = made.layout
+    if layout.late:
         raise ModelError(
             f"{diagram.name}: actuation_delay has no python-control form: use `simulate` instead"
         )
     values = diagram.values
-    numbers = SymbolValues(
-        {s: (names.public_name(n), values[n]) for s, n in parts.parameters.items()}, {}
-    )
-    every: tuple[Junction | Kinematics, ...] = (*diagram.kinematics, *diagram.junctions)
-    static = [p for p in every if p.output in parts.computer.signals]
-    # python-control has no system without inputs: constant sums are outputs of the mechanics
-    idle = {signal(p.output): float(sum_inputs(p, signal)) for p in static if not p.inputs}
-    numbers.fixed.update(idle)
-    systems = [_mechanics(parts, numbers, idle, names)]
-    for part in diagram.controls:
-        systems.append(_controller(part, numbers, names))
-    systems += [_static(p, names) for p in static if p.inputs]
-    driven = {f"{m}{end}" for m in parts.prescribed for end in ("", "_velocity", "_acceleration")}
-    outside = [s for s in diagram.outside if s not in parts.signals]
-    outside_names = names.public_names(*outside, *sorted(driven))
-    read = {s for system in systems for s in system.input_labels}
-    made = [s for system in systems for s in system.output_labels]
-    labels = [*parts.inputs, *parts.signals, *parts.computer.signals, *parts.rates]
-    names.public_names(*map(str, labels))
-    return control.interconnect(
-        systems,
-        inputs=[s for s in outside_names if s in read],
-        outputs=made,
-        name=names.public_name(diagram.name).replace(" ", "_"),
-        params=dict(numbers.parameters.values()),
-    )
-
-
-def _mechanics(
-    parts: Equations,
-    numbers: SymbolValues,
-    idle: Mapping[sp.Symbol, float],
-    names: PrivateNames,
-) -> Any:
-    moved = [s for m in parts.motions for s in (signal(m), velocity(m))]
-    inputs = [s for s in (*parts.inputs, *parts.commands.values()) if s not in idle]
-    states = sorted(parts.rates, key=lambda state: names.public_name(str(state)))
-    # a signal that the system takes and returns under one name would be wired to itself
-    outputs = {str(s): s for s in moved} | {n: e for n, e in parts.signals.items()}
-    outputs |= {str(s): s for s in idle}
-    rates = [parts.rates[s] for s in states]
-    return _nlsys(
-        MECHANICS, states, inputs, rates, outputs, names, numbers=numbers, joined=parts.joined
-    )
-
-
-def _replace_code_by_wires(diagram: Diagram) -> Diagram:
-    """The diagram with a wire in place of each system known as code; the mechanics are the same."""
-    for part in diagram.controls:
-        if _code(part) is not None:
-            diagram = diagram.with_block(part.name, Controller(()))
-    return diagram
-
-
-def _code(part: Control) -> Any:
-    """The continuous-time system that a controller consists of; None where it is a law."""
-    assert isinstance(part.controller, Controller)
-    stages = part.controller.stages
-    system = stages[0].law.system if len(stages) == 1 and not part.others else None
-    return None if system is None or system.isdtime(strict=True) else system
-
-
-def _controller(part: Control, numbers: SymbolValues, names: PrivateNames) -> Any:
-    if (system := _code(part)) is not None:
-        return _rename_signals(system, part, names)
-    assert isinstance(part.controller, Controller)
-    v = motion_of(names.diagram, part.motion)[1] if part.motion else sp.S(0)
-    signals = {"input": signal(part.input), "velocity": v, "speed": sp.Abs(v), "travel_rate": v}
-    others = tuple(map(signal, part.others))
-    signals |= {"period": sp.S(0)} | ({"command": others[0]} if others else {})
-    equation = part.controller.equation(part.name, signals, others=others, code=True)
-    states = sorted(equation.rates, key=str)
-    rates = [equation.rates[s] for s in states]
-    used = set().union(*(e.free_symbols for e in (equation.output, *rates)))
-    inputs = sorted(
-        used - set(states) - set(numbers.parameters) - set(numbers.fixed) - {TIME}, key=str
-    )
-    outputs = {part.output: equation.output}
-    return _nlsys(
-        names.public_name(part.name), states, inputs, rates, outputs, names, numbers=numbers
-    )
-
-
-def _static(part: Junction | Kinematics, names: PrivateNames) -> Any:
-    """A system without states: a sum or a position."""
-    inputs = [signal(s) for s in part.inputs]
-    value = sum_inputs(part, signal)
-    name = f"sum_{names.public_name(part.output)}"
-    return _nlsys(name, [], inputs, [], {part.output: value}, names, numbers=SymbolValues({}, {}))
-
-
-def _rename_signals(system: Any, part: Control, names: PrivateNames) -> Any:
-    """A python-control system with the block's name and signals."""
-    from ..base import python_control as control
-
+    driven = sorted(set(layout.inputs) - set(diagram.outside))
+    inputs = [name for name in (*diagram.outside, *driven) if name in layout.inputs]
+    laws = _Laws(made, np.array([inputs.index(name) for name in layout.inputs], dtype=int))
+    outputs = [name for name in layout.columns if name not in inputs]
+    shown = [i for i, name in enumerate(layout.columns) if name in outputs]
     return control.nlsys(
-        (lambda t, x, u, params: system.dynamics(t, x, u)) if system.nstates else None,
-        lambda t, x, u, params: system.output(t, x, u),
-        inputs=[names.public_name(part.input)],
-        outputs=[names.public_name(part.output)],
-        states=list(system.state_labels) or None,
-        name=names.public_name(part.name),
+        laws.rates if layout.states else None,
+        lambda t, x, u, params: laws.columns(t, x, u, params)[shown],
+        inputs=inputs,
+        outputs=outputs,
+        states=list(layout.states) or None,
+        params={name: values[name] for name in made.equations.parameters.values()},
+        name=diagram.name.replace(" ", "_"),
     )
 
 
-def _nlsys(
-    name: str,
-    states: Sequence[sp.Symbol],
-    inputs: Sequence[sp.Symbol],
-    rates: Sequence[sp.Expr],
-    outputs: dict[str, sp.Expr],
-    names: PrivateNames,
-    *,
-    numbers: SymbolValues,
-    joined: Mapping[sp.Symbol, sp.Expr] = MappingProxyType({}),
-) -> Any:
-    from ..base import python_control as control
+@dataclass(frozen=True)
+class _Laws:
+    """The laws of a program in continuous time, with the arguments of python-control.
 
-    def function(expressions: Sequence[sp.Expr]) -> Callable[..., Any]:
-        printed = [sp.sympify(e, strict=True).subs(numbers.fixed) for e in expressions]
-        needed = needed_steps(expressions, joined)
-        steps = [(s, e.subs(numbers.fixed)) for s, e in needed.items()]
+    order: place of each input of the program among those of the system
+    """
 
-        def shared(results: list[sp.Expr]) -> tuple[list[Any], list[sp.Expr]]:
-            common, out = sp.cse(results)
-            return [*steps, *common], out
+    made: Program
+    order: np.ndarray
 
-        used = set().union(*(e.free_symbols for e in (*printed, *(e for _, e in steps))))
-        symbols = [s for s in numbers.parameters if s in used]
-        defaults = [numbers.parameters[s] for s in symbols]
-        arguments = [TIME, list(states), list(inputs), symbols]
-        call = sp.lambdify(arguments, printed, "math", cse=shared)
+    def rates(self, *now: Any) -> np.ndarray:
+        """Rates of the states."""
+        at, layout = self.made.functions, self.made.layout
+        moving, hidden = at["RATES_0"], at["RESTS_0"]
+        memory = self._evaluate("rates", (moving, hidden), *now)
+        many = len(layout.exponential)
+        straight = memory[moving : moving + len(layout.states) - many]
+        return np.concatenate([straight, memory[hidden : hidden + many]])
 
-        def values(
-            t: float, x: np.ndarray, u: np.ndarray, params: Mapping[str, float]
-        ) -> np.ndarray:
-            return np.array(call(t, x, u, [params.get(n, v) for n, v in defaults]), dtype=float)
+    def columns(self, *now: Any) -> np.ndarray:
+        """Columns of the layout."""
+        at, first = self.made.functions, self.made.functions["COLUMNS"]
+        memory = self._evaluate("signals", (at["NOW"],), *now)
+        at["record"](now[2][self.order], memory, first, 0)
+        return memory[first : first + len(self.made.layout.columns)]
 
-        # the law of a contact is also evaluated without contact
-        one_sided = any(e.has(sp.Piecewise) for e in (*printed, *(e for _, e in steps)))
-        return np.errstate(all="ignore")(values) if one_sided else values
-
-    return control.nlsys(
-        function(rates) if states else None,
-        function(list(outputs.values())),
-        inputs=[names.public_name(str(s)) for s in inputs],
-        outputs=[names.public_name(s) for s in outputs],
-        states=[names.public_name(str(s)) for s in states] or None,
-        params=dict(numbers.parameters.values()),
-        name=name,
-    )
+    def _evaluate(
+        self,
+        law: str,
+        to: tuple[int, ...],
+        t: float,
+        x: np.ndarray,
+        u: np.ndarray,
+        params: Mapping[str, float],
+    ) -> np.ndarray:
+        """The memory after a law has written its results;  to: first rows of these."""
+        at = self.made.functions
+        parameters = np.array([params[name] for name in self.made.layout.parameters], dtype=float)
+        memory = first_memory(self.made, 1, parameters, {})
+        memory[: len(x)] = x  # the first rows
+        with np.errstate(all="ignore"):  # the law of a contact is also evaluated without contact
+            at["find_inverses"](memory, 0)
+            place = (t, at["STATES"], at["BRISTLES"], u[self.order], at["LATE"])
+            at[law](*place, memory, *to, 0)
+        return memory

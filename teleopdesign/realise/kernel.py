@@ -1,12 +1,4 @@
-"""Run the loop of a structure (`program.py`) for values, inputs, a grid of steps and samples.
-
-A step that is too long is detected and reported, by two measures that need no second run:
-
-- steps per radian of the fastest oscillation or decay of the equations at rest, friction stuck;
-- where a bristle is reloaded after a reversal: that takes the time sqrt(2 lambda / a), lambda its
-  length and a the acceleration. One step changes the bristle's decay rate by h a / lambda, so
-  N = sqrt(2 / (h * change)) steps fall into that time.
-"""
+"""Run the loop of a structure (`program.py`) for values, inputs, a grid of steps and samples."""
 
 from __future__ import annotations
 
@@ -19,23 +11,11 @@ from typing import NamedTuple
 import numpy as np
 import sympy as sp
 
-from ..base.errors import ModelError
 from ..controllers import SIGNALS, laws_that_declare
 from .program import CompiledLoop, Program
 
-#: largest product of the step h and the fastest rate of the equations at rest: 0.3 is 20 steps in a
-#: period
-FASTEST = 0.3
-#: 1/s: a larger rate is a jump and no dynamics: a step of 1 N within 1 nm/s on 1 kg has 1e9
-JUMP = 1e7
 #: m, m/s, ...: size of states near rest, below every smoothing velocity and bristle length
 _SMALL = 1e-9
-#: largest product of the step h and the change of a bristle's decay rate in a step: 0.02 is 10
-#: steps in a reload of the bristle
-RELOAD = 0.02
-#: divisors of a step that is too long. There are few, so that simulations side by side that need
-#: similar steps share a grid; above 200 the model is wrong
-FINER = (1, 2, 3, 4, 5, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 200)
 
 
 @dataclass(frozen=True)
@@ -230,35 +210,3 @@ def fastest_rates(jacobian: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     sizes = np.abs(rates)
     lane, k = np.arange(len(jacobian)), np.argmax(sizes, axis=1)
     return sizes[lane, k] * usable, np.argmax(np.abs(vectors[lane, :, k]), axis=1)
-
-
-def refine_factor(measure: float, bound: float, power: float) -> int:
-    """Factor by which to divide a step whose measure exceeds a bound.
-
-    power: of the step in the measure
-    """
-    return math.ceil(math.pow(measure / bound, 1 / power) * 1.0001)
-
-
-def worst_reload(inner: int, least: int) -> float:
-    """Measure of the reload above which no step that `FINER` allows is short enough.
-
-    inner: steps per sample of the run;  least: steps per sample of the requested grid
-    """
-    return RELOAD * (FINER[-1] * least / inner) ** 2
-
-
-def round_up_steps(needed: int, least: int) -> int | None:
-    """Steps per sample on the coarsest grid of `FINER` with `needed` or more; None: no such grid.
-
-    least: steps per sample of the requested grid
-    """
-    return next((least * f for f in FINER if least * f >= needed), None)
-
-
-def long_step_error(step: float, use: float, why: str) -> ModelError:
-    """The error for a step that is refused.
-
-    step, use: s, the refused step, and a step that can be used;  why: reason, in words
-    """
-    return ModelError(f"step {step * 1e3:.4g} ms {why}: use {use * 1e3:.3g} ms or less")

@@ -18,8 +18,9 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -27,18 +28,7 @@ from sympy.printing.pycode import PythonCodePrinter
 
 from ..base.errors import ModelError, quote
 from ..controllers import is_call
-from ..diagrams import (
-    Attached,
-    Block,
-    Control,
-    Diagram,
-    Junction,
-    Kinematics,
-    Linked,
-    Moving,
-    position_symbol,
-)
-from ..diagrams.junctions import Weight
+from ..diagrams import Diagram, position_symbol
 
 #: symbol -> its private name in the source
 Names = Mapping[sp.Symbol, str]
@@ -256,49 +246,40 @@ class PrivateNames:
             raise type(error)(text) from None
 
 
+#: fields of the parts of a diagram that hold no names of signals
+_NO_SIGNALS = frozenset({"name", "axis", "role", "entry"})
+
+
 def private_names(diagram: Diagram) -> PrivateNames:
     """The diagram with private names of its signals and blocks; values and wiring are the same."""
     signals = {s: f"s{i:03d}_" for i, s in enumerate(diagram.signals)}
     blocks = {b.name: f"b{i:03d}_" for i, b in enumerate(diagram.blocks)}
     symbols = {position_symbol(s): position_symbol(p) for s, p in signals.items()}
 
-    def renamed(weight: Weight) -> Weight:
-        return weight.xreplace(symbols) if isinstance(weight, sp.Expr) else weight
+    def renamed(content: Any) -> Any:
+        if isinstance(content, str):
+            return signals.get(content, "")  # blank: none
+        if isinstance(content, tuple):
+            return tuple(map(renamed, content))
+        if isinstance(content, Mapping):
+            return {signals[s]: renamed(x) for s, x in content.items()}
+        return content.xreplace(symbols) if isinstance(content, sp.Expr) else content
+
+    def part(one: Any, **more: str) -> Any:
+        named = {f.name for f in fields(one)} - _NO_SIGNALS
+        return replace(one, **{n: renamed(getattr(one, n)) for n in named}, **more)
 
     inner = Diagram(
         _TITLE,
-        tuple(_rename_block(b, blocks[b.name], signals) for b in diagram.blocks),
-        tuple(
-            Junction(signals[j.output], {signals[s]: renamed(w) for s, w in j.terms.items()})
-            for j in diagram.junctions
-        ),
+        tuple(part(b, name=blocks[b.name]) for b in diagram.blocks),
+        tuple(map(part, diagram.junctions)),
         {signals[s]: quantity for s, quantity in diagram.outside.items()},
-        tuple(signals[s] for s in diagram.measured),
+        renamed(diagram.measured),
         {},
-        tuple(
-            Kinematics(signals[k.output], sp.sympify(renamed(k.expression), strict=True), k.axis)
-            for k in diagram.kinematics
-        ),
+        tuple(map(part, diagram.kinematics)),
         {signals[s]: x for s, x in diagram.pose.items() if s in signals},
     )
     public = {_TITLE: diagram.name} | {
         p: n for table in (signals, blocks) for n, p in table.items()
     }
     return PrivateNames(inner, MappingProxyType(public), MappingProxyType(signals))
-
-
-def _rename_block(block: Block, name: str, signals: Mapping[str, str]) -> Block:
-    if isinstance(block, Moving):
-        loads = {signals[s]: sign for s, sign in block.loads.items()}
-        driver = signals.get(block.driver, "")
-        motion, command = signals[block.motion], signals[block.command]
-        return Moving(name, block.body, motion, command, loads, driver)
-    if isinstance(block, Attached):
-        return replace(block, name=name, motion=signals[block.motion], force=signals[block.force])
-    if isinstance(block, Linked):
-        motions, forces = (tuple(signals[s] for s in x) for x in (block.motions, block.forces))
-        return replace(block, name=name, motions=motions, forces=forces)
-    assert isinstance(block, Control)
-    source, made, along = signals[block.input], signals[block.output], signals.get(block.motion, "")
-    others = tuple(signals[s] for s in block.others)
-    return replace(block, name=name, input=source, output=made, motion=along, others=others)

@@ -15,9 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from ..blocks import Body, MatrixImpedance
-from ..controllers import ControlLaw, Controller
-from ..diagrams import Attached, Control, Diagram, Kinematics, Moving
-from ..effects import Effect
+from ..controllers import Controller
+from ..diagrams import Diagram
 from ._codegen import Generator
 from .compiled import PHI, WEIGHTS, compiled_module
 from .equations import Equations, Layout, build_equations
@@ -52,9 +51,9 @@ class Program:
     has_code: bool = False
 
 
+#: programs by structure on private names, and with the user's names
 _programs: dict[Any, Program] = {}
-#: programs by structure with the user's names, each with the diagram for which it was made
-_named: dict[Any, tuple[Diagram, Program]] = {}
+_named: dict[Any, Program] = {}
 _MOST_NAMED = 256
 
 
@@ -71,13 +70,12 @@ def program(
     observer: order of the velocity observer of the computer; 0: a filtered difference
     jit: False: the same generated source runs as plain Python, some hundred times slower
     """
-    named = (_named_structure(diagram), prescribed, sampled, observer, jit)
+    named = (_structure(diagram), prescribed, sampled, observer, jit)
     if named not in _named:
-        made = _program(diagram, prescribed, sampled, observer, jit)
         if len(_named) >= _MOST_NAMED:
             _named.clear()
-        _named[named] = diagram, made
-    return _named[named][1]
+        _named[named] = _program(diagram, prescribed, sampled, observer, jit)
+    return _named[named]
 
 
 def _program(
@@ -136,61 +134,29 @@ def _execute(source: str) -> dict[str, Any]:
     return module
 
 
-def _named_structure(diagram: Diagram) -> tuple[Any, ...]:
-    """Structure with names, for diagrams that differ in values only.
-
-    Wiring and laws are compared by identity: the diagram that is kept with the program keeps them
-    alive.
-    """
-    out: list[Any] = [tuple(diagram.outside.items()), diagram.measured]
-    out.append((diagram.name, *map(id, diagram.junctions), *map(id, diagram.kinematics)))
-    out += diagram.pose.items()
-    for part in diagram.blocks:
-        if isinstance(part, Control):
-            block: Any = part.controller
-            wires: tuple[Any, ...] = (*part.inputs, part.output, part.motion, part.analog)
-        elif isinstance(part, Moving):
-            block = part.body
-            wires = (part.motion, part.command, part.driver, *part.loads.items())
-        elif isinstance(part, Attached):
-            block, wires = part.body, (part.motion, part.force, part.sign)
-        else:
-            block, wires = part.body, (part.motions, part.forces, part.sign)
-        laws: tuple[Any, ...]
-        if isinstance(block, Controller):
-            laws = tuple((stage.name, id(stage.law)) for stage in block.stages)
-        elif isinstance(block, Body):
-            laws = tuple(map(id, block.effects))
-        else:
-            laws = tuple(block.parameters)
-        out.append((type(part), part.name, wires, laws))
-    return tuple(out)
-
-
 def _structure(diagram: Diagram) -> tuple[Any, ...]:
-    """All of a diagram that its equations depend on, without values; laws compare by identity."""
-    out: list[Any] = [tuple(diagram.outside.items()), diagram.measured]
-    for part in diagram.parts:
-        wires = (part.name, part.inputs, part.outputs)
-        terms = tuple(getattr(part, "terms", getattr(part, "loads", {})).items())
-        block = getattr(part, "controller", getattr(part, "body", None))
-        laws: tuple[Any, ...] = ()
-        if isinstance(block, Controller):
-            laws = tuple((g.name, g.law.law, _states(g.law)) for g in block.stages)
-        elif isinstance(block, Body):
-            laws = tuple((e.name, e.role, e.law, _states(e)) for e in block.effects)
-        elif isinstance(block, MatrixImpedance):
-            laws = tuple(block.parameters)
-        elif isinstance(part, Kinematics):
-            laws = (part.expression,)
-        sign = getattr(part, "sign", 1)
-        motion = (part.motion, part.analog) if isinstance(part, Control) else ()
-        out.append((type(part).__name__, wires, terms, sign, motion, laws))
-    return tuple(out)
+    """All of a diagram but its values."""
+    parts = (*diagram.blocks, *diagram.junctions, *diagram.kinematics)
+    return (
+        diagram.name,
+        tuple(diagram.outside.items()),
+        diagram.measured,
+        *(
+            (type(part), *(_without_values(getattr(part, f.name)) for f in fields(part)))
+            for part in parts
+        ),
+    )
 
 
-def _states(law: Effect | ControlLaw) -> tuple[Any, ...]:
-    return tuple(law.states.items())
+def _without_values(content: Any) -> Any:
+    """What a field of a part holds, to be compared; of a body or controller its laws."""
+    if isinstance(content, Controller):
+        return tuple((stage.name, stage.law) for stage in content.stages)
+    if isinstance(content, Body):
+        return content.effects
+    if isinstance(content, MatrixImpedance):
+        return tuple(content.parameters)
+    return tuple(content.items()) if isinstance(content, Mapping) else content
 
 
 _HEAD = """from math import *

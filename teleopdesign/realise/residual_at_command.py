@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -32,7 +31,8 @@ from ..measurement.motion import Motion
 from .along_motion import Residual, measured_along, residual_along, with_loads
 from .friction_along import level_along
 from .stages_along import ActuationStage, stages_along
-from .traced import Along, for_numpy, numpy_function, slope
+from .tangent_columns import TangentColumns
+from .traced import Along, Traced
 
 #: a sample is blind if the gain of the law is below this part of its largest gain: a command that
 #: is ten times as uncertain as elsewhere is not reported. With a larger part, a ripple or a soft
@@ -107,36 +107,15 @@ def _effects_that_take(body: Body, signal: sp.Symbol) -> list[Effect]:
     return [e for e in taking if any(x.has(signal) for x in (e.expression(), *e.rates().values()))]
 
 
-@lru_cache(maxsize=256)
-def _slopes(
-    effect: Effect, law: sp.Expr, signals: tuple[sp.Symbol, ...]
-) -> tuple[list[sp.Expr], list[sp.Expr], list[list[sp.Expr]], list[sp.Expr]]:
-    """Derivatives of a law by signals and states, and of its rates by states and one signal."""
-    states, rates = list(effect.state_symbols().values()), list(effect.rates().values())
-    return (
-        [slope(law, s) for s in signals],
-        [slope(law, z) for z in states],
-        [[slope(rate, z) for z in states] for rate in rates],
-        [slope(rate, signals[0]) for rate in rates],
-    )
-
-
-@lru_cache(maxsize=1024)
-def _function(expression: sp.Expr) -> tuple[tuple[sp.Symbol, ...], Any]:
-    symbols = tuple(sorted(expression.free_symbols, key=str))
-    return symbols, numpy_function(symbols, for_numpy(expression))
-
-
-def _evaluate(expression: sp.Expr, along: Along, n: int) -> Array:
-    """An expression along the motion (n,); a hidden state without a signal is zero."""
-    signals, values = along.signals, along.values
-    symbols, call = _function(expression)
-    # all as arrays: the printed code stacks the arguments of Max, which needs equal shapes
-    numbers = [
-        signals[s].value if s in signals else np.full(n, values.get(s, 0.0)) for s in symbols
-    ]
-    with np.errstate(all="ignore"):
-        return np.asarray(np.broadcast_to(np.asarray(call(*numbers), dtype=float), (n,)))
+def _slopes(law: sp.Expr, by: Sequence[sp.Symbol], along: Along) -> Array:
+    """Derivatives of a law by k signals along the motion (k, n); one without samples is zero."""
+    n, units = len(along), np.eye(len(by))[:, :, None]
+    signals = {}
+    for symbol, unit in zip(by, units, strict=True):
+        value = along.signals[symbol].value if symbol in along.signals else np.zeros(n)
+        signals[symbol] = Traced(value, np.repeat(unit, n, axis=1))
+    at = replace(along, columns=TangentColumns(by)).with_signals(signals)
+    return np.asarray(at.evaluate(law).tangent)
 
 
 def _trace_influence(
@@ -150,24 +129,23 @@ def _trace_influence(
     parts: int = 1,
 ) -> _Way:
     """The transfer from a signal through a law, with its hidden states and delayed copies."""
-    n = len(motion.time)
+    states, rates = list(effect.state_symbols().values()), list(effect.rates().values())
 
-    def at_rows(expression: sp.Expr) -> Array:
-        whole = _evaluate(expression, along, n * parts)
-        return np.asarray(whole.reshape(n, parts).mean(axis=1))
+    def at_rows(law: sp.Expr, *by: sp.Symbol) -> Array:
+        whole = _slopes(law, by, along)
+        return np.asarray(whole.reshape(len(by), len(motion.time), parts).mean(axis=2))
 
-    direct, by_state, between, driven = _slopes(effect, law, (signal, *delays))
-    now = np.array([at_rows(e) for e in direct])
+    both = at_rows(law, signal, *delays, *states)
+    now, out = both[: 1 + len(delays)], both[1 + len(delays) :]
     late = np.array([0.0, *delays.values()])
     gain = now.sum(axis=0)
     omega = 2.0 * np.pi * motion.spectrum.frequency
     over = (now.mean(axis=1)[:, None] * np.exp(-1j * late[:, None] * omega)).sum(axis=0)
-    if by_state:
-        out = np.array([at_rows(e) for e in by_state])
-        rates = np.array([[at_rows(e) for e in row] for row in between])
-        into = np.array([at_rows(e) for e in driven])
-        gain = gain - np.einsum("in,ni->n", out, _solve_systems(np.moveaxis(rates, 2, 0), into.T))
-        frozen = 1j * omega[:, None, None] * np.eye(len(by_state)) - rates.mean(axis=2)
+    if states:
+        along_rates = np.array([at_rows(rate, *states, signal) for rate in rates])
+        between, into = along_rates[:, :-1], along_rates[:, -1]
+        gain = gain - np.einsum("in,ni->n", out, _solve_systems(np.moveaxis(between, 2, 0), into.T))
+        frozen = 1j * omega[:, None, None] * np.eye(len(states)) - between.mean(axis=2)
         reached = _solve_systems(frozen, np.broadcast_to(into.mean(axis=1), frozen.shape[:2]))
         over = over + reached @ out.mean(axis=1)
     delay = float(now.mean(axis=1) @ late / over[0].real) if over[0].real and late.any() else 0.0
@@ -201,11 +179,10 @@ def _net(body: Body, motion: Motion, along: Along, signal: sp.Symbol) -> _Way:
     carries = body.level().has(_CARRIED) and body.carried_force().has(signal)
     if carries or body.level().has(signal):
         level, with_speeds = level_along(body, along)
-        by_signal = slope(level, signal)
+        by_signal, by_carried = _slopes(level, (signal, _CARRIED), with_speeds)
         if carries:
-            by_signal += slope(level, _CARRIED) * slope(body.carried_force(), signal)
-        made_by_it = _evaluate(by_signal, with_speeds, len(gain))
-        gain = gain - along.signals[SIGNALS["direction"]].value * made_by_it
+            by_signal = by_signal + by_carried * _slopes(body.carried_force(), (signal,), along)[0]
+        gain = gain - along.signals[SIGNALS["direction"]].value * by_signal
     return _Way(gain, over, 0.0)
 
 

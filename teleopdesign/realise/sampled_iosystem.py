@@ -15,18 +15,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.errors import GrowsWithoutBound, ModelError
+from ..base.errors import ModelError
 from ..diagrams import Diagram
-from .kernel import FASTEST, RELOAD, fastest_rate, first_memory, long_step_error, refine_factor
+from .kernel import fastest_rate, first_memory
 from .program import Program, program
 from .signal_symbols import delay_in_samples
 from .simulated import realise_in_computer
+from .steps import StepLadder
 
 if TYPE_CHECKING:
     import control
 
-#: largest divisor of an inner step, for bristles or fast oscillations
-_MOST_DIVIDED = 200
 #: most samples of a delay block, each of them a state: 10 s at 1 kHz, more than any channel has.
 #: The memory of a linearisation grows with the square of this number
 _MOST_KEPT = 10_000
@@ -94,7 +93,7 @@ class _Sample:
 
     def __init__(self, made: Program, dt: float, step: float, late: tuple[float, ...]) -> None:
         self.made, self.dt, self.late = made, dt, np.array(late, dtype=float)
-        self.least = max(math.ceil(dt / step * (1 - 1e-9)), 1)
+        self.ladder = StepLadder(step, dt, max(math.ceil(dt / step * (1 - 1e-9)), 1))
         layout, at = made.layout, made.functions
         self.slots = int(max(late, default=0.0)) + 2
         motions = [f"{name}_read" for name in self._motions()]
@@ -134,29 +133,15 @@ class _Sample:
         self, t: float, x: np.ndarray, inputs: Mapping[str, float], values: tuple[float, ...]
     ) -> _Answer:
         if values not in self.inner:
-            self.inner[values] = self._first_inner(values)
+            named = dict(zip(self.made.layout.parameters, values, strict=True))
+            self.inner[values] = self.ladder.first(*fastest_rate(self.made, named))
         inner = self.inner[values]
         while True:
             answer, worst = self._advance(t, x, inputs, values, inner)
-            if not np.isfinite(answer.after).all():
-                raise GrowsWithoutBound(f"to_iosystem: the state is no finite number at {t:g} s")
-            if worst <= RELOAD:
+            finer = self.ladder.next(inner, worst, bool(np.isfinite(answer.after).all()))
+            if finer == inner:
                 return answer
-            inner *= refine_factor(worst, RELOAD, 2)
-            self._check(inner)
-
-    def _first_inner(self, values: tuple[float, ...]) -> int:
-        """Number of inner steps that resolve the fastest rate at rest."""
-        named = dict(zip(self.made.layout.parameters, values, strict=True))
-        rate, _ = fastest_rate(self.made, named)
-        measure = rate * self.dt / self.least
-        inner = self.least * (refine_factor(measure, FASTEST, 1) if measure > FASTEST else 1)
-        self._check(inner)
-        return inner
-
-    def _check(self, inner: int) -> None:
-        if inner > _MOST_DIVIDED * self.least:
-            raise long_step_error(self.dt / self.least, self.dt / inner, "is far too long")
+            inner = finer
 
     def _advance(
         self,

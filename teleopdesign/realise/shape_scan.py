@@ -16,75 +16,26 @@ import numpy as np
 import sympy as sp
 
 from ..effects import SIGNALS, Effect
+from ..measurement.filtering import Array
 from ..measurement.motion import Motion
-from .compiled import compile_source
-from .scan import SampleLoop, Scan, columns_of, contiguous, signals_in, write_tangent
-from .traced import Along, Traced, in_rows, joined_rows
+from ._scan_source import ROW_VELOCITY
+from .scan import exact_scan
+from .traced import Along, Traced, choose, constant, joined_rows
 
 #: periods of the bandwidth whose mean tells the force at the start: half a period is the shortest
 #: change that the band shows. Longer: states start where they are later
 AT_START = 0.5
-
-
-def _slope_by_position(effect: Effect) -> sp.Expr:
-    """Derivative of the force by the position, from the states that follow the motion."""
-    law, velocity = effect.expression(), SIGNALS["velocity"]
-    rates = [sp.diff(rate, velocity) for rate, _ in effect.stops().values()] or [sp.S(1)]
-    pairs = zip(effect.state_symbols().values(), rates, strict=True)
-    return sp.Add(*(sp.diff(law, z) * rate for z, rate in pairs))
+_VELOCITY, _LEVEL = SIGNALS["velocity"], SIGNALS["level"]
 
 
 @lru_cache(maxsize=64)
-def _source_of_shape(effect: Effect) -> tuple[str, tuple[str, ...]]:
-    """Source of the bounds of a shape's friction, and names of signals that are its arguments."""
-    further = tuple(n for n in signals_in(effect) if n not in ("velocity", "level"))
-    scan, law = Scan(effect, "level", further), effect.expression()
-    slope = _slope_by_position(effect)
-    by_state = {z: f"dz[{i}, j]" for i, z in enumerate(effect.state_symbols().values())}
-    (slopes_f, df), (slopes_g, dg) = (
-        write_tangent(what, one, by, scan.names)
-        for what, one, by in (("f", law, by_state | scan.by), ("g", slope, scan.by))
-    )
-    # states follow the travel of readings, the force the smoothed velocity, so that no travel of
-    # a bristle is lost. 1e-12: a rate may divide by the level, which is far larger or zero
-    loop = SampleLoop(
-        arguments=(
-            *("half_step", "position", "velocity", "direction"),
-            *("forward", "dforward", "backward", "dbackward", "low", "dlow", "high", "dhigh"),
-        ),
-        start=[
-            "u_velocity = 1.0",
-            "u_level = max(forward[0] if part >= 0.0 else backward[0], 1e-12)",
-            *scan.read("0"),
-        ],
-        row=[
-            "u_velocity = (position[k] - position[max(k - 1, 0)]) / h",
-            "ahead = u_velocity >= 0.0",
-            "u_level = max(forward[k] if ahead else backward[k], 1e-12)",
-            *scan.read("k"),
-        ],
-        at_start="dforward[j, 0] if part >= 0.0 else dbackward[j, 0]",
-        at_row="dforward[j, k] if ahead else dbackward[j, k]",
-        each=[
-            "u_velocity = velocity[k]",
-            *scan.values({"force": law, "slope": slope}),
-            *slopes_f,
-            *slopes_g,
-            # where the reading shows no motion, the position is uncertain by half a step
-            "free = half_step if direction[k] == 0 else 0.0",
-            "below = force - free * abs(slope)",
-            "above = force + free * abs(slope)",
-            "low[k] = below if direction[k] != 0 else max(below, -backward[k])",
-            "high[k] = above if direction[k] != 0 else min(above, forward[k])",
-        ],
-        column=[
-            f"df = {df}",
-            f"dg = free * copysign(1.0, slope) * ({dg})",
-            "dlow[j, k] = df - dg if low[k] == below else -dbackward[j, k]",
-            "dhigh[j, k] = df + dg if high[k] == above else dforward[j, k]",
-        ],
-    )
-    return scan.source(loop), further
+def _force_and_stiffness(effect: Effect) -> tuple[sp.Expr, sp.Expr]:
+    """The force, and its derivative by the position, from the states that follow the motion."""
+    law = effect.expression()
+    rates = [sp.diff(rate, _VELOCITY) for rate, _ in effect.stops().values()] or [sp.S(1)]
+    pairs = zip(effect.state_symbols().values(), rates, strict=True)
+    stiffness = sp.Add(*(sp.diff(law, z) * rate for z, rate in pairs))
+    return law.xreplace({_VELOCITY: ROW_VELOCITY}), stiffness.xreplace({_VELOCITY: ROW_VELOCITY})
 
 
 def shape_bounds(
@@ -104,35 +55,46 @@ def shape_bounds(
     The bounds coincide where the motion is certain. Elsewhere they lie to either side by the force
     that half a step of the position causes in the bristle, and never exceed the level.
     """
-    source, used = _source_of_shape(effect)
-    scan = compile_source(source, "scan")
-    places, parameters = columns_of(effect, along.columns), len(along.columns)
     part = _part_at_start(needed, forward, backward, motion)
-    moving = joined_rows(forward, backward, part, more=places[places >= 0].tolist())
-    rows = list(range(parameters) if moving is None else moving)
-    low, high = np.empty_like(forward.value), np.empty_like(forward.value)
-    dlow, dhigh = np.empty((len(rows), len(low))), np.empty((len(rows), len(low)))
-    scan(
-        along.step,
-        np.where(places >= 0, np.searchsorted(rows, places), -1),
-        float(part.value[0]),
-        part.tangent[rows, 0].copy(),
-        *[along.values[s] for s in effect.symbols().values()],
-        *[along.signals[SIGNALS[n]].value for n in used],
-        0.5 * motion.step,
-        motion.position,
-        motion.velocity,
-        motion.direction,
-        forward.value,
-        contiguous(forward.tangent[rows]),
-        backward.value,
-        contiguous(backward.tangent[rows]),
-        low,
-        dlow,
-        high,
-        dhigh,
+    # states follow the travel of readings, the force the smoothed velocity, so that no travel of
+    # a bristle is lost
+    travel = np.diff(motion.position, prepend=motion.position[0]) / along.step
+    level = _positive(choose(travel >= 0.0, forward, backward))
+    at_start = {
+        _VELOCITY: constant(np.ones(1), len(along.columns)),
+        _LEVEL: _positive(forward if part.value[0] >= 0.0 else backward),
+    }
+    followed = {ROW_VELOCITY: along.signals[_VELOCITY], _VELOCITY: along.constant(travel)}
+    force, stiffness = exact_scan(
+        effect,
+        along.with_signals({**followed, _LEVEL: level}),
+        *_force_and_stiffness(effect),
+        part=part,
+        at_start=at_start,
     )
-    return in_rows(low, dlow, rows, parameters), in_rows(high, dhigh, rows, parameters)
+    still = np.flatnonzero(motion.direction == 0)
+    if not len(still):
+        return force, force
+    # where the reading shows no motion, the position is uncertain by half a step
+    here, slope = force.rows(still), stiffness.rows(still)
+    open_by = 0.5 * motion.step * np.sign(slope[0]) * slope
+    least, most = -backward.rows(still), forward.rows(still)
+    low, high = here - open_by, here + open_by
+    low = np.where(low[0] < least[0], least, low)
+    high = np.where(high[0] > most[0], most, high)
+    moving = joined_rows(force, forward, backward)
+
+    def bound(there: Array) -> Traced:
+        value, tangent = force.value.copy(), np.array(force.tangent)
+        value[still], tangent[:, still] = there[0], there[1:]
+        return Traced(value, tangent, moving)
+
+    return bound(low), bound(high)
+
+
+def _positive(level: Traced) -> Traced:
+    """The level, above 0: a rate may divide by the level, which is far larger or zero."""
+    return Traced(np.maximum(level.value, 1e-12), level.tangent, level.moving)
 
 
 def _part_at_start(needed: Traced, forward: Traced, backward: Traced, motion: Motion) -> Traced:

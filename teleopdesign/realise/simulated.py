@@ -18,7 +18,7 @@ from ..controllers import Controller, require_exact_steps
 from ..diagrams import Attached, Block, Control, Diagram, Linked, Moving, with_shared_states
 from ..effects import EFFECTS, SIGNALS, Effect
 from .tips import led_motion, linear_tips, with_tips
-from .traced import for_numpy
+from .traced import numpy_function
 
 #: m/s or rad/s: a speed above which no friction level changes
 _FAST = 1e6
@@ -161,9 +161,9 @@ def _level_in_motion(effects: tuple[Effect, ...]) -> Any:
     level, lagging = friction_level(effects), compose_equation(effects).rates
     signals = [SIGNALS[n] for n in ("position", "velocity", "direction")]
     fixed = dict.fromkeys(set(SIGNALS.values()) - set(signals), sp.S(0))
-    law = for_numpy(level.xreplace(fixed | dict.fromkeys(lagging, sp.Abs(SIGNALS["velocity"]))))
+    law = level.xreplace(fixed | dict.fromkeys(lagging, sp.Abs(SIGNALS["velocity"])))
     varies, symbols = level.has(*signals, *lagging), body_symbols(effects).values()
-    return sp.lambdify([*signals, *symbols], law, "numpy") if varies else None
+    return numpy_function([*signals, *symbols], law) if varies else None
 
 
 def _typical_load(body: Body) -> float:
@@ -213,7 +213,7 @@ def least_levels(body: Body, value: Callable[[sp.Symbol], Any]) -> dict[str, Any
         now = {SIGNALS["direction"]: direction}
         at = [equation.level.subs(at_rest | now | {SIGNALS["velocity"]: v}) for v in speeds]
         symbols = sorted(set().union(*(x.free_symbols for x in at)), key=str)
-        call = sp.lambdify(symbols, [for_numpy(x) for x in at], "numpy")
+        call = numpy_function(symbols, at)
         # numpy combines conditions of a law only if all arrays have the same length
         levels[way] = np.minimum(*call(*np.broadcast_arrays(*map(value, symbols))))
     return levels

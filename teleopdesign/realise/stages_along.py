@@ -17,7 +17,7 @@ from ..blocks import Body
 from ..effects import SIGNALS, Effect, delayed
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
-from .scan import stage_scan
+from .scan import exact_scan
 from .traced import Along, Traced, filter_traced, joined_rows
 
 #: signals of the motion that a stage may use
@@ -101,7 +101,8 @@ def _stage(effect: Effect, along: Along, parts: int) -> ActuationStage:
     delays = {symbol: max(_value_at(delay, along.values), 0.0) for symbol, delay in calls}
     along = along.with_signals({symbol: _shift(along, delay) for symbol, delay in calls})
     if effect.states:
-        along = along.with_signals(stage_scan(effect, along))
+        (state,) = effect.state_symbols().values()
+        along = along.with_signals({state: exact_scan(effect, along)[0]})
     return ActuationStage(effect, law, delays, along.signals, parts, along.evaluate(law))
 
 

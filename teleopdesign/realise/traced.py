@@ -34,9 +34,9 @@ class Traced:
         """Value and tangents as rows of one array (1 + p, n);  at: selected samples."""
         return np.vstack([self.value[at][None], self.tangent[:, at]])
 
-    def between(self, at: slice) -> Traced:
+    def at(self, samples: slice) -> Traced:
         """The signal at a slice of samples."""
-        return Traced(self.value[at], self.tangent[:, at], self.moving)
+        return Traced(self.value[samples], self.tangent[:, samples], self.moving)
 
     @property
     def is_constant(self) -> bool:
@@ -73,8 +73,8 @@ class Traced:
                 tangent[j] -= other.tangent[j]
         return Traced(value, tangent, joined_rows(self, *changing))
 
-    def times(self, factor: Array) -> Traced:
-        """The signal times a factor at each sample (n,)."""
+    def times(self, factor: Array | float) -> Traced:
+        """The signal times a factor, (n,) or the same at each sample."""
         if self.is_constant or self.moving is None:
             tangent = self.tangent if self.is_constant else self.tangent * factor
             return Traced(self.value * factor, tangent, self.moving)
@@ -106,6 +106,15 @@ def in_rows(value: Array, tangent: Array, rows: Collection[int], parameters: int
     whole = np.zeros((parameters, len(value)))
     whole[list(rows)] = tangent
     return Traced(value, whole, tuple(rows))
+
+
+def choose(condition: NDArray[np.bool_], one: Traced, other: Traced) -> Traced:
+    """One signal at the samples where the condition (n,) holds, the other elsewhere."""
+    if one is other:
+        return one
+    value = np.where(condition, one.value, other.value)
+    tangent = np.where(condition, one.tangent, other.tangent)
+    return Traced(value, tangent, joined_rows(one, other))
 
 
 def constant(value: Array, parameters: int) -> Traced:
@@ -149,6 +158,10 @@ class Along:
         if not isinstance(self.columns, TangentColumns):
             object.__setattr__(self, "columns", TangentColumns(self.columns))
 
+    def __len__(self) -> int:
+        """Number of samples."""
+        return len(next(iter(self.signals.values())).value)
+
     def with_signals(self, signals: Mapping[sp.Symbol, Traced]) -> Along:
         """The same with additional or other signals."""
         return Along({**self.signals, **signals}, self.values, self.columns, self.step)
@@ -159,7 +172,7 @@ class Along:
 
     def evaluate(self, law: sp.Expr) -> Traced:
         """A law on these signals and values, with tangents by `TRACED` and hidden states."""
-        return _law_beside(law, tuple(s for s in self.signals if s not in _KNOWN))(self)
+        return _law_of(law, tuple(s for s in self.signals if s not in _KNOWN))(self)
 
     def present(self, effects: Sequence[Effect], role: Role) -> list[Effect]:
         """Effects of a role, without absent effects with states: their laws may divide by 0."""
@@ -196,7 +209,7 @@ class NumericLaw:
     def __call__(self, along: Along) -> Traced:
         signals, values, columns = along.signals, along.values, along.columns
         arrays = [signals[s].value for s in self.signals]
-        n = len(next(iter(signals.values())).value)
+        n = len(along)
         with np.errstate(under="ignore", over="ignore", divide="ignore", invalid="ignore"):
             out = self.call(*arrays, *self._numbers(values, n))
         value = np.empty(n)
@@ -250,46 +263,39 @@ def slope(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
     return sp.diff(expression, symbol).replace(sp.DiracDelta, lambda *_: sp.S(0))
 
 
-def for_numpy(expression: sp.Expr) -> sp.Expr:
-    """The same, with no condition that chooses between conditions: printed, it is no condition."""
-    return expression.replace(
-        sp.ITE, lambda c, yes, no: sp.Or(sp.And(c, yes), sp.And(sp.Not(c), no))
-    )
-
-
-def numpy_function(arguments: Sequence[sp.Symbol], printed: Any) -> Callable[..., Any]:
+def numpy_function(
+    arguments: Sequence[sp.Symbol], expressions: sp.Expr | list[sp.Expr]
+) -> Callable[..., Any]:
     """A numpy function of one expression, or of a list of them, without a text that documents it.
 
-    printed: from `for_numpy`
+    A condition that chooses between conditions is written without: printed, it is no condition.
     """
+
+    def plain(expression: sp.Expr) -> sp.Expr:
+        return expression.replace(
+            sp.ITE, lambda c, yes, no: sp.Or(sp.And(c, yes), sp.And(sp.Not(c), no))
+        )
+
+    several = isinstance(expressions, list)
+    printed = [plain(e) for e in expressions] if several else plain(expressions)
     call: Callable[..., Any]
     call = sp.lambdify(arguments, printed, "numpy", cse=True, docstring_limit=0)
     return call
 
 
 @lru_cache(maxsize=512)
-def _law_beside(law: sp.Expr, more: tuple[sp.Symbol, ...]) -> NumericLaw:
-    """The law on all signals and on these additional ones, which have tangents."""
-    return law_of(law, (*_SIGNALS, *more), TRACED | set(more))
-
-
-@lru_cache(maxsize=512)
-def law_of(
-    expression: sp.Expr,
-    signals: tuple[sp.Symbol, ...],
-    traced: frozenset[sp.Symbol],
-) -> NumericLaw:
+def _law_of(expression: sp.Expr, more: tuple[sp.Symbol, ...]) -> NumericLaw:
     """The expression as a numpy function; every symbol that is no signal is a parameter.
 
-    traced: signals with tangents; the prescribed motion has none
+    more: additional signals, which have tangents
     """
+    signals, traced = (*_SIGNALS, *more), TRACED | set(more)
     used = tuple(s for s in signals if expression.has(s))
     parameters = tuple(sorted(expression.free_symbols - set(signals), key=str))
     gradients = [slope(expression, s) if s in traced else sp.S(0) for s in used]
-    gradients += [slope(expression, p) for p in parameters]
-    printed = [for_numpy(e) for e in (expression, *gradients)]
-    call = numpy_function([*used, *parameters], printed)
-    joins = any(e.has(sp.And, sp.Or) for e in printed)
+    results = [expression, *gradients, *(slope(expression, p) for p in parameters)]
+    joins = any(e.has(sp.And, sp.Or, sp.ITE) for e in results)
+    call = numpy_function([*used, *parameters], results)
     return NumericLaw(expression, used, parameters, call, joins)
 
 
@@ -301,4 +307,4 @@ def _slope_call(
     symbol: sp.Symbol,
 ) -> Callable[..., Any]:
     """One derivative of a law as a numpy function of its signals and parameters."""
-    return numpy_function([*signals, *parameters], for_numpy(slope(expression, symbol)))
+    return numpy_function([*signals, *parameters], slope(expression, symbol))

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any, Literal
+from math import inf
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike
 from ..base.errors import ModelError, unknown
 from ..diagrams import Diagram
 from ..realise.simulated import refuse_massless
-from .case_results import CaseResults, GridKey, Mistake, Wave, read_reduction
+from .case_results import CaseResults, Mistake, read_reduction
 from .cases import (
     Group,
     columns_of,
@@ -31,8 +32,21 @@ from .trajectory import Trajectory
 if TYPE_CHECKING:
     import xarray
 
-    from ..realise.kernel import Timing
-    from ..realise.side_by_side import LaneResults, Reduction
+    from ..realise.side_by_side import GridRun, LaneResults, Reduction
+
+#: numbers in the tables of inputs of grids that run at once: 0.4 GB
+_MOST_AT_ONCE = 50_000_000
+
+
+class _Grid(NamedTuple):
+    """Grid of steps of some cases;  is_refined: their run on a coarser grid did not resolve them.
+
+    inner: steps per sample;  delays: of each late signal, s
+    """
+
+    is_refined: bool
+    inner: int
+    delays: tuple[float, ...]
 
 
 def simulate_many(
@@ -155,8 +169,8 @@ class _Study:
         rates, states = rates_of_cases(setup.program, numbers[:, :many])
         delays = delays_of_cases(setup, late, numbers[:, many:])
         ladder = cache(partial(setup.ladder, self.long_step))
-        check = cache(partial(_check_size, setup))
-        todo: dict[GridKey, list[int]] = {}
+        check = cache(lambda *grid: setup.check_size(setup.timing(*grid)))
+        todo: dict[_Grid, list[int]] = {}
         for k, case in enumerate(group.cases):
             if not result.open[case]:
                 continue
@@ -164,56 +178,28 @@ class _Study:
             try:
                 inner = ladder(delays[k]).first(float(rates[k]), state)
                 check(inner, delays[k])
+                todo.setdefault(_Grid(False, inner, delays[k]), []).append(k)
             except ModelError as error:
                 result.refuse({int(case): str(error)})
-                continue
-            todo.setdefault((inner, delays[k]), []).append(k)
-        waves = [Wave(todo, is_first=True)] if todo else []
-        while waves:
-            now, later = waves.pop().split(setup)
-            finer = self._run_wave(
-                setup,
-                now,
-                group.cases,
-                numbers=numbers[:, :many],
-                kept=kept,
-                reductions=reductions,
-                result=result,
+        while todo:
+            now = {grid: todo.pop(grid) for grid in _run_at_once(setup, todo)}
+            runs = [_run_on(setup, grid, numbers[here, :many]) for grid, here in now.items()]
+            outcomes = self._execute()(
+                setup.program,
+                runs,
+                start=setup.initial,
+                kept=list(kept.values()),
+                reductions=list(reductions.values()),
+                begin=min(round(self.after / setup.sampling.period), setup.samples),
             )
-            waves += [wave for wave in (later, Wave(finer, is_first=False)) if wave.todo]
-
-    def _run_wave(
-        self,
-        setup: Setup,
-        wave: Wave,
-        cases: np.ndarray,
-        *,
-        numbers: np.ndarray,
-        kept: dict[str, int],
-        reductions: dict[str, Reduction],
-        result: CaseResults,
-    ) -> dict[GridKey, list[int]]:
-        """Run the cases of a wave; returns the cases that need a finer grid, by this grid."""
-        runs = wave.runs(setup, numbers)
-        samples, period = runs[0].timing.samples, setup.sampling.period
-        outcomes = self._execute()(
-            setup.program,
-            runs,
-            start=setup.initial,
-            kept=list(kept.values()),
-            reductions=list(reductions.values()),
-            begin=min(round(self.after / period), samples),
-        )
-        finer: dict[GridKey, list[int]] = {}
-        for (grid, members), run, outcome in zip(wave.todo.items(), runs, outcomes, strict=True):
-            here = cases[np.array(members)]
-            next_steps = self._next_steps(setup, run.timing, grid, here, outcome, result)
-            for i, inner in next_steps.items():
-                finer.setdefault((inner, grid[1]), []).append(members[i])
-            done = result.open[here]
-            done[list(next_steps)] = False
-            result.take(here[done], run.timing.step, outcome, done, (*kept,), (*reductions,))
-        return finer
+            for (grid, members), run, outcome in zip(now.items(), runs, outcomes, strict=True):
+                here = group.cases[np.array(members)]
+                finer = self._next_steps(setup, grid, here, outcome, result)
+                for i, inner in finer.items():
+                    todo.setdefault(_Grid(True, inner, grid.delays), []).append(members[i])
+                done = result.open[here]
+                done[list(finer)] = False
+                result.take(here[done], run.timing.step, outcome, done, (*kept,), (*reductions,))
 
     def _execute(self) -> Callable[..., list[LaneResults]]:
         """The function that runs cases on the chosen device."""
@@ -228,24 +214,23 @@ class _Study:
     def _next_steps(
         self,
         setup: Setup,
-        timing: Timing,
-        grid: GridKey,
+        grid: _Grid,
         cases: np.ndarray,
         outcome: LaneResults,
         result: CaseResults,
     ) -> dict[int, int]:
         """Index in `cases` -> steps per sample of cases that need finer steps; refuses failures."""
         finer: dict[int, int] = {}
-        ladder = setup.ladder(self.long_step, grid[1])
+        ladder = setup.ladder(self.long_step, grid.delays)
         for i in np.flatnonzero(~ladder.is_resolved(outcome.worst, outcome.is_finite)):
             try:
                 if not outcome.is_finite[i]:
                     there = set_case(self.diagram, self.columns, int(cases[i]))
                     if 0 in there.values.values():
                         refuse_massless(self._form(there), self.arguments["motion"] or ())
-                inner = ladder.next(timing, float(outcome.worst[i]), bool(outcome.is_finite[i]))
-                setup.check_size(setup.timing(inner, grid[1]))
-                finer[int(i)] = inner
+                finer[int(i)] = ladder.next(
+                    grid.inner, float(outcome.worst[i]), bool(outcome.is_finite[i])
+                )
             except ModelError as error:
                 result.refuse({int(cases[i]): str(error)})
         return finer
@@ -293,5 +278,26 @@ class _Study:
         return {n: i for n, i in kept.items() if i is not None}, reductions
 
 
-def _check_size(setup: Setup, inner: int, delays: tuple[float, ...]) -> None:
-    setup.check_size(setup.timing(inner, delays))
+def _run_at_once(setup: Setup, grids: Iterable[_Grid]) -> list[_Grid]:
+    """The coarsest grids, as many as the memory for input tables allows.
+
+    They run side by side, so that the few cases with fine steps leave no core without work.
+    """
+    chosen: list[_Grid] = []
+    numbers = 0
+    for grid in sorted(grids):
+        numbers += setup.table_size(setup.timing(grid.inner, grid.delays))
+        if chosen and numbers > _MOST_AT_ONCE:
+            break
+        chosen.append(grid)
+    return chosen
+
+
+def _run_on(setup: Setup, grid: _Grid, numbers: np.ndarray) -> GridRun:
+    """Cases with these numbers (cases, parameters) on a grid; refined ones may stop early."""
+    from ..realise.side_by_side import GridRun
+
+    timing = setup.timing(grid.inner, grid.delays)
+    limit = setup.ladder("refine", grid.delays).limit(grid.inner) if grid.is_refined else inf
+    tables = setup.arguments(timing)
+    return GridRun(numbers, timing, tables["inputs"], tables["sampled"], limit)

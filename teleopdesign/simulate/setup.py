@@ -14,10 +14,10 @@ from ..base.errors import ModelError, UnknownSignal, did_you_mean, unknown
 from ..diagrams import Diagram, with_shared_states
 from ..realise.signal_symbols import delay_in_samples, is_whole
 from ..realise.simulated import prepare_for_simulation, realise_in_computer, refuse_massless
+from ..realise.steps import StepLadder
 from . import on_grid
 from .on_grid import (
     Input,
-    StepLadder,
     delay_in_steps,
     input_table,
     refuse_results,
@@ -138,6 +138,11 @@ class Setup:
     motion: Mapping[str, Trajectory]
     initial: Mapping[str, float]
 
+    @property
+    def samples(self) -> int:
+        """Number of samples of a run."""
+        return samples_of(self.duration, self.sampling.period)
+
     @cached_property
     def delays(self) -> list[float]:
         """Delay (s) of each delayed signal: of analog signals, then of signals in the computer."""
@@ -197,7 +202,7 @@ class Setup:
         return Timing(
             step,
             inner,
-            samples_of(self.duration, s.period),
+            self.samples,
             whole_steps(s.delay, step, "the computer's delay"),
             tuple(late),
             s.encoder_step,
@@ -293,7 +298,7 @@ class Setup:
                     f"{self.diagram.name}: signals are no finite numbers at the start: a loop "
                     "without delay has no solution at these values, or a parameter makes no sense"
                 )
-            finer = ladder.next(timing, worst, bool(np.isfinite(rows).all()))
+            finer = ladder.next(inner, worst, bool(np.isfinite(rows).all()))
             if finer == inner:
                 return rows, timing
             inner, limit = finer, ladder.limit(finer)

@@ -12,7 +12,7 @@ from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.residual import residuals
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
-from teleopdesign.realise import ode_scan
+from teleopdesign.realise import scan
 
 BACKLASH = EFFECTS["backlash"]
 GAP_PARAMETERS = tuple(f"device.backlash.{n}" for n in BACKLASH.parameters)
@@ -52,7 +52,7 @@ def test_a_true_model_leaves_what_its_sensors_leave(case):
 
 
 def test_tangents_of_the_led_tip_are_the_slopes_of_the_residual(case, monkeypatch):
-    monkeypatch.setattr(ode_scan, "GROWTH", np.inf)  # whatever they grow to
+    monkeypatch.setattr(scan, "GROWTH", np.inf)  # whatever they grow to
     _, prepared, _, true = case
     stretches = prepared.of("check")[:1]
     names = ("device.inertia", "device.coulomb.level", *GAP_PARAMETERS)

@@ -52,8 +52,7 @@ def test_kernel_and_python_control_run_into_it_alike(name):
     )
     system = to_iosystem(diagram)
     time = kernel["L"]["time"].values
-    named = [n.split("_", 1)[1] if n.startswith("mechanics_") else n for n in system.state_labels]
-    states = [start.get(n, 0.0) for n in named]
+    states = [start.get(n, 0.0) for n in system.state_labels]
     response = control.input_output_response(
         system,
         time,

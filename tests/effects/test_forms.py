@@ -24,7 +24,7 @@ from truth_effects import PUBLIC
 from teleopdesign.blocks import Value
 from teleopdesign.effects import EFFECTS, SIGNALS, make_rubbing_structure
 from teleopdesign.realise.along_motion import residual_along
-from teleopdesign.realise.ode_scan import ode_scan
+from teleopdesign.realise.scan import coupled_scan
 from teleopdesign.realise.traced import Along, Traced
 
 STEP = 1e-6  # m, of the encoder
@@ -150,7 +150,7 @@ def test_a_tip_that_dry_friction_holds_rests_and_lets_the_spring_wind_up():
     signals = {SIGNALS["position"]: Traced(x, zero.tangent), SIGNALS["acceleration"]: zero}
     signals |= {SIGNALS["velocity"]: Traced(np.full_like(x, 4e-4), zero.tangent)}
     signals |= {SIGNALS["interaction_force"]: zero}
-    hidden = ode_scan(held_tip, Along(signals, effect.numbers(), (), 1e-3))
+    hidden = coupled_scan(held_tip, Along(signals, effect.numbers(), (), 1e-3))
     tip = hidden[held_tip.state_symbols()["tip_position"]].value
     stuck = t < 0.49
     stretch = 1e3 * (x - tip)
@@ -185,7 +185,7 @@ def test_a_tip_swings_as_its_transfer_function_says_at_ten_samples_a_cycle(frequ
     none = np.zeros((0, len(t)))
     signals = {SIGNALS[n]: Traced(y.real, none) for n, y in motion.items()}
     signals[SIGNALS["interaction_force"]] = Traced(np.zeros(len(t)), none)
-    hidden = ode_scan(effect, Along(signals, values, (), 1 / rate))
+    hidden = coupled_scan(effect, Along(signals, values, (), 1 / rate))
     tip = hidden[effect.state_symbols()["tip_position"]].value
     expected = ((k + 1j * w * c) / (k + 1j * w * c - m * w**2) * wave).real
     steady_rows = slice(1000, None)  # 2 s; the resonance rings for 0.1 s

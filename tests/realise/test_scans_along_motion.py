@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 from teleopdesign.effects import SIGNALS
 from teleopdesign.realise.along_motion import residual_along
-from teleopdesign.realise.ode_scan import ode_scan
+from teleopdesign.realise.scan import coupled_scan
 from teleopdesign.realise.traced import Along, Traced
 
 RATE = 1000.0
@@ -26,7 +26,7 @@ def tip_of(body, x, v, a, rate):
     signals = zip(("position", "velocity", "acceleration"), (x, v, a), strict=True)
     known = {SIGNALS[n]: Traced(y, none) for n, y in signals}
     known[SIGNALS["interaction_force"]] = Traced(np.zeros(len(x)), none)
-    hidden = ode_scan(effect, Along(known, body.numbers(), (), 1 / rate))
+    hidden = coupled_scan(effect, Along(known, body.numbers(), (), 1 / rate))
     return hidden[effect.state_symbols()["tip_position"]].value
 
 
