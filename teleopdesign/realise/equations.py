@@ -41,6 +41,7 @@ from .signal_symbols import (
     sum_inputs,
     velocity,
 )
+from .simulated import WITHIN_LEVEL
 
 _NO_COMMAND = sp.Symbol("no_command", real=True)
 
@@ -252,7 +253,7 @@ class _Builder:
             self.acting[force], acting = acting, force
         here[SIGNALS["acting_force"]] = acting
         held = _held_at_stops(part.body)
-        friction = equation.friction.xreplace(held)
+        friction = _within_level(equation.friction.xreplace(held), part.body)
         total = equation.inertia * SIGNALS["acceleration"] + equation.force.xreplace(held)
         total += friction
         for state, rate in equation.rates.items():
@@ -260,6 +261,17 @@ class _Builder:
         if equation.friction != 0:
             self.friction[f"{part.name}_friction"] = friction.xreplace(here)
         return (total.xreplace(here) - acting).xreplace({_NO_COMMAND: sp.S(0)})
+
+
+def _within_level(friction: sp.Expr, body: Body) -> sp.Expr:
+    """The friction, held within its level where its bristle is that of ideal friction.
+
+    A bristle that turns within one step may end far beyond; in the next step it returns.
+    """
+    if not any(WITHIN_LEVEL in effect.always for effect in body.effects):
+        return friction
+    level = body.level()
+    return sp.Max(-level, sp.Min(friction, level, evaluate=False), evaluate=False)
 
 
 def _held_at_stops(body: Body) -> dict[sp.Symbol, sp.Expr]:

@@ -20,6 +20,8 @@ from ..effects import EFFECTS, SIGNALS, Effect
 from .tips import led_motion, linear_tips, with_tips
 from .traced import numpy_function
 
+#: property of a bristle whose friction never exceeds the level (`Effect.always`)
+WITHIN_LEVEL = "within the level"
 #: m/s or rad/s: a speed above which no friction level changes
 _FAST = 1e6
 #: m/s^2 or rad/s^2: an acceleration of the size that devices have, for the size of a load
@@ -89,18 +91,9 @@ def _bristle(of_any_level: bool) -> Effect:
 
 @lru_cache(maxsize=2)
 def _rigid_bristle(of_any_level: bool) -> Effect:
-    """The undamped bristle of ideal friction: a step may carry it beyond its level, not its force.
-
-    A bristle that turns within one step may end far beyond; in the next step it returns.
-    """
+    """The undamped bristle of ideal friction, whose force stays within the level in simulation."""
     plain = _bristle(of_any_level).without("bristle_damping")
-
-    def law(now: Any, p: Any) -> sp.Expr:
-        # not evaluated: sympy would compare the two at length, and cannot decide
-        force = sp.Min(plain.law(now, p), now.level, evaluate=False)
-        return sp.Max(-now.level, force, evaluate=False)
-
-    return replace(plain, law=law)
+    return replace(plain, always=plain.always | {WITHIN_LEVEL})
 
 
 def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> Body:
