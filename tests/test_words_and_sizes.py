@@ -37,6 +37,7 @@ PUBLIC_KEYWORDS = {
         "simulate",
         "studies/case",
         "studies/run",
+        "tuning/simulation_fit",
     ),
     # motions that are prescribed: `bode(..., given=...)`, `transfer_function(..., given=...)`
     "given": ("derive", "frequency"),

@@ -22,9 +22,10 @@ from ..controllers import controller
 from ..diagrams import Block, Control, Diagram, Junction, Linked, Moving
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
+from ..realise.bristle import with_bristle
 from ..realise.kernel import Timing, fastest_rate, first_memory, grid
 from ..realise.program import Program
-from ..realise.simulated import with_bristle, without_absent
+from ..realise.simulated import without_absent
 from ..realise.steps import FASTEST
 from ..realise.tips import tip
 from ..simulate import Sampling, Setup, prepare

@@ -24,7 +24,7 @@ from ..base.errors import ModelError
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch, stretch_of
 from ..model import Model
-from ..realise.simulated import UNDAMPED
+from ..realise.bristle import UNDAMPED
 from .cores import map_in_threads
 from .criteria import CRITERIA
 from .fit import Fit, estimate

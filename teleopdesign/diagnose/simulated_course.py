@@ -18,8 +18,9 @@ from ..diagrams import Control, Diagram, Junction, Moving
 from ..effects import delayed
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
+from ..realise.bristle import with_bristle, with_least_level
 from ..realise.kernel import fastest_rate
-from ..realise.simulated import with_bristle, with_least_level, without_absent
+from ..realise.simulated import without_absent
 from ..realise.steps import FASTEST
 from ..simulate import Sampling, prepare
 

@@ -21,7 +21,8 @@ from ..measurement.motion import Motion, motion_of
 from ..measurement.record import Record
 from ..model import Model
 from ..realise.along_motion import residual_along
-from ..realise.simulated import with_bristle, without_absent
+from ..realise.bristle import with_bristle
+from ..realise.simulated import without_absent
 from .limits import BodyPaths
 from .path import Servo, follow_path, with_ramps
 

@@ -19,6 +19,7 @@ from ..controllers import parameter_symbol
 from ..diagrams import Attached, Control, Diagram, Junction, Kinematics, Linked, Moving
 from ..effects import SIGNALS
 from ._linear import Steps, solve_linear
+from .bristle import WITHIN_LEVEL
 from .computer import (
     ComputerEquations,
     computer_signals,
@@ -41,7 +42,6 @@ from .signal_symbols import (
     sum_inputs,
     velocity,
 )
-from .simulated import WITHIN_LEVEL
 
 _NO_COMMAND = sp.Symbol("no_command", real=True)
 
@@ -253,7 +253,9 @@ class _Builder:
             self.acting[force], acting = acting, force
         here[SIGNALS["acting_force"]] = acting
         held = _held_at_stops(part.body)
-        friction = _within_level(equation.friction.xreplace(held), part.body)
+        friction = equation.friction.xreplace(held)
+        if any(WITHIN_LEVEL in effect.always for effect in part.body.effects):
+            friction = _limit(friction, equation.level)
         total = equation.inertia * SIGNALS["acceleration"] + equation.force.xreplace(held)
         total += friction
         for state, rate in equation.rates.items():
@@ -263,14 +265,9 @@ class _Builder:
         return (total.xreplace(here) - acting).xreplace({_NO_COMMAND: sp.S(0)})
 
 
-def _within_level(friction: sp.Expr, body: Body) -> sp.Expr:
-    """The friction, held within its level where its bristle is that of ideal friction.
-
-    A bristle that turns within one step may end far beyond; in the next step it returns.
-    """
-    if not any(WITHIN_LEVEL in effect.always for effect in body.effects):
-        return friction
-    level = body.level()
+def _limit(friction: sp.Expr, level: sp.Expr) -> sp.Expr:
+    """The friction within its level: a bristle that turns within one step may end far beyond."""
+    # not evaluated: sympy would compare the two at length, and cannot decide
     return sp.Max(-level, sp.Min(friction, level, evaluate=False), evaluate=False)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -13,34 +12,15 @@ import sympy as sp
 
 from ..base.errors import ModelError
 from ..blocks import Body, MatrixImpedance
-from ..blocks.body_equation import body_symbols, compose_equation, friction_level
 from ..controllers import Controller, require_exact_steps
 from ..diagrams import Attached, Block, Control, Diagram, Linked, Moving, with_shared_states
-from ..effects import EFFECTS, SIGNALS, Effect
+from ..effects import SIGNALS
+from .bristle import with_bristle
 from .tips import led_motion, linear_tips, with_tips
 from .traced import numpy_function
 
-#: property of a bristle whose friction never exceeds the level (`Effect.always`)
-WITHIN_LEVEL = "within the level"
 #: m/s or rad/s: a speed above which no friction level changes
 _FAST = 1e6
-#: m/s^2 or rad/s^2: an acceleration of the size that devices have, for the size of a load
-LIVELY = 10.0
-#: damping ratio of a bristle that moves a position by less than 1e-10 of its travel: none
-UNDAMPED = 1e-9
-#: part of the loaded friction level that must remain without a load for a damped bristle. The
-#: damping of a LuGre bristle is a force of friction only at a steady level. With a level that goes
-#: through zero a simulated servo left its record by 0.2 to 0.5 rad rms, with a twentieth by 0.02 to
-#: 0.04, undamped by 0.016. Lower: such courses; higher: undamped contacts
-STEADY = 0.2
-#: least part of the loaded friction level that is simulated without a load, for a level of zero and
-#: along records: with a level of zero the bristle has no stiffness there, and a simulated servo
-#: left its record by 0.4 rad rms. Levels are known less well than to a part so small
-LEAST = 0.002
-#: place, speed (m, m/s; rad) and direction at which the size of a friction level is looked at
-_ALONG = np.sin(np.arange(512.0)), np.array([[-1.0], [0.0], [1.0]]), np.array([[-1], [0], [1]])
-#: forces in proportion to which a friction level may grow
-_LOADS = SIGNALS["acting_force"], SIGNALS["carried_force"]
 
 
 def without_absent(body: Body, *, surely: bool = False) -> Body:
@@ -80,95 +60,6 @@ def without_absent(body: Body, *, surely: bool = False) -> Body:
             if parameter.optional and equals(f"{effect.name}.{name}", 0.0):
                 body = body.without_parameter(effect.name, name)
     return body
-
-
-@lru_cache(maxsize=2)  # laws compare by identity
-def _bristle(of_any_level: bool) -> Effect:
-    """The effect presliding; of_any_level: for a tip or a user's friction level as well."""
-    bristle = EFFECTS["presliding"]
-    return replace(bristle, needs=frozenset()) if of_any_level else bristle
-
-
-@lru_cache(maxsize=2)
-def _rigid_bristle(of_any_level: bool) -> Effect:
-    """The undamped bristle of ideal friction, whose force stays within the level in simulation."""
-    plain = _bristle(of_any_level).without("bristle_damping")
-    return replace(plain, always=plain.always | {WITHIN_LEVEL})
-
-
-def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> Body:
-    """Ideal Coulomb friction realised by a bristle that deflects by `deflection` before it slides.
-
-    deflection: m or rad;  damping_ratio: of the inertia on this bristle while it sticks; of a
-        friction that nearly vanishes without a load `UNDAMPED` at most
-    returns: the body itself where it has no friction level, or a friction shape already
-    raises ModelError: a deflection of zero, that of a record that never moves
-    """
-    roles = {e.role for e in body.effects}
-    if "friction_level" not in roles or "friction_shape" in roles:
-        return body
-    if not deflection > 0.0:
-        raise ModelError("a bristle needs a length: the recorded position never moves")
-    unloaded, level = _levels_by_load(body)
-    if unloaded == 0.0:
-        body = with_least_level(body)
-    if unloaded < STEADY * level:
-        damping_ratio = min(damping_ratio, UNDAMPED)
-    of_any_level = bool(body.lacks(EFFECTS["presliding"]))
-    if (law := _level_in_motion(body.effects)) is not None:
-        # where the level is small, the bristle would be far too soft elsewhere
-        level = max(level, float(np.nanmax(law(*_ALONG, *body.numbers().values()))))
-    stiffness = level / deflection
-    if not damping_ratio:
-        return body.with_effect(_rigid_bristle(of_any_level), {"stiffness": stiffness})
-    damping = 2.0 * damping_ratio * (stiffness * body.parameters["inertia"].value) ** 0.5
-    return body.with_effect(
-        _bristle(of_any_level), {"stiffness": stiffness, "bristle_damping": damping}
-    )
-
-
-def with_least_level(body: Body) -> Body:
-    """The body with a Coulomb level of at least `LEAST` of the friction level under a load."""
-    unloaded, level = _levels_by_load(body)
-    if not unloaded < LEAST * level or "coulomb.level" not in body.parameters:
-        return body
-    return body.with_values({"coulomb.level": LEAST * level})
-
-
-@lru_cache(maxsize=16)  # bristles of several lengths are put into one body
-def _levels_by_load(body: Body) -> tuple[float, float]:
-    """Friction level at rest without a load, and under a typical load."""
-    equation = body.equation()
-    law = equation.level.subs(body.numbers())
-    at_rest = dict.fromkeys(SIGNALS.values(), 0) | dict.fromkeys(equation.rates, 0)
-    unloaded = float(law.subs(at_rest))
-    if not law.has(*_LOADS):
-        return unloaded, unloaded
-    loaded = at_rest | dict.fromkeys(_LOADS, _typical_load(body))
-    return unloaded, float(law.subs(loaded))
-
-
-@lru_cache(maxsize=64)  # compiled once for all values of a fit
-def _level_in_motion(effects: tuple[Effect, ...]) -> Any:
-    """Unloaded friction level, by place, speed, direction, parameters; None: that at rest."""
-    level, lagging = friction_level(effects), compose_equation(effects).rates
-    signals = [SIGNALS[n] for n in ("position", "velocity", "direction")]
-    fixed = dict.fromkeys(set(SIGNALS.values()) - set(signals), sp.S(0))
-    law = level.xreplace(fixed | dict.fromkeys(lagging, sp.Abs(SIGNALS["velocity"])))
-    varies, symbols = level.has(*signals, *lagging), body_symbols(effects).values()
-    return numpy_function([*signals, *symbols], law) if varies else None
-
-
-def _typical_load(body: Body) -> float:
-    """A force of the size that the transmission of a body carries, N or N m.
-
-    A level that is a part of the load is zero without one, and so would be its bristle's stiffness.
-    """
-    law = body.carried_force().subs(body.numbers())
-    rest = dict.fromkeys((s for s in SIGNALS.values() if s != SIGNALS["position"]), 0)
-    places = (0.0, 0.5 * math.pi, math.pi, 1.5 * math.pi) if body.axis == "revolute" else (0.0,)
-    forces = (abs(float(law.subs(rest | {SIGNALS["position"]: x}))) for x in places)
-    return max(forces) + LIVELY * body.parameters["inertia"].value
 
 
 def check_levels(body: Body, where: str) -> None:

@@ -7,7 +7,7 @@ from devices import body
 from teleopdesign.blocks import Body
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
-from teleopdesign.realise.simulated import with_bristle
+from teleopdesign.realise.bristle import with_bristle
 from teleopdesign.simulate import simulate
 
 

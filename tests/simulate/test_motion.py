@@ -44,13 +44,17 @@ def test_a_motion_through_samples_of_a_polynomial_of_fifth_order_is_that_polynom
     assert motion.acceleration(inside) == pytest.approx(20 * inside**3 - 2, abs=1e-8)
 
 
-@pytest.mark.parametrize("give", [1e-5, 1e-7, 1.4e-9])
-def test_ideal_friction_stays_within_its_level_however_short_its_bristle(give):
+@pytest.mark.parametrize("length", [1e-5, 1e-7, 1.4e-9])
+def test_ideal_friction_stays_within_its_level_however_short_its_bristle(length):
     """A bristle that turns within one step ends far beyond its length; its force does not."""
     device = td.hand(mass=0.2, damping=1.0, stiffness=0.0)
     device = device.with_effect(td.EFFECTS["coulomb"], values={"level": 0.3})
     motion = sine(amplitude=1.4e-3, frequency=45.2)
     run = td.simulate_diagram(
-        td.haptic_interface(device), duration=0.1, motion={"L": motion}, give=give, every_step=True
+        td.haptic_interface(device),
+        duration=0.1,
+        motion={"L": motion},
+        give=length,
+        every_step=True,
     )
     assert abs(run["Z_M_friction"].values).max() <= 0.3 * (1 + 1e-9)
