@@ -7,7 +7,7 @@ A fingerprint of the experiment (title, records and a digest) matches answers an
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -178,16 +178,22 @@ class Fingerprint:
     digest: str
 
     def difference(self, experiment: Experiment) -> str | None:
-        """How the expected experiment differs from this one, in words; None: they are equal."""
+        """How the expected experiment differs from this one, in words; None: they are equal.
+
+        Records are what they read, in their order: a file that was renamed, or arrays that were
+        saved as a folder, are the same records.
+        """
         present = fingerprint_of(experiment)
         if self.title != present.title:
             return f"title {quote(self.title)}, found {quote(present.title)}"
         if self.axes != present.axes:
             return f"bodies {bodies_text(self.axes)}, found {bodies_text(present.axes)}"
-        if self.records != present.records:
+        if [(r.use, r.samples) for r in self.records] != [
+            (r.use, r.samples) for r in present.records
+        ]:
             return f"records {_list(self.records)}, found {_list(present.records)}"
-        if self.digest != present.digest:
-            return "records of the same names, but they read differently now"
+        if self.digest != digest(experiment, [r.file for r in self.records]):
+            return "records of the same length, but they read differently now"
         return None
 
 
@@ -197,19 +203,19 @@ def fingerprint_of(experiment: Experiment) -> Fingerprint:
         title=experiment.title,
         axes={name: body.axis for name, body in experiment.bodies.items()},
         records=tuple(RecordPrint(r.file, r.use, len(r.time)) for r in experiment.records),
-        digest=digest(experiment),
+        digest=digest(experiment, [r.file for r in experiment.records]),
     )
 
 
-def digest(experiment: Experiment) -> str:
-    """SHA-256 of every record as it was read: use, clock and signals in SI, by their names.
+def digest(experiment: Experiment, files: Sequence[str]) -> str:
+    """SHA-256 of every record as it was read: use, clock and signals in SI, by these file names.
 
     The packing of a file does not change it; another unit, sign or column does.
     """
     whole = hashlib.sha256()
-    for r in experiment.records:
+    for r, file in zip(experiment.records, files, strict=True):
         cuts = [(s.start, s.stop) for s in r.segments]
-        whole.update(repr((r.file, r.use, sorted(r.offset_names), r.sample_time, cuts)).encode())
+        whole.update(repr((file, r.use, sorted(r.offset_names), r.sample_time, cuts)).encode())
         for name in sorted(r.signals):
             whole.update(f"{name} {len(r.signals[name])} ".encode())
             whole.update(np.ascontiguousarray(r.signals[name], dtype="<f8").tobytes())
