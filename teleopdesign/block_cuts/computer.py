@@ -16,6 +16,7 @@ from ..controllers import Controller
 from ..diagrams import Control, Diagram, Junction, Moving
 from ..effects.of_blocks.controllers import CONTROL_EFFECTS, ORDER, ControlEffect
 from ..measurement.filtering import Array
+from ..measurement.prepare import TRIM
 from ..realise.controller_along import controller_along
 from ..realise.kernel import velocity_smoothing
 from .cuts import COMPUTER, Cut
@@ -63,16 +64,20 @@ class UnevenRows(ModelError):
 
 @dataclass(frozen=True)
 class Passes:
-    """Recorded signals at the passes of the computer, SI, each (n,);  time: s from the first."""
+    """Recorded signals at the passes of the computer, SI, each (n,).
+
+    lost: passes without a row, filled by straight lines
+    """
 
     file: str
     use: str
     period: float
     signals: Mapping[str, Array]
+    lost: Sequence[int] = ()
 
 
 def passes_of(experiment: DiagramExperiment, log: RecordedLog) -> Passes:
-    """The rows of a log at which the computer passed.
+    """The rows of a log at which the computer passed; less than `TRIM` of lost rows is filled.
 
     raises UnevenRows: rows are further apart than the period, missing, or without a number
     """
@@ -85,16 +90,32 @@ def passes_of(experiment: DiagramExperiment, log: RecordedLog) -> Passes:
             f"{log.file}: rows are {gap * 1e3:g} ms apart, the computer passes each "
             f"{period * 1e3:g} ms: log every pass"
         )
-    off = np.diff(time) - gap
-    if np.abs(off).max() > 0.5 * gap:
-        row = int(np.argmax(np.abs(off)))
-        what = "missing" if off[row] > 0 else "written twice"
+    steps = np.round(np.diff(time) / gap)
+    for row in np.flatnonzero((steps < 1) | (steps * gap > TRIM))[:1]:
+        what = "written twice" if steps[row] < 1 else "missing"
         raise UnevenRows(f"{log.file}: a row is {what} at {time[row]:g} s: log every pass once")
-    signals = {name: experiment.signal(name, log)[::every] for name in experiment.recorded}
-    for name, values in signals.items():
+    pass_of_row = np.concatenate([[0], np.cumsum(steps)]).astype(int)
+    passes = np.arange(0, pass_of_row[-1] + 1, every)
+    kept, signals = np.isin(pass_of_row, passes), {}
+    for name in experiment.recorded:
+        values = experiment.signal(name, log)[kept]
         if not np.isfinite(values).all():
             raise UnevenRows(f"{log.file}: {name} has cells without a number")
-    return Passes(log.file, log.use, period, signals)
+        signals[name] = np.interp(passes, pass_of_row[kept], values)
+    lost = tuple(np.flatnonzero(~np.isin(passes, pass_of_row)).tolist())
+    return Passes(log.file, log.use, period, signals, lost)
+
+
+def whole_passes_of(experiment: DiagramExperiment, log: RecordedLog) -> Passes:
+    """The rows of a log at which the computer passed, of which none is lost.
+
+    raises UnevenRows: as `passes_of`, or a row is lost
+    """
+    rows = passes_of(experiment, log)
+    if rows.lost:
+        at = rows.lost[0] * rows.period
+        raise UnevenRows(f"{log.file}: a row is missing at {at:g} s: log every pass once")
+    return rows
 
 
 @dataclass(frozen=True)

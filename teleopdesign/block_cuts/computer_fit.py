@@ -193,9 +193,14 @@ def _count(rows: Passes) -> int:
 
 
 def _masks(rows: Passes, held_out: bool) -> dict[str, NDArray[np.bool_]]:
-    """Passes of each use: without the ends; blocks in turn where no record is for checks only."""
+    """Passes of each use: without the ends, and without lost rows and what is near them.
+
+    Blocks in turn are held out where no record is for checks only.
+    """
     time = np.arange(_count(rows)) * rows.period
     counted = (time >= TRIM) & (time < time[-1] + rows.period - TRIM)
+    for row in rows.lost:
+        counted &= abs(time - time[row]) >= TRIM
     if not held_out:
         return {use: counted & (rows.use == use) for use in ("fit", "check")}
     odd = (time / HELD_OUT).astype(int) % 2 == 1
@@ -215,7 +220,7 @@ def floors(data: ControlData, experiment: DiagramExperiment, seed: int = 0) -> d
         drawn = {
             s: x + _reading(experiment, log, s, len(x), random) for s, x in rows.signals.items()
         }
-        again = Passes(rows.file + " drawn", rows.use, rows.period, drawn)
+        again = Passes(rows.file + " drawn", rows.use, rows.period, drawn, rows.lost)
         before, after = data.part.predict(rows), data.part.predict(again)
         for cut in data.part.cuts:
             s = cut.signal

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..diagrams import Attached, Moving
 from ..measurement.filtering import Array
-from .computer import ComputerPart, Passes, Placed, passes_of
+from .computer import ComputerPart, Passes, Placed, whole_passes_of
 from .cuts import Cut
 from .diagram_experiment import DiagramExperiment, RecordedLog
 
@@ -72,7 +72,7 @@ def command_of(
     if moving.command in experiment.channels:
         return experiment.signal(moving.command, log)
     part = laws_of_command(experiment, moving)
-    return command_by_laws(part, passes_of(experiment, log), log.count, placed)
+    return command_by_laws(part, whole_passes_of(experiment, log), log.count, placed)
 
 
 def command_by_laws(

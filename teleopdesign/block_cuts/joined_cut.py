@@ -32,7 +32,7 @@ from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch, prepare
 from ..model import Model
 from .body import body_experiment
-from .computer import Placed, UnevenRows, free_parameters, passes_of
+from .computer import Placed, UnevenRows, free_parameters, whole_passes_of
 from .computer_search import ComputerLadder, ComputerStep, are_alike, climb, step_of
 from .control_rows import ControlFit, ControlRows
 from .cuts import Cut, feeding
@@ -64,7 +64,7 @@ class JoinedData(ControlRows):
         moving = experiment.diagram.block(cut.name)
         assert isinstance(moving, Moving)
         part = laws_of_command(experiment, moving)
-        super().__init__(part, [passes_of(experiment, log) for log in experiment.logs])
+        super().__init__(part, [whole_passes_of(experiment, log) for log in experiment.logs])
         self.experiment, self.cut, self.model = experiment, cut, model
         blocks = [b for b in experiment.diagram.blocks if b.name in cut.blocks]
         self.places = tuple(b.name for b in blocks if isinstance(b, Control))

@@ -1,5 +1,7 @@
 """Experiments of whole diagrams: what is read, and one clear line for what is not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from block_cuts.interface_simulator import draw_interface, write_case
@@ -65,3 +67,21 @@ def test_rows_further_apart_than_the_period_leave_the_computer_untested(edited):
 
     with pytest.raises(UnevenRows, match="log every pass"):
         passes_of(experiment, experiment.logs[0])
+
+
+def test_a_few_lost_rows_leave_the_computer_tested_beside_them(folder):
+    from teleopdesign.block_cuts.computer import passes_of
+    from teleopdesign.block_cuts.half_steps import whole_passes_of
+
+    experiment = td.load_experiment(folder)
+    log = experiment.logs[0]
+    whole = passes_of(experiment, log)
+    kept = ~np.isin(np.arange(log.count), (400, 401, 700))
+    values = {name: column[kept] for name, column in log.columns.values.items()}
+    fewer = replace(log, columns=replace(log.columns, values=values))
+    rows = passes_of(experiment, fewer)
+    assert (whole.lost, rows.lost) == ((), (400, 401, 700))
+    for name, signal in rows.signals.items():
+        assert np.array_equal(signal[kept], whole.signals[name][kept])
+    with pytest.raises(td.ModelError, match="a row is missing at 0.4 s"):
+        whole_passes_of(experiment, fewer)
