@@ -116,15 +116,18 @@ def restrict_to_curve(model: Model, speeds: float = math.inf) -> Model:
                     f"model.{place}.effects: {effect.name} needs a time, which a friction curve "
                     "has not: expected friction of the speed, and bias"
                 )
-    fitting = (e for e in model.known.values() if is_static(e) and fits_speeds(e, model, speeds))
+    fitting = (e for e in model.known.values() if fits_curve(e, model, speeds))
     return replace(model, known={e.name: e for e in fitting})
 
 
-def fits_speeds(effect: Effect, model: Model, speeds: float) -> bool:
-    """Whether so many different speeds are `FOR_EACH` times the parameters with an effect's."""
+def fits_curve(effect: Effect, model: Model, speeds: float) -> bool:
+    """Whether an effect is static, and so many different speeds can determine it.
+
+    These are `FOR_EACH` times the parameters of the model with those of the effect.
+    """
     values = (v for n, v in model.parameters.items() if not n.endswith(".inertia"))
     new = sum(not p.optional for p in effect.parameters.values())
-    return FOR_EACH * (sum(not v.fixed for v in values) + new) <= speeds
+    return is_static(effect) and FOR_EACH * (sum(not v.fixed for v in values) + new) <= speeds
 
 
 def list_look_alikes(candidate: Candidate, model: Model) -> list[Candidate]:

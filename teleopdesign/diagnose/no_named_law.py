@@ -17,7 +17,7 @@ from ..effects import EFFECTS, depends_on_position
 from ..measurement.friction_curve import count_speeds
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .candidates import Candidate, fits_speeds, is_static, tells_place_from_time
+from .candidates import Candidate, fits_curve, tells_place_from_time
 from .decision import is_better
 from .fit import Fit
 from .noise_floor import NoiseFloor
@@ -78,7 +78,7 @@ def _curves(model: Model, prepared: Prepared) -> list[Candidate]:
                 continue
             if prepared.is_curve:
                 speeds = count_speeds(motion.velocity for motion in motions)
-                if not (is_static(effect) and fits_speeds(effect, model, speeds)):
+                if not fits_curve(effect, model, speeds):
                     continue
             of_place = depends_on_position(effect)
             if of_place and not tells_place_from_time(motions, separate_zeros=separate):
