@@ -1,16 +1,21 @@
 """Maxwell slip: before sliding, friction is a hysteresis of two to four springs that slip in turn.
 
-    F = sum F_i,   dF_i/dt = K_i v while abs(F_i) < W_i, held there;   W_1 = level - W_2 - W_3 - W_4
+    F = sum F_i,   dF_i/dt = K_i v while abs(F_i) < W_i level/F_C, held there,   sum W_i = F_C
 
 The contact becomes softer with the distance since a reversal; one bristle (`presliding`) has one
-curve for all loops. Element 1 carries the part of the level that the other elements leave. A record
+curve for all loops. Element 1 carries the part of the Coulomb level F_C that the other elements
+leave. Where the level grows with speed, load or place, all elements slip at as much more. A record
 shows the effect where the encoder resolves the deflection.
 """
 
 from sympy import Max
 
-from ._effect import Effect, FitSearch, Parameter, State
+from ._effect import Effect, FitSearch, Parameter, State, parameter_symbol
 from ._elements import MORE, elements_slip, softest_first
+
+COULOMB = parameter_symbol("coulomb", "level")
+#: N or N m: far below any friction; keeps the law defined where there is none
+NO_LEVEL = 1e-30
 
 
 def law(now, p):
@@ -19,8 +24,9 @@ def law(now, p):
 
 def element(i):
     def slip(now, p):
-        rest = now.level - sum(getattr(p, f"level_{j}") for j in MORE)
-        return getattr(p, f"level_{i}") if i in MORE else Max(rest, 0)
+        others = sum(getattr(p, f"level_{j}") for j in MORE)
+        slips = getattr(p, f"level_{i}") if i in MORE else Max(COULOMB - others, 0)
+        return now.level * slips / Max(COULOMB, others, NO_LEVEL)
 
     return State("force", lambda now, p: getattr(p, f"stiffness_{i}") * now.velocity, stop=slip)
 

@@ -213,10 +213,13 @@ def test_elements_stick_by_their_stiffness_and_slip_at_their_levels():
     stops = effect.stops()
     parameters = {n: 0.1 * (i + 1) for i, n in enumerate(effect.symbols())}
     values = {symbol: parameters[n] for n, symbol in effect.symbols().items()}
-    values |= {SIGNALS["velocity"]: 2.0, SIGNALS["level"]: 5.0}
     levels = {i: parameters[f"level_{i}"] for i in (2, 3, 4)}
-    levels[1] = 5.0 - sum(levels.values())
+    coulomb = 2.0 * sum(levels.values())
+    levels[1] = 0.5 * coulomb
+    values |= {SIGNALS["velocity"]: 2.0, sp.Symbol("coulomb_level", real=True): coulomb}
     for i, level in levels.items():
         rate, stop = stops[f"force_{i}"]
         assert float(rate.subs(values)) == pytest.approx(2.0 * parameters[f"stiffness_{i}"])
-        assert float(stop.subs(values)) == pytest.approx(level)
+        for grown in (1.0, 3.0):  # under more load, every element slips at as much more
+            values[SIGNALS["level"]] = grown * coulomb
+            assert float(stop.subs(values)) == pytest.approx(grown * level)
