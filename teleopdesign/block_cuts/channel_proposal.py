@@ -21,7 +21,8 @@ from ..measurement.new_folder import FitAndCheck, check_spans, copy_logs, record
 from ..measurement.saving import records_text
 from ..measurement.survey import spans_of
 from ..measurement.survey.clock import duration_of, numeric_columns, time_column
-from ..measurement.survey.content import NONE, Choices, unit_in_log
+from ..measurement.survey.content import NONE, Choices
+from ..measurement.survey.roles import unit_in_log
 from .channel_search import ChannelSearch, ColumnChoice
 
 #: odds above which a choice needs no question

@@ -26,7 +26,7 @@ from ..measurement.column_names import is_another_quantity, is_wanted, likeness,
 from ..measurement.filtering import Array
 from ..measurement.prepare import prepare
 from ..measurement.survey.content import SURE_NAME
-from ..measurement.survey.position import unit_of_reach
+from ..measurement.survey.position_entry import unit_of_reach
 from .body import body_experiment, model_of_body
 from .computer_fit import data_of_computer
 from .cuts import Cut, Cuts, cuts_of

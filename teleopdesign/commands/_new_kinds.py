@@ -137,7 +137,7 @@ def make_like(
     """
     from ..block_cuts import load_experiment
     from ..measurement.experiment import Experiment, folder_of_experiment
-    from ..measurement.new_like import make_folder_like
+    from ..measurement.new_folder import make_folder_like
     from ..measurement.survey import Choices
 
     stated = [

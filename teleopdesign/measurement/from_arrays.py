@@ -16,10 +16,10 @@ from ..base.units import AXES, is_unit, unit_of
 from .channel import BODY_QUANTITIES, layout_from
 from .column_names import as_unit, likeness, unfit_unit, unit_in_name, why_no_unit
 from .description import BodyDescription, bodies_from, with_first_values
+from .doors._cells import holds_dates
 from .doors._log import Log
 from .experiment import Experiment
 from .first_guess import guess_from
-from .numbers_in_cells import holds_dates
 from .record import Record, RecordEntry, cut_to, overlap, record_of
 from .tables import columns_of
 

@@ -1,5 +1,8 @@
 """Limits that many judgements of a log share: one number for one reason, wherever it is asked."""
 
+SHORTEST = 1.0  # s: least duration of all segments of a record together
+FEWEST = 64  # fewest samples of a record, and rows from which a line is fitted first
+
 #: a majority, or what is nearer to one of two readings of a log than to the other
 HALF = 0.5
 #: part of some rows, steps or changes that is all of them, but for a start from rest, an end, and

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -11,15 +12,14 @@ from numpy.typing import NDArray
 from ..base.errors import ExperimentError, quote
 from ..base.sentences import percent
 from .channel import Channel, LogLayout
-from .encoder import Array
+from .encoder import SURELY, Array
 from .limits import HALF
 from .reading import ReadingStep, count_of
-from .record_clock import DATE, RecordClock, clock_of, counted_clock, segments_of
+from .record_clock import DATE, EVEN, RecordClock, clock_of, counted_clock, segments_of
 from .repeated_rows import MOST, repeated_rows, rows_between_readings, with_slower_signals
 from .spikes import lost_zeros
-from .stamps import read_at_stamps
+from .stamps import usual_step
 from .tables import LogColumns
-from .usual_step import usual_step
 
 #: what to do with such a column
 OF_ANOTHER_CLOCK = "a signal of a slower clock goes with its times into a table beside, in a folder"
@@ -167,3 +167,82 @@ def _labels(columns: LogColumns, channels: Mapping[str, Channel], name: str) -> 
             "expected a whole number"
         )
     return labels
+
+
+def read_at_stamps(
+    clock: RecordClock, positions: Sequence[Array], file: str
+) -> tuple[bool, list[ReadingStep]]:
+    """Whether each row was taken at its stamp, with the reading steps that report it.
+
+    positions: (m,) each, of the clock's rows
+    """
+    h, rule = clock.sample_time, "positions interpolated, commands held"
+    if clock.counted or clock.jitter <= EVEN * h:
+        return False, []
+    numbers: dict[str, float] = {"rate": 1.0 / h}
+    if math.isinf(clock.jitter):
+        steps = np.diff(clock.stamps) / h
+        numbers |= {"shortest": float(steps.min()), "longest": float(steps.max())}
+        between = " to ".join(f"{numbers[key]:.2g}" for key in ("shortest", "longest"))
+        text, stamped = f"uneven stamps, steps of {between} times {h:.3g} s", True
+        rule = f"each row at its own stamp: {rule}"
+    else:
+        slope, error = stamps_are_true(clock, positions)
+        numbers |= {"jitter": clock.jitter, "followed": slope}
+        text = f"stamps {percent(clock.jitter / h, '.2g')} of a row off an even clock"
+        share = f"({slope:.2f} +- {error:.1g} of what they say)"
+        stamped = slope > HALF and math.isfinite(error)
+        rule = f"the position was read at its stamps {share}: {rule}"
+        if not stamped:
+            rule = f"read on an even clock, for the position does not follow the stamps {share}"
+    effect = "none"
+    if "followed" in numbers and not abs(slope - 0.5) > SURELY * error:
+        effect = "the position hardly tells, so that it makes little difference"
+    step = ReadingStep(
+        file,
+        text,
+        rule,
+        effect,
+        topic="sample clock",
+        numbers=tuple(numbers.items()),
+        interpolates=stamped,
+    )
+    return stamped, [step]
+
+
+def stamps_are_true(clock: RecordClock, positions: Sequence[Array]) -> tuple[float, float]:
+    """Whether a position follows uneven stamps (coefficient 1) or an even clock (coefficient 0).
+
+    The deviation of a reading from its neighbours is regressed on the speed times the deviation of
+    the stamp from the even clock. Both are second differences, which suppress a smooth motion.
+
+    positions: (m,) each, of the clock's rows
+    returns: the coefficient and its standard error; (1, inf) if the positions do not decide
+    """
+    above = below = 0.0
+    pairs: list[tuple[Array, Array]] = []
+    off = clock.stamps - clock.time[clock.places]
+    for stretch in clock.of_rows:
+        place = clock.places[stretch]
+        if len(place) < 5:
+            continue
+        inner = (place[2:] - place[:-2] == 2)[1:-1]
+        late = off[stretch] - off[stretch].mean()
+        for x in positions:
+            x = x[stretch]
+            speed = np.zeros(len(x))
+            speed[1:-1] = (x[2:] - x[:-2]) / (2.0 * clock.sample_time)
+            bend = np.diff(x, 2)[1:-1][inner]
+            made = np.diff(speed * late, 2)[1:-1][inner]
+            scale = float(np.mean(bend**2))
+            if scale > 0 and len(bend):
+                above += float(made @ bend) / scale
+                below += float(made @ made) / scale
+                pairs.append((bend / math.sqrt(scale), made / math.sqrt(scale)))
+    if below <= 0:
+        return 1.0, math.inf
+    slope = above / below
+    left = sum(float(np.sum((b - slope * m) ** 2)) for b, m in pairs)
+    number = sum(len(b) for b, _ in pairs)
+    # neighbouring second differences share readings: six of them count as one
+    return slope, math.sqrt(6.0 * left / max(number, 1) / below)

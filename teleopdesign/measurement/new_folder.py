@@ -1,7 +1,9 @@
-"""Make an experiment's folder from logs: the proposals of a survey, written with their reasons."""
+"""Make an experiment's folder from logs: by the proposals of a survey, or as another one."""
 
 from __future__ import annotations
 
+import os
+import re
 import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -11,18 +13,17 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import ExperimentError, quote
-from ..base.files import write_beside, write_text
-from ..base.toml import Table, comment_text, string_text, toml_text
+from ..base.files import read_whole, write_beside, write_text
+from ..base.toml import Table, comment_text, read_toml, string_text, texts_in, toml_text
 from ..base.units import unit_of
 from .channel import LogLayout, layout_from
 from .description import BodyDescription, ModelValue, bodies_from, with_first_values
 from .doors._log import Log
 from .encoder import reading_step, rests
 from .first_guess import guess_from
-from .limits import SMALL
+from .limits import SHORTEST, SMALL
 from .motion import SHORTEST as SEGMENT
 from .record import Record, RecordEntry, overlap, read_record
-from .record_clock import SHORTEST
 from .reversals import runs_one_way
 from .saving import body_lines, guesses_text, records_text
 from .survey import Survey, spans_of
@@ -33,6 +34,8 @@ from .tables import open_log
 FitAndCheck = tuple[tuple[float, float], tuple[float, float]]
 
 _FILE = "experiment.toml"
+#: a table [[records]] of experiment.toml, up to the next table
+_RECORDS = re.compile(r"^\s*\[\[\s*records\s*\]\].*?(?=^\s*\[|\Z)", re.M | re.S)
 
 
 def make_folder(
@@ -267,3 +270,42 @@ def experiment_text(
         ]
     lines += ["", *records_text(records), *guesses_text(survey.guesses)]
     return "\n".join(lines) + "\n"
+
+
+def make_folder_like(
+    source: Path,
+    logs: Sequence[Path],
+    folder: Path,
+    *,
+    title: str,
+    spans: FitAndCheck | None = None,
+) -> None:
+    """Copy logs into a folder, with the experiment.toml of another one: all but its records.
+
+    Columns, units, signs and model are those of `source`, a folder; files that its experiment.toml
+    names, such as a URDF or a diagram, are copied too. Of several logs the last is the check
+    record; one log is fitted whole, unless `spans` cut it (s from its first row).
+    raises ExperimentError: no experiment is there, the folder cannot be written, or spans belong to
+        several logs
+    """
+    content = read_toml(source / _FILE, f"{source.name}/{_FILE}").content
+    names = [log.name for log in logs]
+    records = records_of(names, spans)
+    known = [source / str(one["file"]) for one in content.get("records", [])[:1] if "file" in one]
+    counted = "time" not in content.get("channels", {})
+    require_same_statements([*known, *logs], counted=counted)
+    whole = read_whole(source / _FILE).decode("utf-8")
+    text = _RECORDS.sub("", "\n".join(whole.splitlines()))
+    text = re.sub(r"(?m)^title\s*=.*$", lambda _: f"title = {string_text(title)}", text, count=1)
+    copy_logs(logs, folder)
+    others = {key: value for key, value in content.items() if key != "records"}
+    for name in dict.fromkeys(texts_in(others)):
+        if _is_file_in(source, name):
+            copy_logs([source / name], (folder / name).parent)
+    write_text(folder / _FILE, "\n".join([text.rstrip(), "", *records_text(records), ""]))
+
+
+def _is_file_in(folder: Path, name: str) -> bool:
+    """Whether a text is the name of a file within a folder; a sentence may be too long for one."""
+    whole = os.path.realpath(folder / name)
+    return os.path.isfile(whole) and Path(whole).is_relative_to(os.path.realpath(folder))

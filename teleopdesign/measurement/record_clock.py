@@ -21,14 +21,12 @@ from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
 from .encoder import LOST, Array, is_most
-from .limits import HALF
+from .limits import FEWEST, HALF, SHORTEST
 from .reading import count_of
-from .usual_step import GOES_ON, are_set_back, usual_step
+from .stamps import GOES_ON, are_set_back, usual_step
 
 RowNumbers = NDArray[np.intp]
 
-SHORTEST = 1.0  # s: least duration of all segments of a record together
-FEWEST = 64  # fewest samples of a record, and rows from which a line is fitted first
 #: rms jitter, of a sample time, below which stamps are those of an even clock
 EVEN = 0.01
 #: s: larger stamps are a date (counted from the year 1970), and the time of the record starts at

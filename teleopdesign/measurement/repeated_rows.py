@@ -18,8 +18,8 @@ from .channel import Channel
 from .encoder import CHANGES, STEPS, Array, reading_step
 from .limits import HALF, SMALL
 from .record_clock import places_of, slope_of
+from .stamps import usual_step
 from .tables import LogColumns
-from .usual_step import usual_step
 
 #: probability by chance up to which all readings of a row repeat because it is lost, a channel is
 #: stuck, or a sample is an outlier. Rows count as lost only if they are more than this share of all

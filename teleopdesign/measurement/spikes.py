@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .encoder import Array, reading_step
-from .limits import HALF, SMALL
-from .record_clock import FEWEST
+from .limits import FEWEST, HALF, SMALL
 from .repeated_rows import runs_of
 from .resample import cubic_through_four
 

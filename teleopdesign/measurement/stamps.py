@@ -7,16 +7,17 @@ starts again at midnight; a clock without a zone goes back an hour in autumn.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..base.sentences import percent
-from .encoder import SURELY, Array
-from .limits import HALF
-from .reading import ReadingStep
-from .record_clock import EVEN, SHORTEST, RecordClock
-from .usual_step import are_set_back, usual_step
+from .encoder import Array
+from .limits import HALF, SHORTEST
+
+#: most successive lost rows that are filled, and most rows by which one is out of order: more are a
+#: pause, or a clock that was set back. At 1 kHz six sample times are a tenth of a period at 16 Hz,
+#: so the motion between them is still known in the band of a comparison
+GOES_ON = 5
 
 #: s in a day
 DAY = 86_400.0
@@ -96,80 +97,34 @@ def unit_of_steps(stamps: Array) -> tuple[str, str]:
     return unit, f"{unit}: only in {unit} are steps of {step:.4g} usual for a log"
 
 
-def read_at_stamps(
-    clock: RecordClock, positions: Sequence[Array], file: str
-) -> tuple[bool, list[ReadingStep]]:
-    """Whether each row was taken at its stamp, with the reading steps that report it.
+def usual_step(steps: Array) -> float:
+    """The usual one of the steps between stamps, s: the mean of those near the median.
 
-    positions: (m,) each, of the clock's rows
+    steps: those of 0 and back do not count; 0 where none is left
     """
-    h, rule = clock.sample_time, "positions interpolated, commands held"
-    if clock.counted or clock.jitter <= EVEN * h:
-        return False, []
-    numbers: dict[str, float] = {"rate": 1.0 / h}
-    if math.isinf(clock.jitter):
-        steps = np.diff(clock.stamps) / h
-        numbers |= {"shortest": float(steps.min()), "longest": float(steps.max())}
-        between = " to ".join(f"{numbers[key]:.2g}" for key in ("shortest", "longest"))
-        text, stamped = f"uneven stamps, steps of {between} times {h:.3g} s", True
-        rule = f"each row at its own stamp: {rule}"
-    else:
-        slope, error = stamps_are_true(clock, positions)
-        numbers |= {"jitter": clock.jitter, "followed": slope}
-        text = f"stamps {percent(clock.jitter / h, '.2g')} of a row off an even clock"
-        share = f"({slope:.2f} +- {error:.1g} of what they say)"
-        stamped = slope > HALF and math.isfinite(error)
-        rule = f"the position was read at its stamps {share}: {rule}"
-        if not stamped:
-            rule = f"read on an even clock, for the position does not follow the stamps {share}"
-    effect = "none"
-    if "followed" in numbers and not abs(slope - 0.5) > SURELY * error:
-        effect = "the position hardly tells, so that it makes little difference"
-    step = ReadingStep(
-        file,
-        text,
-        rule,
-        effect,
-        topic="sample clock",
-        numbers=tuple(numbers.items()),
-        interpolates=stamped,
-    )
-    return stamped, [step]
+    forward = steps[steps > 0]
+    if not len(forward):
+        return 0.0
+    usual = float(np.median(forward))
+    near = forward[np.abs(forward - usual) < HALF * usual]
+    return float(near.mean()) if len(near) else usual
 
 
-def stamps_are_true(clock: RecordClock, positions: Sequence[Array]) -> tuple[float, float]:
-    """Whether a position follows uneven stamps (coefficient 1) or an even clock (coefficient 0).
+def step_deviations(stamps: Array) -> Array:
+    """Distance of each step between stamps (n,) from the usual one, in usual steps, (n - 1,)."""
+    steps = np.diff(stamps)
+    usual = usual_step(steps)
+    return np.abs(steps / usual - 1.0) if usual > 0 else np.full(len(steps), math.inf)
 
-    The deviation of a reading from its neighbours is regressed on the speed times the deviation of
-    the stamp from the even clock. Both are second differences, which suppress a smooth motion.
 
-    positions: (m,) each, of the clock's rows
-    returns: the coefficient and its standard error; (1, inf) if the positions do not decide
-    """
-    above = below = 0.0
-    pairs: list[tuple[Array, Array]] = []
-    off = clock.stamps - clock.time[clock.places]
-    for stretch in clock.of_rows:
-        place = clock.places[stretch]
-        if len(place) < 5:
-            continue
-        inner = (place[2:] - place[:-2] == 2)[1:-1]
-        late = off[stretch] - off[stretch].mean()
-        for x in positions:
-            x = x[stretch]
-            speed = np.zeros(len(x))
-            speed[1:-1] = (x[2:] - x[:-2]) / (2.0 * clock.sample_time)
-            bend = np.diff(x, 2)[1:-1][inner]
-            made = np.diff(speed * late, 2)[1:-1][inner]
-            scale = float(np.mean(bend**2))
-            if scale > 0 and len(bend):
-                above += float(made @ bend) / scale
-                below += float(made @ made) / scale
-                pairs.append((bend / math.sqrt(scale), made / math.sqrt(scale)))
-    if below <= 0:
-        return 1.0, math.inf
-    slope = above / below
-    left = sum(float(np.sum((b - slope * m) ** 2)) for b, m in pairs)
-    number = sum(len(b) for b, _ in pairs)
-    # neighbouring second differences share readings: six of them count as one
-    return slope, math.sqrt(6.0 * left / max(number, 1) / below)
+def are_set_back(steps: Array, usual: float) -> NDArray[np.bool_]:
+    """Steps between stamps (n,) at which a clock was set back: further than a row out of order."""
+    return np.asarray(steps < -(GOES_ON + 0.5) * usual)
+
+
+def are_out_of_order(stamps: Array) -> bool:
+    """Whether stamps are those of one clock, each once, with rows a little out of order."""
+    steps, ordered = np.diff(stamps), np.diff(np.sort(stamps))
+    if not np.any(steps < 0) or not np.all(ordered > 0):
+        return False
+    return not are_set_back(steps, usual_step(ordered)).any()

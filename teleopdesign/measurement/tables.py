@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from ..base.errors import ExperimentError, did_you_mean, quote
+from .doors._cells import numbers_of
 from .doors._dialect import LOOKED_AT
 from .doors._log import Log, bare_column, join_names, refuse_odd_names
 from .doors.arrays import open_arrays
@@ -24,7 +25,6 @@ from .doors.shapes import with_best_shape
 from .doors.text import open_text
 from .doors.workbook import open_workbook
 from .encoder import Array
-from .numbers_in_cells import numbers_of
 from .reading import ReadingStep
 from .stamps import unwrap_stamps
 

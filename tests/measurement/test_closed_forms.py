@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
+from teleopdesign.measurement.doors._cells import numbers_of
 from teleopdesign.measurement.files import content_digest, experiment_files
-from teleopdesign.measurement.numbers_in_cells import numbers_of
 from teleopdesign.measurement.reversals import look_back_to_reversal, mark_reversals
 
 # reversals

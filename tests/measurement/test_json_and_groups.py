@@ -9,7 +9,7 @@ import pytest
 from scipy.io import savemat
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.measurement.numbers_in_cells import numbers_of
+from teleopdesign.measurement.doors._cells import numbers_of
 from teleopdesign.measurement.tables import open_log, read_columns
 
 T = 0.01 * np.arange(90)

@@ -9,11 +9,10 @@ from hypothesis import strategies as st
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.column_names import likeness, unit_in_name
-from teleopdesign.measurement.doors._cells import NO_READING
-from teleopdesign.measurement.numbers_in_cells import numbers_of
+from teleopdesign.measurement.doors._cells import NO_READING, numbers_of
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.survey.content import SURE_NAME
-from teleopdesign.measurement.survey.position import _step_of_readings
+from teleopdesign.measurement.survey.position_entry import _step_of_readings
 from teleopdesign.measurement.tables import open_log, read_columns
 
 T = np.arange(400) / 200.0

@@ -1,4 +1,4 @@
-"""Cells of a text table as numbers: plain numbers, and dates and times of day as text.
+"""Cells of a table as numbers: plain numbers, dates and times of day, also as texts.
 
 Dates are those of ISO with or without a zone, day or month first, AM and PM.
 """
@@ -14,7 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.errors import ExperimentError, quote
 from ..encoder import Array
+from ..signed_numbers import MOST_BITS
+
+#: whole numbers above are stamps in nanoseconds: 2^53, beyond which float64 skips some
+_LONG = 2**MOST_BITS
+#: cells that tell whether a column holds dates
+_SOME = 100
 
 #: a number. Possessive quantifiers ("++") match digits once, so that a cell of a million digits and
 #: a letter needs no time
@@ -38,9 +45,12 @@ _CLOCK = re.compile(
     r"(?:(\d{1,6}) days? \+?)?(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,]\d+)?))?"
     r"(?:\s*([AaPp])\.?[Mm]\.?)?$"
 )
-_YEAR_FIRST = re.compile(r"(\d{4})[-/.](\d{1,2})[-/.](\d{1,2})$")
-_YEAR_LAST = re.compile(r"(\d{1,2})([-/.])(\d{1,2})\2(\d{4})$")
-_MONTH_NAMED = re.compile(r"(\d{1,2})[- ]([A-Za-z]{3})[a-z]*[- ](\d{4})$")
+#: days: with the year first, with the name of the month, with the year last
+_DAYS = (
+    re.compile(r"(?P<y>\d{4})[-/.](?P<m>\d{1,2})[-/.](?P<d>\d{1,2})(?P<sign>)$"),
+    re.compile(r"(?P<d>\d{1,2})[- ](?P<m>[A-Za-z]{3})[a-z]*[- ](?P<y>\d{4})(?P<sign>)$"),
+    re.compile(r"(?P<d>\d{1,2})(?P<sign>[-/.])(?P<m>\d{1,2})(?P=sign)(?P<y>\d{4})$"),
+)
 _MONTHS = "jan feb mar apr may jun jul aug sep oct nov dec".split()
 #: between a date and its time of day: ISO's T, spaces, a comma
 _BETWEEN = re.compile(r"(?<=\d)(?:T|,?\s+)(?=\d{1,2}:)")
@@ -194,16 +204,11 @@ def _seconds_of_day(text: str) -> float | None:
 
 def _dates_of(days: Sequence[str]) -> NDArray[np.datetime64] | None:
     """Days as dates, with the day or the month first; None: some texts are no dates."""
-    kinds = {day: _numbers_of(day) for day in dict.fromkeys(days)}
-    if any(numbers is None for numbers in kinds.values()):
-        return None
     best: tuple[int, dict[str, np.datetime64]] | None = None
     for month_first in (False, True):
         try:
             with warnings.catch_warnings(action="ignore", category=UserWarning):
-                dates = {
-                    day: _date(numbers, month_first) for day, numbers in kinds.items() if numbers
-                }
+                dates = {day: _date(day, month_first) for day in dict.fromkeys(days)}
         except ValueError:
             continue
         # "11/12/2026" is ambiguous: the reading with the fewest days is taken
@@ -213,24 +218,86 @@ def _dates_of(days: Sequence[str]) -> NDArray[np.datetime64] | None:
     return None if best is None else np.array([best[1][day] for day in days])
 
 
-def _numbers_of(day: str) -> tuple[int, int, int, bool] | None:
-    """Year, two other numbers, and whether slashes separate them: then either is the month."""
-    if (match := _YEAR_FIRST.match(day)) is not None:
-        return int(match[1]), int(match[3]), int(match[2]), False
-    if (match := _MONTH_NAMED.match(day)) is not None:
-        month = match[2].lower()
-        return (
-            (int(match[3]), int(match[1]), _MONTHS.index(month) + 1, False)
-            if (month in _MONTHS)
-            else None
+def _date(day: str, month_first: bool) -> np.datetime64:
+    """A day as a date; of two numbers between slashes, either may be the month.
+
+    raises ValueError: the text is no date
+    """
+    match = next(filter(None, (kind.match(day) for kind in _DAYS)), None)
+    if match is None:
+        raise ValueError(day)
+    first, month, year = match["d"], match["m"], int(match["y"])
+    if month_first and match["sign"] == "/":
+        first, month = month, first
+    number = int(month) if month.isdigit() else _MONTHS.index(month.lower()) + 1
+    return np.datetime64(f"{year:04d}-{number:02d}-{int(first):02d}", "D")
+
+
+def numbers_of(values: Any, column: str, file: str, channel: str = "") -> Array:
+    """A column as float64 (n,), from numbers or dates of shape (n,), (n, 1) or (1, n).
+
+    raises ExperimentError: more than one column, or a cell that is no number
+    """
+    values = np.asarray(values)
+    begin = f"{file}: {channel}: column {quote(column)}" if channel else f"{file}: {quote(column)}"
+    if values.ndim == 2 and 1 in values.shape:
+        values = values.reshape(-1)
+    if values.ndim != 1:
+        raise ExperimentError(
+            f"{begin}: found an array of shape {values.shape}, expected one column"
         )
-    if (match := _YEAR_LAST.match(day)) is not None:
-        return int(match[4]), int(match[1]), int(match[3]), match[2] == "/"
-    return None
+    if values.dtype.kind in "mM":
+        return _seconds(values)
+    if values.dtype.kind in "iu" and len(values) and np.abs(values[0]) > _LONG:
+        # as signed: of unsigned numbers, one below the first leaves a number near 2^64
+        return np.asarray((values - values[0]).astype(np.int64), dtype=np.float64)
+    if values.dtype.kind in "OU":
+        values = _plain_objects(values.astype(object))
+    if values.dtype.kind not in "fiub":
+        row, text = _first_non_number(values)
+        raise ExperimentError(f"{begin}, row {row}: found {text}, expected a number")
+    numbers: Array = values.astype(np.float64)
+    return numbers
 
 
-def _date(numbers: tuple[int, int, int, bool], month_first: bool) -> np.datetime64:
-    year, day, month, either = numbers
-    if month_first and either:
-        day, month = month, day
-    return np.datetime64(f"{year:04d}-{month:02d}-{day:02d}", "D")
+def holds_dates(values: Any) -> bool:
+    """Whether cells are dates, times of day or durations, also as texts: `numbers_of` gives s."""
+    values = np.asarray(values)
+    if values.dtype.kind in "mM":
+        return True
+    some = values.reshape(-1)[:_SOME].tolist() if values.dtype.kind in "OU" else []
+    return bool(some) and stamps_in_texts(some) is not None
+
+
+def _seconds(values: NDArray[Any]) -> Array:
+    """Dates and durations in s from the first one; NaN in empty cells."""
+    empty = np.isnat(values)
+    filled = values[~empty]
+    out = np.full(len(values), np.nan)
+    if len(filled):
+        out[~empty] = (filled - filled[0]) / np.timedelta64(1, "ns") * 1e-9
+    return out
+
+
+def _plain_objects(values: NDArray[Any]) -> NDArray[Any]:
+    """Objects as numbers if all are numbers, texts of numbers or dates; None is an empty cell."""
+    if any(isinstance(v, str) for v in values):
+        stamps = stamps_in_texts(values.tolist())
+        if stamps is not None:
+            return stamps
+        values = np.array([number_of(v) if isinstance(v, str) else v for v in values], dtype=object)
+    if all(v is None or isinstance(v, int | float | np.number) for v in values):
+        return np.array([np.nan if v is None else v for v in values], dtype=np.float64)
+    if any(hasattr(v, "isoformat") for v in values):
+        try:
+            return _seconds(values.astype("datetime64[ns]"))
+        except (TypeError, ValueError):
+            return values
+    return values
+
+
+def _first_non_number(values: NDArray[Any]) -> tuple[int, str]:
+    for row, value in enumerate(values, start=1):
+        if not isinstance(value, int | float | np.number):
+            return row, quote(str(value))
+    return 1, f"values of type {values.dtype}"

@@ -12,8 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 
 from ...base.errors import ExperimentError, quote
-from ..limits import HALF, NEARLY_ALL, SEVERAL
-from ..record_clock import FEWEST
+from ..limits import FEWEST, HALF, NEARLY_ALL, SEVERAL
 from ._cell_shapes import LineShape, units_behind_numbers, vectors_in_cells
 from ._cells import is_empty, is_number, seconds_of
 from ._dialect import COMMENTS, cells_of, separator_of

@@ -19,8 +19,8 @@ from ...base.units import measures, si_factor
 from ..column_names import likeness, unit_in_name
 from ..encoder import Array
 from ..limits import HALF
-from ..numbers_in_cells import numbers_of
 from ..stamps import unit_of_steps, unwrap_stamps
+from ._cells import numbers_of
 from ._log import Log, join_names
 
 

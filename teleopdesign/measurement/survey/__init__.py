@@ -18,19 +18,20 @@ from ...base.errors import ExperimentError, did_you_mean
 from ...base.units import is_several_times, is_unit, parse_unit
 from ..channel import BODY_QUANTITIES
 from ..column_names import WORDS, as_unit, unit_in_name, words_of
+from ..doors._cells import numbers_of
 from ..doors._log import Log, join_names
 from ..doors.folder import are_quantities
 from ..encoder import Array
-from ..numbers_in_cells import numbers_of
-from ..record_clock import FEWEST, segments_of
+from ..limits import FEWEST
+from ..record_clock import segments_of
 from ..stamps import unwrap_stamps
-from .axis_kind import axis_of
 from .clock import WEIGHTS, duration_of, interpolate_columns, numeric_columns, time_column
 from .content import ASSUMED, NONE, Choices, Survey, SurveyedColumn
 from .derivative import wrap_of
 from .forces import describe_forces
-from .position import describe_position, find_position
-from .relations import unused_columns
+from .position import find_position
+from .position_entry import axis_of, describe_position
+from .refusals import unused_columns
 from .time_role import counts_rows, rate_without_time
 
 __all__ = [

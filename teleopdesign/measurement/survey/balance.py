@@ -23,8 +23,7 @@ from ..limits import SMALL
 from .content import NONE, SURE_NAME, Choices, Survey, SurveyedColumn
 from .force_entry import PLACEHOLDER, force_to_si
 from .remarks import gear_ratio_in
-from .roles import LEAST_LEFT, score_of
-from .words import says
+from .roles import LEAST_LEFT, says, score_of
 
 #: a column without a clear name counts as the force of the hand if it leaves at most this part of
 #: the squares that the motion does not explain: with a higher limit, one of many columns would pass

@@ -10,17 +10,19 @@ import numpy as np
 from ...base.errors import ExperimentError, quote
 from ...base.units import is_several_times, measures, si_factor
 from ..column_names import is_wanted, likeness
+from ..doors._cells import holds_dates, numbers_of
 from ..doors._log import Log, bare_column, join_names
 from ..encoder import Array, is_most
 from ..log_clock import OF_ANOTHER_CLOCK
-from ..numbers_in_cells import holds_dates, numbers_of
 from ..record_clock import clock_of
 from ..repeated_rows import rows_between_readings
 from ..signed_numbers import sign_code_of
 from ..spikes import lost_zeros
 from ..stamps import seconds_since_first, unit_of_steps
-from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, reasons, rises, unit_in_log
+from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, rises
+from .refusals import reasons
 from .remarks import sample_rate_in
+from .roles import unit_in_log
 from .time_role import (
     busiest_clock,
     counts_rows,

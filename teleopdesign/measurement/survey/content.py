@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ...base.units import is_unit, measures
-from ..column_names import likeness, unit_in_name
-from ..doors._log import bare_column, join_names
 from ..encoder import Array, is_most
 from ..first_guess import FirstGuess
 from ..signed_numbers import SignCode
-from .words import says
 
 #: likeness of a name from which the name alone decides, without physics
 SURE_NAME = 0.75
@@ -103,20 +98,6 @@ class Choices:
         return None not in stated
 
 
-def unit_in_log(name: str, names: Collection[str]) -> str | None:
-    """The unit at the end of a column's name among the names of its log.
-
-    One letter is a unit where the words before it name a length: "position_m" is in metres. Beside
-    "position_s" it is an index, as of a master.
-    """
-    unit = unit_in_name(name)
-    stem, _, letter = bare_column(name).rpartition("_")
-    if unit is not None or letter != "m" or not says(stem, "length"):
-        return unit
-    index = re.compile(re.escape(stem) + r"_[a-z]$", re.I)
-    return None if any(index.match(bare_column(n)) for n in names if n != name) else "m"
-
-
 def moves(column: SurveyedColumn) -> bool:
     return bool(np.ptp(column.values) > 0)
 
@@ -124,26 +105,6 @@ def moves(column: SurveyedColumn) -> bool:
 def columns_in_use(survey: Survey) -> set[str]:
     """The columns that are in a channel already, such as that which numbers trials."""
     return {entry["column"] for entry in survey.channels.values() if "column" in entry}
-
-
-def is_unit_of(unit: str | None, quantity: str) -> bool:
-    """Whether a unit fits a quantity on either axis; for a force, also A, mA, V and %."""
-    if unit is None:
-        return False
-    if unit == "counts":
-        return quantity == "position"
-    if quantity == "force" and is_unit(unit) and unit in ("A", "mA", "V", "%"):
-        return True
-    if quantity == "time":
-        return unit != "counts" and is_unit(unit) and measures(unit, "time")
-    return any(measures(unit, quantity, axis) for axis in ("prismatic", "revolute"))
-
-
-def kinds_of(column: SurveyedColumn) -> list[str]:
-    """The quantities that a column's unit fits; of parts in per cent the name says which."""
-    if column.unit == "%" and likeness(column.name, "position") >= SURE_NAME:
-        return []
-    return [q for q in ("position", "velocity", "force") if is_unit_of(column.unit, q)]
 
 
 def rises(x: Array) -> bool:
@@ -155,16 +116,3 @@ def rises(x: Array) -> bool:
 def sample_time_of(survey: Survey) -> float:
     """Time between two rows of the survey's grid, s."""
     return float(np.median(np.diff(survey.time)))
-
-
-def reasons(unread: Mapping[str, str], most: int = 3) -> str:
-    """Why columns of a log hold no numbers, as the end of a message; "" if all hold numbers."""
-    shown = [f"{name!r}: {why}" for name, why in list(unread.items())[:most]]
-    more = ["..."] if len(unread) > most else []
-    return f"; not read as numbers: {'; '.join(shown + more)}" if unread else ""
-
-
-def explain_ambiguity(column: str, others: Sequence[str], what: str) -> str:
-    """The reason why the choice of a column is a guess: other columns suit as well."""
-    named = join_names(map(repr, others), most=3)
-    return f"{column!r} is read as {what}: {named} may be {what} as well"

@@ -12,8 +12,8 @@ from ..encoder import SURELY, Array
 from ..filtering import spectrum
 from ..first_guess import motion_columns, rows_each_way
 from ..limits import NEARLY_ALL, SMALL
-from .content import SURE_NAME, SurveyedColumn, is_unit_of, rises
-from .words import says
+from .content import SURE_NAME, SurveyedColumn, rises
+from .roles import is_unit_of, says
 
 #: correlation from which one column is the derivative of another
 DERIVATIVE = 0.9

@@ -21,7 +21,7 @@ from ..encoder import reading_noise
 from ..signed_numbers import SIGN_BIT
 from .content import Choices, Survey
 from .remarks import torque_constant_in
-from .words import says
+from .roles import says
 
 #: N*m/A or m: constant of a motor, or lever arm of a force beside an angle, if nothing states it
 PLACEHOLDER = 1.0

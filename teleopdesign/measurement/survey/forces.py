@@ -10,12 +10,11 @@ from ...base.units import si_factor
 from ..column_names import likeness
 from ..encoder import Array
 from ..first_guess import SURELY_LESS, explain_force, is_turned
-from .axes import of_another_axis, stand_together
 from .balance import current_that_acted, find_hand, scale_by_balance
-from .content import SURE_NAME, Choices, Survey, SurveyedColumn, explain_ambiguity, sample_time_of
+from .content import SURE_NAME, Choices, Survey, SurveyedColumn, sample_time_of
 from .derivative import unwrap_column, wrap_of
 from .force_entry import describe_force, force_to_si, state_scatter
-from .refusals import error_without_force, error_without_position, tells_forces
+from .refusals import error_without_force, error_without_position, explain_ambiguity, tells_forces
 from .relations import causes_acceleration, left_in_turn, possible_forces, relations_of
 from .roles import (
     AS_LIKELY,
@@ -23,9 +22,11 @@ from .roles import (
     as_likely,
     is_named_force,
     is_nameless,
+    of_another_axis,
+    says,
     score_of,
+    stand_together,
 )
-from .words import says
 
 
 def describe_forces(

@@ -2,60 +2,46 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from itertools import product
-from typing import Any
 
-import numpy as np
-
-from ...base.units import measures, si_factor
 from ..column_names import (
     is_wanted,
     likeness,
-    why_no_unit,
 )
-from ..encoder import ENOUGH, Array, grid_of, reading_step
-from ..limits import SMALL
-from .axes import of_another_axis
-from .axis_kind import (
-    MOST_ANGLE,
-    drives_in_turns,
-    guess_counts_per_turn,
-    is_counter,
-    is_rate,
-    size_by_velocity,
-)
+from ..encoder import Array
 from .content import (
-    OF_SENSORS,
     SURE_NAME,
     Choices,
     Survey,
     SurveyedColumn,
     columns_in_use,
-    explain_ambiguity,
-    is_unit_of,
     moves,
     sample_time_of,
 )
 from .derivative import (
     DERIVATIVE,
-    NEAR_USUAL,
     follows_direction,
     is_no_velocity,
     is_velocity,
     leaps,
     may_be_position,
     rate_agreement,
-    turn_of,
     unwrap_column,
     wrap_of,
 )
-from .force_entry import describe_code
 from .forces import score_beside
-from .refusals import error_without_position
-from .roles import as_likely, first_of, is_nameless, is_no_position, score_of
-from .set_point import lags, may_be_set_point
+from .refusals import error_without_position, explain_ambiguity
+from .relations import lags, may_be_set_point
+from .roles import (
+    as_likely,
+    first_of,
+    is_nameless,
+    is_no_position,
+    is_unit_of,
+    of_another_axis,
+    score_of,
+)
 
 
 def find_position(survey: Survey, choices: Choices, file: str) -> tuple[str, str | None]:
@@ -166,85 +152,3 @@ def _note_choice(
     else:
         why = "it is the first column that moves"
     survey.guesses[key] = f"{best!r} is read as the position: {why}"
-
-
-def describe_position(
-    survey: Survey, position: str, velocity: str | None, choices: Choices
-) -> None:
-    """Set the channels of position and velocity: unit, wrap, resolution and gear ratio."""
-    column, axis = survey.columns[position], survey.axis
-    gear = {} if choices.gear_ratio is None else {"gear_ratio": choices.gear_ratio}
-    entry: dict[str, Any] = {"column": position, **describe_code(survey, position, "position")}
-    unit = column.unit
-    if unit is None and choices.counts_per_turn is not None:
-        unit = "counts"
-    if unit is None and axis == "revolute" and is_counter(column):
-        unit = "counts"
-        survey.guesses["channels.position.unit"] = (
-            f"counts: {position!r} holds whole numbers, as the counter of an encoder does"
-        )
-    if unit is None or unit != "counts" and not measures(unit, "position", axis):
-        unit, why = _position_unit(survey, column, velocity, axis)
-        survey.guesses["channels.position.unit"] = why
-    entry["unit"] = unit
-    jump = wrap_of(column.values)
-    factor = 1.0
-    if unit == "counts":
-        per_turn = choices.counts_per_turn
-        if per_turn is None:
-            per_turn = guess_counts_per_turn(survey, column, velocity, jump)
-        entry["counts_per_turn"] = per_turn
-    else:
-        factor = si_factor(unit, quantity="position", axis=axis)
-        step = _step_of_readings(column.readings)
-        if step > 0:
-            entry["resolution"] = _with_few_digits(step, float(np.ptp(column.values)))
-            survey.notes.append(f"{position!r} moves in steps of {step:.4g} {unit}")
-    if jump is not None:
-        turn = 2 * math.pi / factor
-        whole = axis == "revolute" and unit != "counts" and abs(jump / turn - 1.0) < NEAR_USUAL
-        entry["unwrap"] = True if whole else jump
-        survey.notes.append(f"{position!r} wraps at {jump:g}")
-    survey.channels["position"] = entry | gear
-    if velocity is not None and is_rate(survey, velocity):
-        rate = {"column": velocity, "unit": survey.columns[velocity].unit, **gear}
-        survey.channels["velocity"] = rate | describe_code(survey, velocity, "velocity")
-
-
-def _step_of_readings(values: Array) -> float:
-    """Step of the encoder, estimated from the readings; 0 if they show none."""
-    raw = values[:ENOUGH]
-    return grid_of(raw, reading_step(raw))
-
-
-def _with_few_digits(step: float, reach: float) -> float:
-    """A step with as few digits as keep it on its grid over a whole range."""
-    rounded = (float(f"{step:.{digits}g}") for digits in range(5, 17))
-    return next((r for r in rounded if abs(r / step - 1.0) * reach < SMALL * step), step)
-
-
-def unit_of_reach(reach: float, axis: str) -> str:
-    """The usual unit of a position whose readings have this range."""
-    if axis == "revolute":
-        return "deg" if reach > MOST_ANGLE else "rad"
-    return "mm" if reach > 3 else "m"
-
-
-def _position_unit(
-    survey: Survey, column: SurveyedColumn, velocity: str | None, axis: str
-) -> tuple[str, str]:
-    """A unit for a position without one, from its velocity or from its range; and the reason."""
-    reach = float(np.ptp(unwrap_column(column.values, wrap_of(column.values))))
-    size = 0.0 if velocity is None else size_by_velocity(survey, column, velocity)
-    for unit in ("deg", "rad", "turns") if axis == "revolute" else ("mm", "m", "um"):
-        if abs(size / si_factor(unit, quantity="position", axis=axis) - 1.0) < SMALL:
-            in_unit = f"{velocity!r} in {survey.columns[velocity or ''].unit}"
-            return unit, f"{unit}: with it, the derivative agrees with {in_unit}"
-    if axis == "revolute" and (drives := drives_in_turns(column.name)):
-        return "turns", f"turns: {' and '.join(drives)} drives report turns"
-    if axis == "revolute" and (turn := turn_of(column.values)) is not None:
-        return turn, f"{turn}: the readings wrap at a turn in {turn}"
-    unit = unit_of_reach(reach, axis)
-    why = why_no_unit(column.name, column.unit, "position", axis)
-    more = f", `scale` = {unit} per {column.unit} is missing" if column.unit in OF_SENSORS else ""
-    return unit, f"{unit}: {why}, and the readings have a range of {reach:.3g}{more}"

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from ...base.errors import ExperimentError
-from ..column_names import is_wanted, likeness
-from ..doors._log import join_names
+from ..column_names import is_another_quantity, is_wanted, likeness
+from ..doors._log import Log, join_names
+from ..encoder import Array
 from ..first_guess import band_of_fit, inner_rows
 from .content import (
     OF_SENSORS,
@@ -14,11 +15,18 @@ from .content import (
     SurveyedColumn,
     columns_in_use,
     moves,
-    reasons,
     rises,
     sample_time_of,
 )
-from .derivative import is_velocity
+from .derivative import (
+    DERIVATIVE,
+    is_no_velocity,
+    is_velocity,
+    rate_agreement,
+    unwrap_column,
+    wrap_of,
+)
+from .roles import is_unit_of, of_another_axis, says
 
 #: independent values of a low-passed force, from which an explanation is none by chance: the four
 #: columns of a motion explain any four values, and half of the squares of eight
@@ -116,3 +124,78 @@ def _constant_columns(survey: Survey) -> str:
         for names, what, command in kinds
         if names
     )
+
+
+def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[str, str]:
+    """Column -> reason why it is in no channel, in the order of the log.
+
+    raw: the columns of numbers, by name
+    """
+    used = columns_in_use(survey)
+    used |= {log.clocks[name] for name in used if name in log.clocks}
+    left = [name for name in dict.fromkeys(log.names) if name not in used]
+    return {name: _explain_unused(name, log, raw, survey) for name in left}
+
+
+def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Survey) -> str:
+    if (count := log.names.count(name)) > 1:
+        return f"{count} columns have this name"
+    if name not in raw:
+        why = survey.unread.get(name, "")
+        return why if why.startswith("one value") else f"holds no numbers{f' ({why})' * bool(why)}"
+    if name in log.clocks.values():
+        return "stamps of a topic that is not used"
+    column = survey.columns.get(name)
+    if column is None:
+        return f"has {len(raw[name])} rows, another number than the time"
+    if not moves(column):
+        return "does not change"
+    if rises(column.readings):
+        return "only rises, as a second clock or a counter does"
+    if survey.is_stated:
+        return "not among the columns that are stated"
+    position = survey.channels["position"]["column"]
+    if of_another_axis(name, position, survey.columns):
+        return f"of another axis than {position!r}: --position chooses the axis"
+    is_force = is_unit_of(column.unit, "force")
+    if is_another_quantity(name) and not is_force:
+        return (
+            "its name is not that of a position, velocity or force; for a pressure that acts on "
+            "the body: "
+            f'interaction_force = {{ column = "{name}", unit = "N", scale = N per unit of it }}'
+        )
+    if is_wanted(name) and not is_force:
+        return "a desired value, not a measured one"
+    if says(name, "difference"):
+        return "by its name a difference, such as the error of a controller"
+    return survey.relations.get(name) or _explain_no_force(column, survey)
+
+
+def _explain_no_force(column: SurveyedColumn, survey: Survey) -> str:
+    """What a column is that might be a force: a velocity, or explained too little."""
+    name, position = column.name, survey.channels["position"]["column"]
+    x = survey.columns[position].values
+    x = unwrap_column(x, wrap_of(x))
+    # a voltage is nearly in proportion to the speed
+    may_agree = not is_no_velocity(column)
+    if may_agree and rate_agreement(x, column.values, sample_time_of(survey)) > DERIVATIVE:
+        how = "" if column.unit else f"; --unit {name + '=UNIT'!r} states its unit"
+        return f"a velocity of {position!r}, which is computed from the position{how}"
+    force = survey.channels["actuator_force"]["column"]
+    share, best = (survey.explained.get(n) for n in (name, force))
+    beside = "" if best is None else f", and {best:.0%} of {force!r}"
+    explained = "" if share is None else f": the motion explains {share:.0%} of it{beside}"
+    return f"no channel beside {force!r}{explained}"
+
+
+def reasons(unread: Mapping[str, str], most: int = 3) -> str:
+    """Why columns of a log hold no numbers, as the end of a message; "" if all hold numbers."""
+    shown = [f"{name!r}: {why}" for name, why in list(unread.items())[:most]]
+    more = ["..."] if len(unread) > most else []
+    return f"; not read as numbers: {'; '.join(shown + more)}" if unread else ""
+
+
+def explain_ambiguity(column: str, others: Sequence[str], what: str) -> str:
+    """The reason why the choice of a column is a guess: other columns suit as well."""
+    named = join_names(map(repr, others), most=3)
+    return f"{column!r} is read as {what}: {named} may be {what} as well"

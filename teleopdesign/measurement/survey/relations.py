@@ -9,40 +9,34 @@ would look like physics that the model lacks.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...base.units import is_unit
-from ..column_names import is_another_quantity, is_wanted, likeness, words_of
-from ..doors._log import Log
+from ..column_names import WANTED, likeness, words_of
 from ..encoder import SURELY, Array
 from ..first_guess import least_squares, stretch_of
 from ..law_of_readings import is_copy
-from .axes import of_another_axis
-from .content import (
-    SURE_NAME,
-    Survey,
-    SurveyedColumn,
-    columns_in_use,
-    is_unit_of,
-    moves,
-    rises,
-    sample_time_of,
-)
+from ..limits import HALF, SEVERAL, SMALL
+from .content import SURE_NAME, Survey, SurveyedColumn, columns_in_use, moves, rises, sample_time_of
 from .derivative import (
     DERIVATIVE,
     derivative_factor,
-    is_no_velocity,
     is_velocity,
     may_be_ramp,
-    rate_agreement,
-    unwrap_column,
-    wrap_of,
 )
-from .roles import LEAST_LEFT, is_nameless
-from .set_point import has_numbers_of, is_sent_to_places, may_be_set_point
-from .words import says
+from .roles import LEAST_LEFT, is_nameless, is_unit_of, says
+
+Indices = NDArray[np.intp]
+
+#: part of the squares of a column by which its position may differ: two columns that agree as a
+#: velocity and the derivative of its position must
+APART = 1.0 - DERIVATIVE**2
+#: likeness of a name to that of a force, from which it is no set point whatever the numbers are:
+#: "torque", "current", "effort". "pwm", "u" and "cmd" name pulses of a set point as well
+FORCE_NAME = 0.85
 
 #: correlation from which one column is the derivative of another to its digits, as of a planned
 #: path: friction of 1 % of a force lowers it below
@@ -167,63 +161,94 @@ def _planned_motions(survey: Survey, h: float) -> Iterator[tuple[str, str]]:
                 yield name, "a motion that was planned: an exact derivative, or integral, of others"
 
 
-def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[str, str]:
-    """Column -> reason why it is in no channel, in the order of the log.
+def lags(column: Array, other: Array) -> bool:
+    """Whether a column has the numbers of another one, only later.
 
-    raw: the columns of numbers, by name
+    The delay may be less than a row, as that of a position behind the path that a drive plans: then
+    the numbers agree a row later rather than a row earlier.
     """
-    used = columns_in_use(survey)
-    used |= {log.clocks[name] for name in used if name in log.clocks}
-    left = [name for name in dict.fromkeys(log.names) if name not in used]
-    return {name: _explain_unused(name, log, raw, survey) for name in left}
+    if not has_numbers_of(column, other):
+        return False
+    later, earlier = (
+        [_apart(*pair, k) for k in _delays(len(column))]
+        for pair in ((column, other), (other, column))
+    )
+    if _apart(column, other, 0) < min(*later, *earlier):
+        return later[0] < earlier[0]
+    return min(later) < min(earlier)
 
 
-def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Survey) -> str:
-    if (count := log.names.count(name)) > 1:
-        return f"{count} columns have this name"
-    if name not in raw:
-        why = survey.unread.get(name, "")
-        return why if why.startswith("one value") else f"holds no numbers{f' ({why})' * bool(why)}"
-    if name in log.clocks.values():
-        return "stamps of a topic that is not used"
-    column = survey.columns.get(name)
-    if column is None:
-        return f"has {len(raw[name])} rows, another number than the time"
-    if not moves(column):
-        return "does not change"
-    if rises(column.readings):
-        return "only rises, as a second clock or a counter does"
-    if survey.is_stated:
-        return "not among the columns that are stated"
-    position = survey.channels["position"]["column"]
-    if of_another_axis(name, position, survey.columns):
-        return f"of another axis than {position!r}: --position chooses the axis"
-    is_force = is_unit_of(column.unit, "force")
-    if is_another_quantity(name) and not is_force:
-        return (
-            "its name is not that of a position, velocity or force; for a pressure that acts on "
-            "the body: "
-            f'interaction_force = {{ column = "{name}", unit = "N", scale = N per unit of it }}'
-        )
-    if is_wanted(name) and not is_force:
-        return "a desired value, not a measured one"
-    if says(name, "difference"):
-        return "by its name a difference, such as the error of a controller"
-    return survey.relations.get(name) or _explain_no_force(column, survey)
+def is_sent_to_places(position: Array, column: SurveyedColumn) -> bool:
+    """Whether a position rests at a place of its own for each value that another column holds.
+
+    The places are in proportion to the values, and the values keep away from zero: pulse widths of
+    a hobby servo, or counts of a converter, are a set point in another unit than the position.
+    """
+    if column.unit is not None and is_unit_of(column.unit, "force"):
+        return False
+    values = column.values
+    if likeness(column.name, "actuator_force") >= FORCE_NAME or not np.ptp(values) > 0.0:
+        return False
+    if values.min() * values.max() <= 0.0:
+        return False
+    # pulses of a hobby servo have 500 to 2500 us; no force keeps so far from zero beside a rest
+    if np.abs(values).min() < SMALL * np.abs(values).max():
+        return False
+    ends = np.flatnonzero(np.diff(values))  # the last row of each hold
+    ends = ends[ends > 0]
+    if not _rests_at(ends, position) or not np.ptp(values[ends]) > 0.0:
+        return False
+    line = np.polynomial.Polynomial.fit(values[ends], position[ends], 1)
+    apart = float(np.mean((position[ends] - line(values[ends])) ** 2))
+    return apart < APART * float(np.var(position[ends]))
 
 
-def _explain_no_force(column: SurveyedColumn, survey: Survey) -> str:
-    """What a column is that might be a force: a velocity, or explained too little."""
-    name, position = column.name, survey.channels["position"]["column"]
-    x = survey.columns[position].values
-    x = unwrap_column(x, wrap_of(x))
-    # a voltage is nearly in proportion to the speed
-    may_agree = not is_no_velocity(column)
-    if may_agree and rate_agreement(x, column.values, sample_time_of(survey)) > DERIVATIVE:
-        how = "" if column.unit else f"; --unit {name + '=UNIT'!r} states its unit"
-        return f"a velocity of {position!r}, which is computed from the position{how}"
-    force = survey.channels["actuator_force"]["column"]
-    share, best = (survey.explained.get(n) for n in (name, force))
-    beside = "" if best is None else f", and {best:.0%} of {force!r}"
-    explained = "" if share is None else f": the motion explains {share:.0%} of it{beside}"
-    return f"no channel beside {force!r}{explained}"
+def _rests_at(ends: Indices, position: Array) -> bool:
+    """Whether a position is slower than on the average at the ends of enough holds."""
+    if len(ends) < SEVERAL or 2 * len(ends) > len(position):
+        return False
+    change = np.abs(np.diff(position))
+    return float(np.mean(change[ends - 1])) < float(np.mean(change))
+
+
+def has_numbers_of(column: Array, position: Array) -> bool:
+    """Whether a column has the numbers of the position, at the same time, earlier or later."""
+    if not _are_alike(column, position):
+        return False
+    delays = _delays(len(column))
+    least = (min(_apart(column, position, k), _apart(position, column, k)) for k in delays)
+    return min(_apart(column, position, 0), *least) < APART
+
+
+def may_be_set_point(column: SurveyedColumn) -> bool:
+    """Whether unit and name of a column leave open that it is a set point of the position.
+
+    "cmd" and "command" name forces and set points; "torque" names a force only. Per cent may be
+    parts of a stroke or of a torque.
+    """
+    if column.unit not in (None, "%") and is_unit_of(column.unit, "force"):
+        return False
+    plain = " ".join(word for word in words_of(column.name) if word not in WANTED)
+    return max(likeness(plain, f"{k}_force") for k in ("actuator", "interaction")) < SURE_NAME
+
+
+def _are_alike(column: Array, other: Array) -> bool:
+    """Whether mean and spread let two columns have the same numbers: a quick first look."""
+    spread = float(np.std(other))
+    within = abs(float(np.mean(column) - np.mean(other))) < spread
+    return within and HALF * spread < float(np.std(column)) < 2.0 * spread
+
+
+def _delays(rows: int) -> Iterator[int]:
+    """Delays in rows, each about a quarter longer than the one before."""
+    delay = 1
+    while delay <= max(SMALL * rows, 1.0):
+        yield delay
+        delay += 1 + delay // 4
+
+
+def _apart(late: Array, early: Array, delay: int) -> float:
+    """Mean square of the difference between a column and one `delay` rows earlier, over its own."""
+    rows = len(late) - delay
+    whole = float(np.var(late))
+    return float(np.mean((late[delay:] - early[:rows]) ** 2)) / whole if whole > 0 else np.inf

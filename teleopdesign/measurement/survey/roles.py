@@ -11,15 +11,86 @@ relation that leaves e is worth 1 / e.
 from __future__ import annotations
 
 import math
+import re
 import tomllib
-from collections.abc import Mapping
-from functools import cache
+from collections.abc import Collection, Mapping
+from functools import cache, lru_cache
 from importlib.resources import files
 
-from ...base.units import is_unit
-from ..column_names import is_another_quantity, is_wanted, likeness
-from .content import SURE_NAME, SurveyedColumn, is_unit_of, kinds_of
-from .words import says, says_only
+from ...base.units import is_unit, measures
+from ..column_names import (
+    WANTED,
+    bare_name,
+    has_word,
+    is_another_quantity,
+    is_wanted,
+    likeness,
+    unit_in_name,
+    words_of,
+)
+from ..doors._log import bare_column
+from .content import SURE_NAME, SurveyedColumn
+
+Words = tuple[str, ...]
+
+#: words for the two sides of a teleoperator, or of a device for both hands; letters of axes
+_SIDES = (
+    ("master", "slave"), ("leader", "follower"), ("local", "remote"), ("mtm", "psm"),
+    ("left", "right"), ("links", "rechts"),
+)  # fmt: skip
+#: letters that are indices of sides where the log holds both; others, "q_d", tell kinds of values
+_LETTERS = frozenset("mslfr")
+#: the field of a struct or joint, or a whole name without one; and the numbers of axes ("J2_pos")
+_STEM = re.compile(r"(?:^|[./])[^./]*$")
+_NUMBERS = re.compile(r"\d+")
+#: the letter of an axis in space as the last word of a name: "PosX", "force_y", "Torque z"
+_SPACE = re.compile(r"(?:(?<=[a-z])[XYZ]|(?<=[_\s.-])[xyzXYZ])$")
+#: words of names that tell columns apart by their number only
+_COLUMNS = frozenset("column col channel chan ch var signal data value spalte kanal wert".split())
+#: quantities whose words are no names of joints
+_QUANTITIES = ("position", "velocity", "actuator_force", "interaction_force")
+
+#: what words say -> the words, in the languages that `column_names` reads
+SAYS: dict[str, tuple[str, ...]] = {
+    kind: tuple(words.split())
+    for kind, words in {
+        # of a motor; "iq" makes the torque of a brushless one
+        "current": "current curr cur strom courant corriente corrente i iq amps 電流 电流 전류 ток",
+        # drives a motor against its speed
+        "voltage": "voltage volts spannung uq vq",
+        "torque": "torque moment drehmoment couple coppia force kraft fuerza forza tau "
+        "トルク 力矩 扭矩 토크 момент сила",
+        # a torque about an axis that turns
+        "turning torque": "torque torques drehmoment moment couple coppia tau effort iq "
+        "トルク 力矩 扭矩 토크 момент",
+        # the motor side of a gear
+        "motor side": "motor motors moteur モータ 电机 мотор",
+        # parts that have a position, a speed and a force
+        "part": "motor servo axis joint",
+        # drives that report positions in turns; joints of limbs turn, also where they lift
+        "drive in turns": "odrive moteus",
+        "limb": "shoulder elbow wrist hip knee ankle",
+        "angle": "angle winkel theta phi angulo angolo 角度 각도 угол",
+        "turning": "q enc encoder joint motor servo rotor wheel shaft",
+        # parts that slide, in names without an angle: "torso_lift_joint" is a joint that slides
+        "sliding": "lift elevator slide slider prismatic linear rail carriage",
+        # what a controller puts out, beside the words of a command
+        "output": "u control ctrl controller output out input action pwm duty set "
+        "commanded commands request requested",
+        "counter": "enc encoder count counts counter ticks tick inc",
+        # the clock of a microcontroller, and the time from one row to the next
+        "clock": "tick systick clock uptime",
+        "step of time": "dt timestep deltat δt",
+        "acceleration": "acceleration accel acc beschleunigung acceleracion qdd ddq xdd ddx qddot "
+        "ddtheta",
+        # such as the error of a controller: "q_err", "Schleppfehler"
+        "difference": "error err fehler abweichung deviation erreur ecart errore 误差 誤差 偏差 "
+        "오차 ошибка",
+        # a length or a place along a line
+        "length": "position pos x weg displacement displ disp stroke slider verschiebung "
+        "deplacement",
+    }.items()
+}
 
 #: least part of a signal that a relation is taken to leave: what is nearer is as good, since
 #: filters, delays and digits of a log leave a hundredth
@@ -110,3 +181,101 @@ def is_no_position(column: SurveyedColumn) -> bool:
     no_position = max(likeness(column.name, other) for other in others) >= SURE_NAME
     no_position = no_position and not says_only(column.name, "part")
     return named == 0 and (no_position or is_another_quantity(column.name))
+
+
+def says(name: str, *kinds: str) -> bool:
+    """Whether a name contains a word that says one of these: "Motorstrom" says "current"."""
+    return any(has_word(name, SAYS[kind]) for kind in kinds)
+
+
+def says_only(name: str, kind: str) -> bool:
+    """Whether a name has no other words: "motor" tells a part, and no quantity of it."""
+    return bool(words_of(name)) and set(SAYS[kind]).issuperset(words_of(name))
+
+
+def unit_in_log(name: str, names: Collection[str]) -> str | None:
+    """The unit at the end of a column's name among the names of its log.
+
+    One letter is a unit where the words before it name a length: "position_m" is in metres. Beside
+    "position_s" it is an index, as of a master.
+    """
+    unit = unit_in_name(name)
+    stem, _, letter = bare_column(name).rpartition("_")
+    if unit is not None or letter != "m" or not says(stem, "length"):
+        return unit
+    index = re.compile(re.escape(stem) + r"_[a-z]$", re.I)
+    return None if any(index.match(bare_column(n)) for n in names if n != name) else "m"
+
+
+def is_unit_of(unit: str | None, quantity: str) -> bool:
+    """Whether a unit fits a quantity on either axis; for a force, also A, mA, V and %."""
+    if unit is None:
+        return False
+    if unit == "counts":
+        return quantity == "position"
+    if quantity == "force" and is_unit(unit) and unit in ("A", "mA", "V", "%"):
+        return True
+    if quantity == "time":
+        return unit != "counts" and is_unit(unit) and measures(unit, "time")
+    return any(measures(unit, quantity, axis) for axis in ("prismatic", "revolute"))
+
+
+def kinds_of(column: SurveyedColumn) -> list[str]:
+    """The quantities that a column's unit fits; of parts in per cent the name says which."""
+    if column.unit == "%" and likeness(column.name, "position") >= SURE_NAME:
+        return []
+    return [q for q in ("position", "velocity", "force") if is_unit_of(column.unit, q)]
+
+
+def stand_together(one: str, other: str) -> bool:
+    """Whether two columns are fields of one struct, or of one joint in a message."""
+    stems = {_STEM.sub("", name) for name in (one, other)}
+    if stems != {""}:
+        return len(stems) == 1
+    numbers = {_axis_numbers(name) for name in (one, other)}
+    return len(numbers) == 1 and () not in numbers
+
+
+def _axis_numbers(name: str) -> tuple[str, ...]:
+    """Numbers in a name, "J2_pos" -> 2, or its letter, "PosX" -> x: such numbers count axes.
+
+    Where the name says no more, "column 2", they count columns.
+    """
+    bare = bare_name(name)
+    if _COLUMNS.issuperset(words_of(_SPACE.sub("", bare))):
+        return ()
+    return (*_NUMBERS.findall(bare), *map(str.lower, _SPACE.findall(bare)))
+
+
+def of_another_axis(one: str, other: str, names: Collection[str] = ()) -> bool:
+    """Whether two columns belong to two axes: "J1_current", "J2_angle"; "slave_pos", "master_cmd".
+
+    names: all columns of the log. Another word or letter calls a joint or a side only where the log
+        holds each of the two columns with that of the other, too: "q_m", "q_s", "tau_m", "tau_s"
+    """
+    numbers = {_axis_numbers(name) for name in (one, other)}
+    if len(numbers) == 2 and () not in numbers:
+        return True
+    first, second = (words_of(name) for name in (one, other))
+    for pair in _SIDES:
+        sides = [{side for side in pair if side in words} for words in (first, second)]
+        if all(len(side) == 1 for side in sides):
+            return sides[0] != sides[1]
+    (label, quantity), (label_2, quantity_2) = _split(first), _split(second)
+    if not label or not label_2 or label == label_2:
+        return False
+    splits = {_split(words_of(name)) for name in names}
+    both, both_2 = ({q for of, q in splits if of == one} for one in (label, label_2))
+    return {quantity, quantity_2} <= both & both_2 and len(both & both_2) > 1
+
+
+@lru_cache(maxsize=4096)
+def _split(words: Words) -> tuple[Words, Words]:
+    """The words that may call a joint, "hip", or a side, "m", and those of a quantity."""
+    called = [w in _LETTERS if len(w) == 1 else not _tells_quantity(w) for w in words]
+    pairs = list(zip(words, called, strict=True))
+    return tuple(w for w, is_label in pairs if is_label), tuple(w for w, is_l in pairs if not is_l)
+
+
+def _tells_quantity(word: str) -> bool:
+    return word in WANTED or any(likeness(word, q) >= SURE_NAME for q in _QUANTITIES)

@@ -12,15 +12,12 @@ from ...base.units import measures, si_factor
 from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of_text, words_of
 from ..doors._log import Log
 from ..encoder import Array
-from ..limits import HALF, SEVERAL, SMALL
-from ..record_clock import FEWEST
-from ..stamps import unit_of_steps, unwrap_stamps
-from ..usual_step import are_out_of_order, step_deviations
-from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, is_unit_of, rises, unit_in_log
+from ..limits import FEWEST, HALF, SEVERAL, SMALL
+from ..stamps import are_out_of_order, step_deviations, unit_of_steps, unwrap_stamps
+from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, rises
 from .derivative import DERIVATIVE, derivative_factor, has_both_signs, unwrap_column, wrap_of
 from .remarks import sample_rate_in
-from .roles import score_of
-from .words import says, says_only
+from .roles import is_unit_of, says, says_only, score_of, unit_in_log
 
 #: quantities whose units are not those of a time
 QUANTITIES = ("position", "velocity", "force")

@@ -18,19 +18,14 @@ from numpy.typing import NDArray
 from ....base.errors import ExperimentError
 from ....base.units import si_factor
 from ...encoder import Array
-from ...limits import HALF
-from ...numbers_in_cells import holds_dates, numbers_of
-from ...record_clock import DATE, FEWEST
-from ...stamps import unit_of_steps, unwrap_stamps
-from ...usual_step import step_deviations
-from .._cells import is_column_of_texts
+from ...limits import FEWEST, HALF
+from ...record_clock import DATE
+from ...stamps import step_deviations, unit_of_steps, unwrap_stamps
+from .._cells import holds_dates, is_column_of_texts, numbers_of
 from .._log import Log, join_names
 from ._table import CellTable, LongSignal, LongTable, as_text, rises, time_of
-from .clock_before_signals import clock_before_signals
-from .machines import machines_in_turn
-from .reading_in_each_row import reading_in_each_row
-from .separate_clocks import separate_clocks
-from .two_part_time import two_part_time
+from .rows_in_turn import machines_in_turn, reading_in_each_row
+from .several_times import clock_before_signals, separate_clocks, two_part_time
 
 TableShape = Callable[[CellTable], LongTable | None]
 

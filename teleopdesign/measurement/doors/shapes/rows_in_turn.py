@@ -1,8 +1,6 @@
-"""Tables whose rows belong to several machines in turn: each of them is read with its own clock.
+"""Tables whose rows belong to several machines or signals in turn, which a column names.
 
-motor_id; t;     pos;  cmd           joint, time, position, effort
-1;        0.000; 0.10; 0.2           hip,   0.00, 0.10,     1.5
-2;        0.001; 2.30; 0.0           knee,  0.00, 2.30,     0.1
+Viewers of bags, data bases and decoders of a bus write one reading in each row.
 """
 
 from __future__ import annotations
@@ -14,10 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...column_names import words_of
-from ...encoder import Array
+from ...encoder import Array, is_most
 from ...limits import HALF
-from .._log import MOST_PARTS, join_names
+from .._header import UNIT_LABELS, bare_unit
+from .._log import MOST_PARTS, MOST_SIGNALS, join_names
 from ._table import FEWEST_ROWS, CellTable, LongSignal, LongTable, as_text, time_of
+
+#: last words of the names of the columns that name the signal of a row, and that hold its reading
+SIGNALS = frozenset("topic signal channel variable tag parameter series measurement".split())
+READINGS = frozenset("value values reading wert valeur valor".split())
 
 #: words of the name of a column that names or numbers machines
 NUMBERS_MACHINES = frozenset(
@@ -93,3 +96,32 @@ def _apart(
             signals.append(LongSignal(f"{name}.{n}", values, clock, times, unit, time_unit))
     note = f"rows of {len(names)} machines in turn, named in {key!r}: {join_names(names, most=4)}"
     return LongTable(tuple(signals), len(machine), note)
+
+
+def reading_in_each_row(table: CellTable) -> LongTable | None:
+    """A column that names the signal, one with its reading: "0.0, angle, 0.1", "0.0, torque, 1"."""
+    time = time_of(table)
+    ends = {n: (words_of(n) or [""])[-1] for n in table.names}
+    keys = [n for n, word in ends.items() if word in SIGNALS]
+    readings = [n for n, word in ends.items() if word in READINGS]
+    if not time or len(keys) != 1 or len(readings) != 1:
+        return None
+    cells = table.columns[readings[0]]
+    numbers = np.array([np.nan if isinstance(cell, str) else cell for cell in cells], dtype=float)
+    texts = table.columns[keys[0]]
+    numbered = table.columns[keys[0]].dtype.kind == "f"
+    fine = np.isfinite(numbers) & np.isfinite(table.numeric[time])
+    names = list(dict.fromkeys(texts[fine].tolist()))
+    number = {name: k for k, name in enumerate(names)}
+    of_row = np.array([number.get(text, -1) for text in texts])
+    if numbered or not 0 < len(names) <= MOST_SIGNALS or not is_most(fine):
+        return None
+    unit = next((n for n in table.names if n.casefold() in UNIT_LABELS), "")
+    signals = []
+    for name in names:
+        rows = np.flatnonzero(fine & (of_row == number[name]))
+        stated = bare_unit(str(table.columns[unit][rows[0]])) if unit else ""
+        times = table.numeric[time][rows]
+        clock, time_unit = f"time of {name}", table.unit_of_time(time)
+        signals.append(LongSignal(name, numbers[rows], clock, times, stated, time_unit))
+    return LongTable(tuple(signals), int(fine.sum()), "a reading in each row")

@@ -1,0 +1,193 @@
+"""Tables with times in several columns, or for some of their signals only.
+
+Studios of drives, scopes of controllers and simulators write a time before each signal, viewers of
+topics a number only at the times of its signal. Clocks of operating systems and of ROS count whole
+seconds and their parts, and loggers write a time of day beside its ms.
+"""
+
+from __future__ import annotations
+
+import itertools
+from bisect import bisect
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....base.units import measures, si_factor
+from ...column_names import likeness, unit_of_text
+from ...encoder import Array, is_most
+from ...limits import HALF
+from ...stamps import step_deviations, unwrap_stamps
+from .._log import bare_column, join_names
+from ._table import AS_EVEN_AS_A_CLOCK, CellTable, LongSignal, LongTable, rises
+
+#: last words of the names of whole seconds, and of their part with its unit
+SECONDS = frozenset("s sec secs second seconds".split())
+PARTS = {
+    **dict.fromkeys("ns nsec nsecs nanosec nanosecs nanosecond nanoseconds".split(), "ns"),
+    **dict.fromkeys("us usec usecs microsec microsecs microsecond microseconds".split(), "us"),
+    **dict.fromkeys("ms msec msecs millisec millisecs millisecond milliseconds".split(), "ms"),
+}
+
+
+def clock_before_signals(table: CellTable) -> LongTable | None:
+    """A time before each signal or group of signals: "time, Force, time, Position"."""
+    clock_of = _clocks_before(table)
+    short, single, signals = _short_names(clock_of), list[str](), list[LongSignal]()
+    for name, clock in clock_of.items():
+        rows = np.isfinite(table.numeric[clock])
+        if int(rows.sum()) < 2:  # a trace may hold a constant in one row
+            single.append(short[name])
+            continue
+        times, values = table.numeric[clock][rows], table.columns[name][rows]
+        unit, time_unit = table.units.get(name, ""), table.unit_of_time(clock)
+        new = short[name]
+        signals.append(LongSignal(new, values, f"time of {new}", times, unit, time_unit))
+    if not signals:
+        return None
+    left = f"signals of one row, left out: {join_names(single, most=4)}" if single else ""
+    return LongTable(tuple(signals), note=left)
+
+
+def _clocks_before(table: CellTable) -> dict[str, str]:
+    """Signal -> clock in the nearest such column before it; empty: any other table."""
+    names, numeric = table.names, table.numeric
+    word = bare_column(names[0]) if names else ""
+    clocks = [name for name in names if bare_column(name) == word]
+    if len(clocks) < 2 and len(names) % 2 == 0:  # below titles: "Position X, Position Y"
+        clocks = names[::2]
+        ends = {(bare_column(name).split() or [""])[-1] for name in clocks}
+        word = ends.pop() if len(ends) == 1 else ""
+    others = [name for name in names if name not in clocks]
+    if len(clocks) < 2 or not word or not others or not numeric.keys() >= {*clocks}:
+        return {}
+    rising = {name for name, x in numeric.items() if rises(x)}
+    if not rising >= {*clocks} or rising >= {*others}:
+        return {}
+    unit = unit_of_text(word)
+    timed = unit is not None and unit != "counts" and measures(unit, "time")
+    alternate = names[::2] == clocks and all(
+        np.all(step_deviations(x[np.isfinite(x)]) <= AS_EVEN_AS_A_CLOCK)
+        for x in (numeric[clock] for clock in clocks)
+    )
+    if likeness(word, "time") == 0.0 and not timed and not alternate:
+        return {}
+    places = [names.index(clock) for clock in clocks]
+    return {n: names[places[bisect(places, k) - 1]] for k, n in enumerate(names) if n in others}
+
+
+def _short_names(clock_of: Mapping[str, str]) -> dict[str, str]:
+    """Signal -> its title, where all signals are called by one word below titles ("Torque Y")."""
+    ends = {(signal.split() or [""])[-1] for signal in clock_of}
+    titles = {
+        signal: clock.rpartition(" ")[0]
+        for signal, clock in clock_of.items()
+        if signal.rpartition(" ")[0] == clock.rpartition(" ")[0] != ""
+    }
+    if len(ends) == 1 and len(titles) == len(clock_of) == len({*titles.values()}):
+        return titles
+    return {signal: signal for signal in clock_of}
+
+
+def separate_clocks(table: CellTable) -> LongTable | None:
+    """Signals with numbers only at their own times, as viewers export topics: "0.1, , 1.5"."""
+    filled = {n: _is_filled(x) for n, x in table.columns.items()}
+    share = {n: float(mask.mean()) if len(mask) else 0.0 for n, mask in filled.items()}
+    full = [n for n, part in share.items() if part == 1.0]
+    if len(full) != 1 or likeness(full[0], "time") == 0.0 or full[0] not in table.numeric:
+        return None  # beside a signal with numbers in all rows, another one has lost them
+    partial = {n: mask for n, mask in filled.items() if 0.0 < share[n] < 1.0}
+    masks = [*partial.values()]
+    # a channel that loses more readings than it keeps could not be used on the clock of others
+    if not any(is_most(~mask) for mask in masks) and not _never_share_a_row(masks):
+        return None
+    time, groups = full[0], dict[bytes, str]()
+    signals = []
+    for name, mask in partial.items():
+        first = groups.setdefault(mask.tobytes(), name)
+        clock, times = f"{time} of {first}", table.numeric[time][mask]
+        unit, time_unit = table.units.get(name, ""), table.unit_of_time(time)
+        signals.append(LongSignal(name, table.columns[name][mask], clock, times, unit, time_unit))
+    return LongTable(tuple(signals))
+
+
+def _is_filled(column: NDArray[Any]) -> NDArray[np.bool_]:
+    if column.dtype.kind == "f":
+        return np.asarray(np.isfinite(column))
+    return np.array([bool(cell) for cell in column], dtype=bool)
+
+
+def _never_share_a_row(filled: Sequence[NDArray[np.bool_]]) -> bool:
+    """Whether two columns have no row in common: two topics at one rate fill half of the rows each.
+
+    Columns of one clock that lost some readings have most of the others in common.
+    """
+    masks = np.array([*{mask.tobytes(): mask for mask in filled}.values()], dtype=np.float32)
+    return len(masks) > 1 and bool(np.any(masks @ masks.T == 0.0))
+
+
+def two_part_time(table: CellTable) -> LongTable | None:
+    """Whole seconds, and the part of the second beside them: "stamp.sec, stamp.nanosec".
+
+    Either column alone would be a wrong time: the seconds stand still, and their part is set back
+    each second.
+    """
+    for first, second, units in _parts_of_times(table.names):
+        whole, part = (table.numeric.get(n) for n in (first, second))
+        if whole is None or part is None:
+            continue
+        for unit in units:
+            second_in = si_factor(unit, quantity="time")
+            if not are_parts_of_time(whole, part, per_second=1.0 / second_in):
+                continue
+            stem = _stem(first)[0] if _stem(first)[1] in SECONDS else f"{first} + {second}"
+            time = stem or "time"
+            time = f"{first} + {second}" if time in table.names else time
+            times = np.asarray(unwrap_stamps(whole)[0] + second_in * part)
+            signals = tuple(
+                LongSignal(n, x, time, times, table.units.get(n, ""), "s")
+                for n, x in table.columns.items()
+                if n not in (first, second)
+            )
+            note = f"a time in two columns: {first!r} in s, and {second!r} in {unit}"
+            return LongTable(signals, len(whole), note)
+    return None
+
+
+def are_parts_of_time(whole: Array, part: Array, *, per_second: float) -> bool:
+    """Whether two columns (n,) are the seconds of a time and the parts of these seconds."""
+    filled = np.isfinite(whole) & np.isfinite(part)
+    whole, part = unwrap_stamps(whole[filled])[0], part[filled]
+    if len(whole) < 2 or not np.array_equal(whole, np.round(whole)):
+        return False
+    if part.min() < 0 or part.max() >= per_second or part.max() < HALF * per_second:
+        return False
+    turns = np.diff(whole)
+    return bool(turns.any() and np.all((turns >= 0) & ((turns > 0) | (np.diff(part) >= 0))))
+
+
+def _parts_of_times(names: Sequence[str]) -> Iterator[tuple[str, str, tuple[str, ...]]]:
+    """Columns of one stem whose last words are a second and a part of it: "stamp.sec".
+
+    A column called "ms" alone may hold the part of a time of day beside it, without fractions. So
+    may the first two columns where no column has a name.
+    """
+    if names[0] == "column 1" and len(names) > 2:
+        yield names[0], names[1], ("ns", "us")
+    alone = [name for name in names if _stem(name)[0] == "" and _stem(name)[1] in PARTS]
+    if len(alone) == 1:
+        for first in (name for name in names if likeness(name, "time") > 0.0):
+            yield first, alone[0], (PARTS[_stem(alone[0])[1]],)
+    seconds = [name for name in names if _stem(name)[1] in SECONDS]
+    parts = [name for name in names if _stem(name)[1] in PARTS]
+    for first, second in itertools.product(seconds, parts):
+        if _stem(first)[0] == _stem(second)[0]:
+            yield first, second, (PARTS[_stem(second)[1]],)
+
+
+def _stem(name: str) -> tuple[str, str]:
+    """A name without its last word, and this word in lower case: ("header.stamp", "nanosec")."""
+    end = max(name.rfind(sign) for sign in "._ /")
+    return name[: max(end, 0)].rstrip("._ /"), name[end + 1 :].strip("()[]").lower()
