@@ -22,20 +22,6 @@ CONTINUED = 0.6
 FORGOTTEN = 3.0
 
 
-def fast_length(least: int) -> int:
-    """The smallest length from `least` on without other prime factors than 2, 3 and 5."""
-    best = 1 << (least - 1).bit_length()
-    fives = 1
-    while fives < best:
-        threes = fives
-        while threes < best:
-            twos = 1 << max(-(-least // threes) - 1, 0).bit_length()
-            best = min(best, threes * twos)
-            threes *= 3
-        fives *= 5
-    return best
-
-
 class Spectrum:
     """Multiplies signals on one uniform grid of n samples by functions of frequency.
 
@@ -43,9 +29,11 @@ class Spectrum:
     """
 
     def __init__(self, n: int, sample_time: float) -> None:
+        from scipy.fft import next_fast_len
+
         self.n, self.sample_time = n, sample_time
         self.margin = max(1, min(round(CONTINUED / sample_time), n - 1))
-        self.length = fast_length(n + 4 * self.margin)
+        self.length = next_fast_len(n + 4 * self.margin, real=True)
         self.frequency = np.arange(self.length // 2 + 1) / (self.length * sample_time)
         ramp = np.linspace(0.0, 1.0, self.length - n - 2 * self.margin + 2)[1:-1]
         # a smooth bridge closes the circle without a step in level or slope

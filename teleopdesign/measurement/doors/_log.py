@@ -15,6 +15,8 @@ import numpy as np
 
 from ...base.errors import ExperimentError, quote
 
+#: of an array: the index of a column, the name of a field, "" for the whole, None for a vector
+Part = int | str | None
 _NUMBER = re.compile(r" #\d+$")
 
 #: rows above which a file is refused before it is read: fourteen hours at 1 kHz, 0.4 GB a column
@@ -84,18 +86,6 @@ def refuse_damage(kind: str, file: str) -> Iterator[None]:
         raise ExperimentError(f"{file}: not a readable {kind}: {reason}") from None
 
 
-def how_to_save(name: str) -> str:
-    """Message on an object that only MATLAB can unpack, with commands that save it readably.
-
-    name: name of the variable
-    """
-    return (
-        f"{quote(name)} is a timetable, table or other object that only MATLAB can unpack: in "
-        'MATLAB, writetimetable(T, "log.csv") or S = table2struct(timetable2table(T), "ToScalar", '
-        'true); save("log.mat", "S")'
-    )
-
-
 def refuse_size(rows: int, file: str) -> None:
     """Raise an ExperimentError for a file that states more rows than `MOST_ROWS`."""
     if rows > MOST_ROWS:
@@ -133,23 +123,54 @@ def bare_column(name: str) -> str:
     return _NUMBER.sub("", name)
 
 
-def parts_of(name: str, shape: Sequence[int]) -> dict[str, tuple[str, int | None]]:
-    """Columns of an array: "x" of a vector, "x(:,1)" ... of a matrix; empty for any other array.
+def parts_of(name: str, shape: Sequence[int]) -> dict[str, tuple[str, Part]]:
+    """Columns of an array: "x" of a vector, "x(:,1)" ... of a matrix.
 
-    returns: column -> (name of the array, index of the column from 0, None for a vector)
+    What is no column is listed too, so that a message can say what is wrong with it.
+    returns: column -> (name of the array, index of the column from 0, "" for the whole array)
     """
-    lengths = [n for n in shape if n != 1]
-    if len(shape) == 1 or len(shape) == 2 and len(lengths) == 1:
-        return {name: (name, None)}
+    parts: dict[str, tuple[str, Part]] = {}
     if len(shape) == 2 and 2 <= shape[1] <= MOST_SIGNALS and shape[0] > shape[1]:
-        return {f"{name}(:,{k + 1})": (name, k) for k in range(shape[1])}
-    return {}
+        parts = {f"{name}(:,{k + 1})": (name, k) for k in range(shape[1])}
+    return parts | {name: (name, "" if len(shape) == 2 and 1 not in shape else None)}
 
 
-def part(values: Any, column: int | None) -> Any:
-    """One column of an array (`parts_of`)."""
+def log_of_arrays(
+    columns: Mapping[str, tuple[str, Part]],
+    load: Callable[[Sequence[str]], Mapping[str, Any]],
+    file: str,
+    *,
+    units: Mapping[str, str] | None = None,
+    objects: Sequence[str] = (),
+) -> Log:
+    """The log of a file of arrays, whose columns are parts of them (`parts_of`).
+
+    load: function from names of arrays to arrays
+    objects: variables that only MATLAB can unpack; a note says how to save them readably
+    raises ExperimentError: there is nothing else
+    """
+    notes = tuple(
+        f"{quote(name)} is a timetable, table or other object that only MATLAB can unpack: in "
+        'MATLAB, writetimetable(T, "log.csv") or S = table2struct(timetable2table(T), "ToScalar", '
+        'true); save("log.mat", "S")'
+        for name in objects
+    )
+    if notes and not columns:
+        raise ExperimentError(f"{file}: {notes[0]}")
+
+    def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
+        arrays = load([*dict.fromkeys(columns[name][0] for name in wanted)])
+        return {name: _part(arrays[columns[name][0]], columns[name][1]) for name in wanted}
+
+    return Log(tuple(columns), read, units or {}, tuple(f"{n}; it is left out" for n in notes))
+
+
+def _part(values: Any, part: Part) -> Any:
+    """A part of an array: a column by its index, a field by its name, or all of a vector."""
+    if isinstance(part, str):
+        return values[part] if part else values
     array = np.asarray(values)
-    return array.reshape(-1) if column is None else array[:, column]
+    return array.reshape(-1) if part is None else array[:, part]
 
 
 def join_names(names: Iterable[str], most: int = 20) -> str:

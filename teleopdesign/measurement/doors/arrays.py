@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...base.errors import ExperimentError, quote
-from ._log import MOST_BYTES, Log, part, parts_of, refuse_damage, refuse_size
+from ._log import MOST_BYTES, Log, Part, log_of_arrays, parts_of, refuse_damage, refuse_size
 
 _KIND = ".npz file"
 
@@ -20,33 +20,31 @@ def open_arrays(path: Path, file: str) -> Log:
 
     `Log.read` raises ExperimentError for an array of Python objects.
     """
-    columns: dict[str, tuple[str, int | None]] = {}
+    columns: dict[str, tuple[str, Part]] = {}
     with refuse_damage(_KIND, file), zipfile.ZipFile(path) as packed:
         for entry in packed.infolist():
-            name = entry.filename.removesuffix(".npy")
             shape = _shape(packed, entry)
             if shape is None:
                 continue
             refuse_size(max(shape, default=0), file)
             if entry.file_size > MOST_BYTES:
                 raise ExperimentError(f"{file}: found {entry.file_size:.3g} bytes unpacked")
-            columns |= parts_of(name, shape) or {name: (name, None)}
+            columns |= parts_of(entry.filename.removesuffix(".npy"), shape)
 
-    def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
+    def load(names: Sequence[str]) -> dict[str, Any]:
         out: dict[str, Any] = {}
         with refuse_damage(_KIND, file), np.load(path, allow_pickle=False) as content:
-            for name in wanted:
-                array, column = columns[name]
+            for name in names:
                 try:
-                    out[name] = part(content[array], column)
-                except (ValueError, KeyError, IndexError) as problem:
+                    out[name] = content[name]
+                except (ValueError, KeyError) as problem:
                     kind = "holds Python objects" if "pickle" in str(problem) else str(problem)
                     raise ExperimentError(
                         f"{file}: {quote(name)}: {kind}, expected numbers"
                     ) from None
         return out
 
-    return Log(tuple(columns), read)
+    return log_of_arrays(columns, load, file)
 
 
 def _shape(packed: zipfile.ZipFile, entry: zipfile.ZipInfo) -> tuple[int, ...] | None:

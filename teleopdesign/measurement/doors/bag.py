@@ -9,8 +9,8 @@ headers, or else the times of recording.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import fields, is_dataclass
+from collections.abc import Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ import numpy as np
 from ...base.errors import LONGEST, ExperimentError, quote
 from ..encoder import Array
 from ._log import MOST_FIELDS, Log, join_names, optional, refuse_damage, refuse_size
+from .json_records import add_row, fields_of
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
 STAMP = "stamp"
@@ -116,52 +117,18 @@ def _check_field(name: str, kind: Any, file: str) -> None:
 
 def _append(rows: dict[str, list[float]], message: Any, written: int, begin: int) -> None:
     """Append the numbers of one message to the columns of its topic; NaN where it has none."""
-    count = len(rows.get(STAMP, ()))
-    numbers: dict[str, float] = {}
-    _flatten(message, "", numbers, _joints(message))
+    pairs = fields_of(message, lambda k: f"[{k}]")
+    plain = ((n, float(x)) for n, x in pairs if isinstance(x, bool | int | float | np.number))
+    numbers = dict(islice(plain, MOST_FIELDS))
     header = getattr(getattr(message, "header", None), "stamp", None)
-    numbers[STAMP] = numbers[_WRITTEN] = (written - begin) * 1e-9
+    times = dict.fromkeys((STAMP, _WRITTEN), (written - begin) * 1e-9)
     if header is not None and (header.sec or header.nanosec):
         stamp = int(header.sec) * 1_000_000_000 + int(header.nanosec) - begin
-        numbers[STAMP] = stamp * 1e-9
-    room = MOST_FIELDS - len(rows.keys() - {STAMP, _WRITTEN})
-    for name, value in numbers.items():
-        if name not in rows and name not in (STAMP, _WRITTEN):
-            if room < 1:
-                continue
-            room -= 1
-        column = rows.setdefault(name, [])
-        column += [np.nan] * (count - len(column))
-        column.append(value)
-
-
-def _joints(message: Any) -> list[str]:
-    """The joint names of a message that has them in `name`, as a JointState does; else []."""
-    names = getattr(message, "name", None)
-    if isinstance(names, list | tuple) and all(isinstance(n, str) for n in names):
-        return list(names)
-    return []
-
-
-def _flatten(value: Any, name: str, into: dict[str, float], joints: Sequence[str]) -> None:
-    if len(into) > MOST_FIELDS:
-        return
-    if isinstance(value, bool | int | float | np.number):
-        into[name] = float(value)
-    elif isinstance(value, np.ndarray | list | tuple):
-        if len(value) > MOST_FIELDS or len(value) and isinstance(value[0], str):
-            return
-        for k, item in enumerate(value):
-            if joints and len(value) == len(joints):
-                _flatten(item, f"{joints[k]}.{name}", into, ())
-            else:
-                _flatten(item, f"{name}[{k}]", into, ())
-    elif is_dataclass(value):
-        for field in fields(value):
-            if field.name in ("header", "layout") or field.name.startswith("__"):
-                continue
-            inner = f"{name}.{field.name}" if name else field.name
-            _flatten(getattr(value, field.name), inner, into, joints)
+        times[STAMP] = stamp * 1e-9
+    new = [name for name in numbers if name not in rows]
+    for name in new[max(0, MOST_FIELDS - len(rows.keys() - times.keys())) :]:
+        del numbers[name]
+    add_row(rows, (numbers | times).items(), len(rows.get(STAMP, ())), np.nan)
 
 
 def _columns(topics: Mapping[str, Mapping[str, list[float]]]) -> dict[str, Array]:

@@ -6,7 +6,7 @@ one file.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +15,9 @@ from ..column_names import unit_of_text
 from ._log import (
     MOST_COLUMNS,
     Log,
-    how_to_save,
+    Part,
+    log_of_arrays,
     optional,
-    part,
     parts_of,
     refuse_damage,
     refuse_size,
@@ -35,7 +35,7 @@ _OBJECT = "MATLAB_object_decode"
 def open_hdf5(path: Path, file: str) -> Log:
     """Open an HDF5 file, or a MAT file of version 7.3."""
     h5py = optional("h5py", file)
-    columns: dict[str, tuple[str, int | str | None]] = {}
+    columns: dict[str, tuple[str, Part]] = {}
     units: dict[str, str] = {}
     with path.open("rb") as stream:
         turned = stream.read(len(_MATLAB)) == _MATLAB
@@ -62,34 +62,22 @@ def open_hdf5(path: Path, file: str) -> Log:
             else:
                 # MATLAB writes a matrix column by column: here it is transposed
                 shape = item.shape[::-1] if turned else item.shape
-                parts = parts_of(name, shape) or {name: (name, None)}
-                columns |= parts
+                columns |= (parts := parts_of(name, shape))
                 units |= dict.fromkeys(parts, unit) if unit else {}
-                if len(item.shape) == 2 and 1 not in item.shape:
-                    columns[name] = (name, -1)
 
-    if objects and not columns:
-        raise ExperimentError(f"{file}: {how_to_save(objects[0])}")
-
-    def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
+    def load(names: Sequence[str]) -> dict[str, Any]:
         with refuse_damage(_KIND, file), h5py.File(path, "r") as content:
-            return {
-                name: _values(content[columns[name][0]], name, columns[name][1]) for name in wanted
-            }
+            return {name: _values(content[name], name) for name in names}
 
-    def _values(item: Any, name: str, column: int | str | None) -> Any:
+    def _values(item: Any, name: str) -> Any:
         if item.external or item.is_virtual:
             raise ExperimentError(
                 f"{file}: dataset {quote(name)} lies in another file, expected one file"
             )
         refuse_size(max(item.shape, default=0), file)
-        if isinstance(column, str):
-            return item[column]
-        values = item[()].T if turned else item[()]
-        return values if column == -1 else part(values, column)
+        return item[()].T if turned else item[()]
 
-    notes = tuple(f"{how_to_save(name)}; it is left out" for name in objects)
-    return Log(tuple(columns), read, units, notes)
+    return log_of_arrays(columns, load, file, units=units, objects=objects)
 
 
 def _unit(item: Any) -> str | None:

@@ -8,7 +8,8 @@ columns are several recordings.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -117,13 +118,19 @@ def _columns_of_records(content: list[Any]) -> dict[str, list[Any]]:
     """Columns of a list of records, None where a record lacks a key."""
     columns: dict[str, list[Any]] = {}
     for row, record in enumerate(content):
-        for name, value in _fields("", record, 0).items():
-            column = columns.setdefault(name, [])
-            column += [None] * (row - len(column))
-            column.append(value)
-    for column in columns.values():
-        column += [None] * (len(content) - len(column))
-    return columns
+        add_row(columns, fields_of(record, lambda k: f"({k + 1})"), row, None)
+    add_row(columns, ((name, None) for name in columns), len(content), None)
+    return {name: column[:-1] for name, column in columns.items()}
+
+
+def add_row(
+    columns: dict[str, list[Any]], record: Iterable[tuple[str, Any]], row: int, empty: Any
+) -> None:
+    """Append the values of a record to their columns;  empty: in rows before, without a value."""
+    for name, value in record:
+        column = columns.setdefault(name, [])
+        column += [empty] * (row - len(column))
+        column.append(value)
 
 
 def _lists(name: str, value: Any, depth: int) -> dict[str, list[Any]]:
@@ -137,24 +144,48 @@ def _lists(name: str, value: Any, depth: int) -> dict[str, list[Any]]:
     return {name: value} if plain and not any(isinstance(v, list | dict) for v in value) else {}
 
 
-def _fields(name: str, value: Any, depth: int) -> dict[str, Any]:
-    """The numbers and texts of one record, by name."""
-    if isinstance(value, dict) and depth < DEPTH:
-        out: dict[str, Any] = {}
-        joints = value.get("name")
-        named = isinstance(joints, list) and all(isinstance(j, str) for j in joints)
-        for key, inner in value.items():
-            within = f"{name}.{key}" if name else key
-            if named and isinstance(inner, list) and len(inner) == len(joints or ()):
-                if key != "name":
-                    begin = f"{name}." if name else ""
-                    out |= {
-                        f"{begin}{j}.{key}": v for j, v in zip(joints or (), inner, strict=True)
-                    }
-                continue
-            out |= _fields(within, inner, depth + 1)
-        return out
-    if isinstance(value, list) and len(value) <= MOST_FIELDS and depth < DEPTH:
-        parts = [_fields(f"{name}({k})", v, depth + 1) for k, v in enumerate(value, start=1)]
-        return {key: v for part in parts for key, v in part.items()}
-    return {} if isinstance(value, list | dict) else {name or "value": value}
+def fields_of(
+    value: Any,
+    number: Callable[[int], str],
+    name: str = "",
+    *,
+    joints: Sequence[str] = (),
+    begin: int = 0,
+    depth: int = 0,
+) -> Iterator[tuple[str, Any]]:
+    """The numbers and texts of one record, by name: of a dict, or of a message.
+
+    number: name of an element of a list, by its index from 0
+    joints: names of joints in the record around this one;  begin: index in `name` behind its name
+    """
+    entries = _entries(value)
+    if entries is not None and depth < DEPTH:
+        named = entries.get("name")
+        is_named = isinstance(named, list | tuple) and all(isinstance(n, str) for n in named)
+        if is_named:
+            joints, begin = named, len(name) + bool(name)
+        for key, inner in entries.items():
+            if not (is_named and key == "name"):
+                whole = f"{name}.{key}" if name else key
+                yield from fields_of(
+                    inner, number, whole, joints=joints, begin=begin, depth=depth + 1
+                )
+    elif isinstance(value, list | tuple | np.ndarray):
+        if len(value) > MOST_FIELDS or depth >= DEPTH:
+            return
+        for k, item in enumerate(value):
+            of_joint = len(value) == len(joints)
+            whole = f"{name[:begin]}{joints[k]}.{name[begin:]}" if of_joint else name + number(k)
+            yield from fields_of(item, number, whole, depth=depth + 1)
+    elif entries is None:
+        yield name or "value", value
+
+
+def _entries(value: Any) -> dict[str, Any] | None:
+    """The entries of a dict, or of a message without its header; None: the value is no record."""
+    if isinstance(value, dict):
+        return value
+    if not is_dataclass(value):
+        return None
+    names = (f.name for f in fields(value) if not f.name.startswith("__"))
+    return {name: getattr(value, name) for name in names if name not in ("header", "layout")}

@@ -10,14 +10,13 @@ from __future__ import annotations
 import math
 import struct
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ...base.errors import ExperimentError
-from ._log import DEPTH, MOST_PARTS, Log, how_to_save, part, parts_of, refuse_damage, refuse_size
+from ._log import DEPTH, MOST_PARTS, Log, Part, log_of_arrays, parts_of, refuse_damage, refuse_size
 from .hdf5 import open_hdf5
 
 #: how an HDF5 file begins, at its first byte or behind a head of so many bytes
@@ -52,7 +51,7 @@ def open_matlab(path: Path, file: str) -> Log:
             content = dict(loadmat(path, variable_names=structs)) if structs else {}
         except NotImplementedError:  # version 7.3 is an HDF5 file
             return open_hdf5(path, file)
-    columns: dict[str, tuple[str, int | None]] = {}
+    columns: dict[str, tuple[str, Part]] = {}
     arrays: dict[str, Any] = {}
     units: dict[str, str] = {}
     for name, shape, kind in listed:
@@ -62,26 +61,14 @@ def open_matlab(path: Path, file: str) -> Log:
             for field, values in fields.items():
                 columns |= parts_of(field, np.shape(values))
         elif kind not in ("opaque", "object", "function", "cell"):
-            # what is no column is listed too, so that a message can say what is wrong with it
-            columns |= parts_of(name, shape) or {name: (name, None)}
-            if len(shape) == 2 and 1 not in shape:
-                columns[name] = (name, -1)
-    if objects and not columns:
-        raise ExperimentError(f"{file}: {how_to_save(objects[0])}")
+            columns |= parts_of(name, shape)
 
-    def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
-        plain = [columns[n][0] for n in wanted if columns[n][0] not in arrays]
+    def load(names: Sequence[str]) -> Mapping[str, Any]:
+        plain = [name for name in names if name not in arrays]
         with refuse_damage(_KIND, file):
-            contents = loadmat(path, variable_names=list(dict.fromkeys(plain))) if plain else {}
-        out = {}
-        for name in wanted:
-            array, column = columns[name]
-            values = arrays[array] if array in arrays else contents[array]
-            out[name] = values if column == -1 else part(values, column)
-        return out
+            return arrays | (loadmat(path, variable_names=plain) if plain else {})
 
-    notes = tuple(f"{how_to_save(name)}; it is left out" for name in objects)
-    return Log(tuple(n for n in columns), read, units, notes)
+    return log_of_arrays(columns, load, file, units=units, objects=objects)
 
 
 def _is_hdf5(path: Path) -> bool:

@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.errors import ExperimentError, quote
-from ..encoder import Array
 from ._cell_shapes import LineShape
 from ._cells import column_of, part_of_column, parts_thousands
 from ._dialect import (
@@ -123,8 +122,7 @@ def _log_of(text: _Text, sample: Mapping[str, Any]) -> Log:
 
     def read(wanted: Mapping[str, str]) -> Mapping[str, Any]:
         strays.clear()
-        numeric = all(sample[name].dtype.kind == "f" for name in wanted)
-        return (_read if numeric else _read_cell_by_cell)(text, [*wanted], strays)
+        return _read(text, [*wanted], strays)
 
     def left_out() -> tuple[str, ...]:
         lines = f"{len(strays)} lines that are no rows" if strays[1:] else "a line that is no row"
@@ -182,81 +180,52 @@ def _without_blank_columns(
 
 
 def _read(text: _Text, names: Sequence[str], strays: list[int]) -> dict[str, Any]:
-    dialect = text.dialect
-    places = [dialect.header.index(name) for name in names]
-    try:
-        with text.lines() as stream:
-            lines = rows_of_numbers(stream, text.dialect, text.file, strays)
-            if dialect.comma:
-                lines = _with_points(lines, dialect.separator, places)
-            parts = [*_numbers(lines, dialect.separator, places)]
-        columns = {}
-        for name in names:  # one column at a time, to free its parts
-            columns[name] = np.concatenate([part.pop(0) for part in parts])
-        return columns
-    except ValueError:
-        strays.clear()
-        return _read_cell_by_cell(text, names, strays)
-
-
-def _numbers(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[list[Array]]:
-    """Columns of some rows at a time: a whole table beside its columns would double the memory.
-
-    raises ValueError: a cell that is no number
-    """
-    yield [np.empty(0) for _ in places]  # for a table without rows
-    while rows := list(islice(lines, _ROWS)):
-        table = np.loadtxt(
-            rows,
-            delimiter=None if separator == " " else separator,
-            comments=None,
-            quotechar='"',
-            usecols=places,
-            ndmin=2,
-        )
-        yield [np.ascontiguousarray(table[:, k]) for k in range(len(places))]
-
-
-def _read_cell_by_cell(text: _Text, names: Sequence[str], strays: list[int]) -> dict[str, Any]:
-    """Read each cell separately, which is slow: empty cells are NaN, dates become seconds.
+    """Columns of a table: empty cells are NaN, dates become seconds.
 
     A column with any other text keeps it: its reader names the cell.
     raises ExperimentError: points in numbers of which others have a decimal comma
     """
-    separator, comma = text.dialect.separator, text.dialect.comma
-    places = [text.dialect.header.index(name) for name in names]
+    dialect = text.dialect
+    places = [dialect.header.index(name) for name in names]
     blocks: list[list[NDArray[Any]]] = [[] for _ in places]
     with text.lines() as stream:
-        lines = rows_of_numbers(stream, text.dialect, text.file, strays)
+        lines = rows_of_numbers(stream, dialect, text.file, strays)
         while block := list(islice(lines, _ROWS)):
-            plain = separator != " " and not any('"' in line for line in block)
-            rows = [line.split(separator) if plain else cells_of(line, separator) for line in block]
-            wide = min(map(len, rows)) > max(places, default=-1)
-            for column, place in zip(blocks, places, strict=True):
-                cells = [r[place] if wide or place < len(r) else "" for r in rows]
-                column.append(part_of_column(cells, comma=comma))
+            for column, part in zip(blocks, _columns_of(block, dialect, places), strict=True):
+                column.append(part)
     columns = {}
     for name, column in zip(names, blocks, strict=True):
-        columns[name] = column_of(column, comma=comma)
-        if comma and (where := parts_thousands(columns[name])):
+        columns[name] = column_of(column, comma=dialect.comma)
+        if dialect.comma and (where := parts_thousands(columns[name])):
             row, cell = where
             raise ExperimentError(
                 f"{text.file}: column {quote(name)}, row {row}: found {quote(cell)}, expected a "
                 "number with a decimal comma, for that of other cells is one: is the point a "
                 "decimal sign, or does it part thousands? Write it without"
             )
-        column.clear()
+        column.clear()  # one column at a time, to free its parts
     return columns
 
 
-def _with_points(lines: Iterator[str], separator: str, places: Sequence[int]) -> Iterator[str]:
-    """Rows with points in place of decimal commas.
-
-    raises ValueError: a point in a wanted cell, where it may separate thousands
-    """
-    for line in lines:
-        if "." in line:
-            cells = cells_of(line, separator)
-            if any("." in cells[k] for k in places if k < len(cells)):
-                raise ValueError(line)
-        yield line.replace(",", ".")
+def _columns_of(
+    lines: Sequence[str], dialect: Dialect, places: Sequence[int]
+) -> list[NDArray[Any]]:
+    """The columns at some places of a few rows: plain numbers at once, else cell by cell."""
+    separator, comma = dialect.separator, dialect.comma
+    if not comma or not any("." in line for line in lines):  # else points may part thousands
+        try:
+            table = np.loadtxt(
+                [line.replace(",", ".") for line in lines] if comma else lines,
+                delimiter=None if separator == " " else separator,
+                comments=None,
+                quotechar='"',
+                usecols=places,
+                ndmin=2,
+            )
+            return [np.ascontiguousarray(table[:, k]) for k in range(len(places))]
+        except ValueError:
+            pass
+    plain = separator != " " and not any('"' in line for line in lines)
+    rows = [line.split(separator) if plain else cells_of(line, separator) for line in lines]
+    cells = ([r[place] if place < len(r) else "" for r in rows] for place in places)
+    return [part_of_column(column, comma=comma) for column in cells]
