@@ -8,8 +8,8 @@ import numpy as np
 
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.toml import Table
-from ..base.units import si_factor, to_si
-from .conversion import AS_WRITTEN, KEYS, Conversion, conversion_of
+from ..base.units import si_factor
+from .conversion import AS_WRITTEN, KEYS, Conversion, conversion_of, si_from
 from .description import ONE_BODY, BodyDescription
 from .encoder import Array
 
@@ -165,11 +165,7 @@ def sample_rate_from(experiment: Table, channels: Table) -> float | None:
 
 def frequency_from(table: Table, key: str) -> float:
     """Read { value, unit } under `key` as a positive frequency in Hz."""
-    entry = table.table(key)
-    entry.allow(("value", "unit"))
-    value = entry.number("value", above=0)
-    where = entry.where("unit")
-    return to_si(value, entry.text("unit"), quantity="frequency", where=where)
+    return si_from(table, key, "frequency", above=0)
 
 
 def _flatten(table: Table, bodies: Mapping[str, BodyDescription]) -> Table:

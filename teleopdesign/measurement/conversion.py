@@ -33,6 +33,17 @@ KEYS = (
     "scale", "offset", "sign", "unwrap", "torque_constant", "lever_arm", "gear_ratio", "count",
     "counts_per_turn", "delay", TWOS_COMPLEMENT, SIGN_BIT,
 )  # fmt: skip
+#: key -> kinds of quantities, and these in words; unit that is required; whether it is above 0
+_CONSTANTS = {
+    "torque_constant": (("force",), "a force", "N*m/A", False),
+    "lever_arm": (("force",), "a force of a revolute axis", "m", True),
+    "gear_ratio": (
+        ("force", "position", "velocity"),
+        "a position, a velocity or a force",
+        "",
+        True,
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -111,29 +122,7 @@ def conversion_of(
     columns = _columns(table)
     scales = _scales(table, len(columns))
     sign = _sign(table)
-    constant = 1.0
-    names: list[str] = []
-    if "torque_constant" in table.content:
-        _require(table, "torque_constant", kind == "force", quantity, "a force")
-        value, written = _constant(table, "torque_constant", f"{_force(axis)}/A")
-        constant, names = constant * value, [*names, f"({written})"]
-    if "lever_arm" in table.content:
-        constant = constant * _lever_arm(table, kind=kind, axis=axis, quantity=quantity)
-        names = [*names, "(m)"]
-    if "gear_ratio" in table.content:
-        geared = kind in ("force", "position", "velocity")
-        _require(table, "gear_ratio", geared, quantity, "a position, a velocity or a force")
-        value, written = _constant(table, "gear_ratio", None)
-        if value <= 0:
-            raise ExperimentError(
-                f"{table.where('gear_ratio')}: found {value:g}, expected above 0; a motor that "
-                "turns the other way has sign = -1"
-            )
-        if kind == "force":
-            constant, names = constant * value, [*names, f"({written})"] if written else names
-        else:
-            constant = constant / value
-            names = [*names, f"(1/({written}))"] if written else names
+    constant, names = _constants(table, quantity=quantity, kind=kind, axis=axis)
     base, per_count = _unit_of_count(table, unit, kind=kind, axis=axis)
     where = table.where("unit")
     if names:
@@ -147,14 +136,6 @@ def conversion_of(
     conversion = Conversion(columns, scales, offset, factor, period, _delay(table), code)
     counts = unit in COUNTS
     return conversion, abs(factor) * max(map(abs, scales)) if counts else None
-
-
-def _require(table: Table, key: str, fits: bool, quantity: str, expected: str) -> None:
-    """Refuse a key on a channel of a quantity that it does not fit."""
-    if not fits:
-        raise ExperimentError(
-            f"{table.where(key)}: found on {quote(quantity)}, expected on {expected}"
-        )
 
 
 def _force(axis: str) -> str:
@@ -197,40 +178,38 @@ def _sign(table: Table) -> float:
     return 1.0 if sign is None else sign
 
 
-def _constant(table: Table, key: str, example: str | None) -> tuple[float, str]:
-    """Read a number or { value, unit }: the value, and its unit ("" without a unit)."""
-    if not isinstance(table.content[key], dict):
-        value, unit = table.number(key), ""
-    else:
-        entry = table.table(key)
-        entry.allow(("value", "unit"))
-        value, unit = entry.number("value"), entry.text("unit", "") if entry.content else ""
-        if "unit" not in entry.content:
-            unit = ""
-    if example is not None and not unit:
-        raise ExperimentError(
-            f"{table.where(key)}: no unit, expected {{ value = ..., unit = {quote(example)} }}"
-        )
-    if value == 0:
-        raise ExperimentError(f"{table.where(key)}: found 0, expected another number")
-    return value, unit
+def _constants(table: Table, *, quantity: str, kind: str, axis: str) -> tuple[float, list[str]]:
+    """The product of motor constant, lever arm and gear ratio, and the units of its factors.
 
-
-def _lever_arm(table: Table, *, kind: str, axis: str, quantity: str) -> float:
-    """Distance in m from the axis at which a force in N acts."""
-    if kind != "force" or axis != "revolute":
-        place = f"{quote(quantity)} of a {axis} axis"
-        raise ExperimentError(
-            f"{table.where('lever_arm')}: found on {place}, expected on a force of a revolute axis"
-        )
-    value, unit = _constant(table, "lever_arm", "m")
-    arm = to_si(value, unit, quantity="position", where=table.where("lever_arm"))
-    if not arm > 0:
-        raise ExperimentError(
-            f"{table.where('lever_arm')}: found {value:g}, expected above 0; a force that acts the "
-            "other way has sign = -1"
-        )
-    return arm
+    A ratio divides a motion, and multiplies a force.
+    """
+    product, units = 1.0, list[str]()
+    for key, (kinds, words, example, is_positive) in _CONSTANTS.items():
+        if key not in table.content:
+            continue
+        where, unit = table.where(key), ""
+        if kind not in kinds or key == "lever_arm" and axis != "revolute":
+            on = f"{quote(quantity)} of a {axis} axis"
+            raise ExperimentError(f"{where}: found on {on}, expected on {words}")
+        if isinstance(table.content[key], dict):
+            entry = table.table(key)
+            entry.allow(("value", "unit"))
+            value, unit = entry.number("value"), entry.text("unit", "")
+        else:
+            value = table.number(key)
+        if example and not unit:
+            example = f"{_force(axis)}/A" if key == "torque_constant" else example
+            raise ExperimentError(
+                f"{where}: no unit, expected {{ value = ..., unit = {quote(example)} }}"
+            )
+        if value == 0 or is_positive and value < 0:
+            expected = "a number above 0; sign = -1 turns it" if is_positive else "another number"
+            raise ExperimentError(f"{where}: found {value:g}, expected {expected}")
+        is_inverse = key == "gear_ratio" and kind != "force"
+        product = product / value if is_inverse else product * value
+        if unit:
+            units.append(f"(1/({unit}))" if is_inverse else f"({unit})")
+    return product, units
 
 
 def _unit_of_count(table: Table, unit: str, *, kind: str, axis: str) -> tuple[str, float]:
@@ -296,14 +275,17 @@ def _period(table: Table, unit: str, *, kind: str, axis: str, scales: Sequence[f
 
 
 def _delay(table: Table) -> float:
-    if "delay" not in table.content:
-        return 0.0
-    entry = table.table("delay")
-    entry.allow(("value", "unit"))
-    where = entry.where("unit")
-    delay = to_si(entry.number("value"), entry.text("unit"), quantity="time", where=where)
+    delay = si_from(table, "delay", "time") if "delay" in table.content else 0.0
     if abs(delay) > LONGEST_DELAY:
         raise ExperimentError(
             f"{table.where('delay')}: found {delay:g} s, expected at most {LONGEST_DELAY:g} s"
         )
     return delay
+
+
+def si_from(table: Table, key: str, quantity: str, *, above: float = -math.inf) -> float:
+    """Read { value, unit } under `key` in SI;  above: bound of the value."""
+    entry = table.table(key)
+    entry.allow(("value", "unit"))
+    value, where = entry.number("value", above=above), entry.where("unit")
+    return to_si(value, entry.text("unit"), quantity=quantity, where=where)

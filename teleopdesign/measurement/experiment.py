@@ -1,7 +1,7 @@
 """An experiment: a folder with experiment.toml and the record files that it names."""
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import final
@@ -20,7 +20,7 @@ from .description import BodyDescription, EnvironmentDescription, bodies_from, e
 from .doors._log import join_names
 from .friction_curve import CURVE, bodies_and_channels, curve_record
 from .reading import ReadingStep, reading_lines
-from .record import Record, read_record, record_entries
+from .record import Record, RecordEntry, read_record, record_entries
 from .tables import is_log, read_columns
 
 _FILE = "experiment.toml"
@@ -142,47 +142,40 @@ def load_experiment(folder: str | Path) -> Experiment:
             f"{experiment.where('diagram')}: found a whole diagram, expected [model]: it is "
             "compared by `teleopdesign diagnose` and td.find_missing"
         )
-    if "kind" in experiment.content:
-        return _load_curve(experiment, folder)
-    experiment.allow(
-        ("title", "model", "channels", "comparison", "records", "sample_rate", "guessed")
-    )
-    title = experiment.text("title", folder.name)
-    model = experiment.table("model")
-    arm, bodies = arm_from(model, folder) if "arm" in model.content else (None, bodies_from(model))
-    environment = environment_from(model, bodies) if arm is None else None
-    layout = layout_from(experiment, bodies)
-    comparison = experiment.table("comparison")
-    comparison.allow(("bandwidth",))
-    bandwidth = frequency_from(comparison, "bandwidth") if comparison.content else None
+    kind = experiment.choice("kind", (CURVE,)) if "kind" in experiment.content else ""
+    over_time = () if kind else ("comparison", "sample_rate")
+    known = ("kind", "title", "model", "channels", "records", "guessed", *over_time)
+    experiment.allow(known)
+    title, model = experiment.text("title", folder.name), experiment.table("model")
+    arm = environment = bandwidth = None
+    if kind:
+        bodies, channels = bodies_and_channels(experiment)
+        layout = LogLayout(channels, bodies)
+    else:
+        is_arm = "arm" in model.content
+        arm, bodies = arm_from(model, folder) if is_arm else (None, bodies_from(model))
+        environment = environment_from(model, bodies) if arm is None else None
+        layout = layout_from(experiment, bodies)
+        comparison = experiment.table("comparison")
+        comparison.allow(("bandwidth",))
+        bandwidth = frequency_from(comparison, "bandwidth") if comparison.content else None
     entries = record_entries(experiment, folder)
-    records = tuple(read_record(folder, entry, layout) for entry in entries)
-    _check_bandwidth(bandwidth, records, comparison)
+    if kind and any(entry.span is not None for entry in entries):
+        raise ExperimentError(f"{experiment.where('records')}: span: a {CURVE} has no time")
+    read = _read_points if kind else read_record
+    records = tuple(read(folder, entry, layout) for entry in entries)
+    if bandwidth is not None:
+        _check_bandwidth(bandwidth, records, comparison)
     guessed = experiment.table("guessed")
     guesses = {key: guessed.text(key) for key in guessed.content}
-    return Experiment(
-        folder, title, bodies, environment, layout.channels, bandwidth, records, guesses, arm
-    )
+    measured = (layout.channels, bandwidth, records)
+    return Experiment(folder, title, bodies, environment, *measured, guesses, arm, kind)
 
 
-def _load_curve(experiment: Table, folder: Path) -> Experiment:
-    """A friction curve: an experiment whose records are points of speed and force."""
-    experiment.choice("kind", (CURVE,))
-    experiment.allow(("kind", "title", "model", "channels", "records", "guessed"))
-    bodies, channels = bodies_and_channels(experiment)
-    records = []
-    for file, use, offset_names, span in record_entries(experiment, folder):
-        name = f"{folder.name}/{file}"
-        if span is not None:
-            raise ExperimentError(f"{experiment.where('records')}: span: a {CURVE} has no time")
-        columns = read_columns(folder / file, name, LogLayout(channels, bodies).wanted)
-        records.append(curve_record(columns, file, use, channels, bodies, offset_names))
-    guessed = experiment.table("guessed")
-    guesses = {key: guessed.text(key) for key in guessed.content}
-    title = experiment.text("title", folder.name)
-    return Experiment(
-        folder, title, bodies, None, channels, None, tuple(records), guesses, kind=CURVE
-    )
+def _read_points(folder: Path, entry: RecordEntry, layout: LogLayout) -> Record:
+    """Read one record of a friction curve."""
+    columns = read_columns(folder / entry.file, f"{folder.name}/{entry.file}", layout.wanted)
+    return curve_record(columns, entry, layout.channels)
 
 
 def folder_of_experiment(path: Path) -> Path:
@@ -219,12 +212,10 @@ def folder_of_experiment(path: Path) -> Path:
     return path
 
 
-def _check_bandwidth(
-    bandwidth: float | None, records: tuple[Record, ...], comparison: Table
-) -> None:
+def _check_bandwidth(bandwidth: float, records: Sequence[Record], comparison: Table) -> None:
     for record in records:
         highest = 0.5 / record.sample_time
-        if bandwidth is not None and bandwidth >= highest:
+        if bandwidth >= highest:
             raise ExperimentError(
                 f"{comparison.where('bandwidth')}: found {bandwidth:g} Hz, expected less than "
                 f"{highest:g} Hz, half the sample rate of {record.file}"

@@ -24,7 +24,7 @@ from .filtering import Array, spectrum
 from .limits import SEVERAL
 from .motion import Motion
 from .reading import ReadingStep, count_of
-from .record import Record
+from .record import Record, RecordEntry
 from .tables import LogColumns
 
 #: kind of an experiment
@@ -62,17 +62,13 @@ def bodies_and_channels(
 
 
 def curve_record(
-    columns: LogColumns,
-    file: str,
-    use: str,
-    channels: Mapping[str, Channel],
-    bodies: Mapping[str, BodyDescription],
-    offset_names: frozenset[str] = frozenset(),
+    columns: LogColumns, entry: RecordEntry, channels: Mapping[str, Channel]
 ) -> Record:
     """The points of one table in SI, in the groups that are held out in turn.
 
     raises ExperimentError: no point has a speed and a force
     """
+    file, use, offset_names, _ = entry
     signals = {key: channel.signal(columns.values) for key, channel in channels.items()}
     velocity, force = (signals[f"device.{name}"] for name in CHANNELS)
     known = np.isfinite(velocity) & np.isfinite(force)

@@ -23,6 +23,7 @@ from .doors._log import Log
 from .experiment import Experiment
 from .friction_curve import CHANNELS, CURVE, bodies_and_channels, curve_record
 from .new_folder import body_with_friction, copy_logs, experiment_text, records_of
+from .record import RecordEntry
 from .survey.content import Survey
 from .tables import LogColumns
 
@@ -202,5 +203,5 @@ def friction_curve(
                 "expected as many speeds as forces"
             )
         columns = LogColumns(dict(zip(names, values, strict=True)))
-        records.append(curve_record(columns, use, use, read, bodies))
+        records.append(curve_record(columns, RecordEntry(use, use), read))
     return Experiment(Path(title), title, bodies, None, read, None, tuple(records), kind=CURVE)
