@@ -9,7 +9,7 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, final
@@ -54,14 +54,14 @@ class Table:
         """
         value = self.content.get(key, {})
         if not isinstance(value, dict):
-            raise self._wrong_type(key, "a table")
+            raise self.error(key, "a table")
         return Table(value, self.file, ".".join(part for part in (self.key, key) if part))
 
     def tables(self, key: str) -> tuple[Table, ...]:
         """The tables of the array `[[key]]`, each with its number (from 1) in its key."""
         value = self.content.get(key, [])
         if not isinstance(value, list) or not all(isinstance(row, dict) for row in value):
-            raise self._wrong_type(key, f"tables written as [[{key}]]")
+            raise self.error(key, f"tables written as [[{key}]]")
         path = f"{self.key}.{key}" if self.key else key
         return tuple(Table(row, self.file, f"{path}[{i}]") for i, row in enumerate(value, start=1))
 
@@ -71,7 +71,7 @@ class Table:
             return default
         value = self._require(key, "a text in quotes")
         if not isinstance(value, str) or not value.strip():
-            raise self._wrong_type(key, "a text in quotes")
+            raise self.error(key, "a text in quotes")
         return value
 
     def choice(self, key: str, known: Iterable[str], default: str | None = None) -> str:
@@ -88,7 +88,7 @@ class Table:
         """The boolean (true or false) under `key`; `default` if the key is absent."""
         value = self.content.get(key, default)
         if not isinstance(value, bool):
-            raise self._wrong_type(key, "true or false")
+            raise self.error(key, "true or false")
         return value
 
     def number(self, key: str, *, above: float = -math.inf) -> float:
@@ -100,6 +100,13 @@ class Table:
         """As `number`, None if the key is absent."""
         return self.number(key, above=above) if key in self.content else None
 
+    def numbers(self, key: str, count: int, default: Sequence[float] = ()) -> list[float]:
+        """The list of so many finite numbers under `key`; `default` if the key is absent."""
+        value = self.content.get(key, [*default])
+        if not isinstance(value, list) or len(value) != count:
+            raise self.error(key, f"{count} finite numbers")
+        return [self._check_number(one, key, -math.inf) for one in value]
+
     def _require(self, key: str, kind: str) -> Any:
         if key not in self.content:
             hint = did_you_mean(key, self.content).replace("did you mean", "is it written as")
@@ -109,7 +116,7 @@ class Table:
     def _check_number(self, value: object, key: str, above: float) -> float:
         wanted = "a finite number" if above == -math.inf else f"a finite number above {above:g}"
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self._wrong_type(key, "a number")
+            raise self.error(key, "a number")
         try:
             number = float(value)
         except OverflowError:
@@ -118,7 +125,8 @@ class Table:
             raise ExperimentError(f"{self.where(key)}: found {number:g}, expected {wanted}")
         return number
 
-    def _wrong_type(self, key: str, expected: str) -> ExperimentError:
+    def error(self, key: str, expected: str) -> ExperimentError:
+        """The error for a value that is something else than what is expected."""
         observed = describe_toml_value(self.content.get(key))
         return ExperimentError(f"{self.where(key)}: found {observed}, expected {expected}")
 

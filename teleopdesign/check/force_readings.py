@@ -9,8 +9,8 @@ import numpy as np
 from ..base.finding import Finding
 from ..base.sentences import percent
 from ..measurement.encoder import is_on_grid
-from ..measurement.hum import STRONG, hum_of
 from ..measurement.limits import NEARLY_ALL
+from ..measurement.spikes import STRONG, hum_of
 from ._recording import CheckedRecording, RecordingCheck, Signal
 
 #: rounding error over the standard deviation of the signal, from which a step is reported. A step

@@ -8,11 +8,11 @@ import numpy as np
 
 from ..base.finding import Finding
 from ..measurement.experiment import Experiment
-from ..measurement.files import is_experiment
-from ..measurement.hum import STRONG
 from ..measurement.limits import SMALL
 from ..measurement.motion import SHORTEST
 from ..measurement.record import Record
+from ..measurement.saving import is_experiment
+from ..measurement.spikes import STRONG
 from ._recording import CheckedRecording, RecordingCheck
 
 

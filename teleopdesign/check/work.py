@@ -17,8 +17,8 @@ import numpy as np
 
 from ..base.finding import Finding
 from ..measurement.filtering import Array
-from ..measurement.logger_clock import CLOCK
 from ..measurement.record import Record
+from ..measurement.record_clock import CLOCK
 from ..measurement.reversals import BACK
 from ._recording import CheckedRecording, RecordingCheck
 

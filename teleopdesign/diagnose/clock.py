@@ -22,8 +22,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..blocks import Value
-from ..measurement.logger_clock import CLOCK
 from ..measurement.prepare import Prepared
+from ..measurement.record_clock import CLOCK
 from ..model import Model
 from .adequacy import is_adequate
 from .candidates import bodies_with_measured_force, make_starts

@@ -17,7 +17,7 @@ from ..base.units import AXES, unit_of
 from ..blocks import CONTACT
 from ..effects import Effect
 from ..measurement.experiment import Experiment
-from ..measurement.logger_clock import CLOCK
+from ..measurement.record_clock import CLOCK
 from ..model import Model
 from .model_data import Place
 

@@ -40,8 +40,8 @@ from ..base.frozen import ByValue
 from ..base.sentences import with_standard_error
 from ..blocks import Value
 from ..measurement.filtering import Array
-from ..measurement.logger_clock import CLOCK
 from ..measurement.prepare import Stretch
+from ..measurement.record_clock import CLOCK
 from ..model import Model
 from ..realise.stages_along import INTERACTION_SHIFT, RECORD_SHIFT
 from .simulated_course import dead_times

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..measurement.filtering import Array
-from ..measurement.logger_clock import CLOCK
 from ..measurement.prepare import Prepared, Stretch
+from ..measurement.record_clock import CLOCK
 from ..measurement.shared_links import best_links
 from ..model import Model
 from .bodies_apart import BodyByBody

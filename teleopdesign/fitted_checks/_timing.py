@@ -19,8 +19,8 @@ from ..check import CheckedRecording
 from ..effects import EFFECTS
 from ..measurement.filtering import Array
 from ..measurement.limits import HALF
-from ..measurement.logger_clock import CLOCK
 from ..measurement.prepare import Stretch
+from ..measurement.record_clock import CLOCK
 from ._force_balance import Estimate, ForceBalance, force_balance
 from ._force_timing import phase_of_shift
 

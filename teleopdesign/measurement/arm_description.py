@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,11 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from ..arms import Chain, Link, inertia_about, read_urdf, rotation_of
-from ..arms.chain import GRAVITY, Array, tensor
+from ..arms.chain import GRAVITY, tensor
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.files import follow_links
 from ..base.frozen import ByValue
-from ..base.toml import Table, describe_toml_value
+from ..base.toml import Table
 from .description import BODY, BodyDescription, body_from, effects_from, value_from
 
 #: treatment of inertial parameters: estimated, or taken from the description
@@ -62,7 +61,7 @@ def arm_from(model: Table, folder: Path) -> tuple[ArmDescription, dict[str, Body
     for name, joint in joints.items():
         joint.allow(_JOINT)
         _require_name(name, table.where("joints"))
-    x, y, z = numbers_from(table, "gravity", 3, GRAVITY).tolist()
+    x, y, z = table.numbers("gravity", 3, GRAVITY)
     arm = _kinematics(table, folder, joints).with_gravity((x, y, z))
     estimate = table.choice("estimate", ESTIMATES, ESTIMATES[0])
     bodies = {
@@ -143,36 +142,20 @@ def _link(table: Table) -> Link:
     table.allow(_LINK)
     joint = table.text("joint")
     kind = table.choice("kind", ("revolute", "prismatic"), "revolute")
-    axis = numbers_from(table, "axis", 3, (0.0, 0.0, 1.0))
+    axis = np.array(table.numbers("axis", 3, (0.0, 0.0, 1.0)))
     if not (size := float(np.linalg.norm(axis))) > 0:
-        raise ExperimentError(f"{table.where('axis')}: found 0, 0, 0, expected a direction")
+        raise table.error("axis", "a direction")
+    zero = (0.0,) * 3
     mass = table.number("mass") if "mass" in table.content else 0.0
     if mass < 0:
-        raise ExperimentError(f"{table.where('mass')}: found {mass:g}, expected 0 or more")
-    about = tensor(numbers_from(table, "inertia", 6, (0.0,) * 6))
+        raise table.error("mass", "0 or more")
+    about = tensor(np.array(table.numbers("inertia", 6, (0.0,) * 6)))
     return Link(
         name=table.text("name", f"{joint}_link"),
         joint=joint,
         kind=kind,
         axis=axis / size,
-        rotation=rotation_of(*numbers_from(table, "rpy", 3, (0.0,) * 3).tolist()),
-        origin=numbers_from(table, "xyz", 3, (0.0,) * 3),
-        inertial=inertia_about(mass, numbers_from(table, "centre", 3, (0.0,) * 3), about),
+        rotation=rotation_of(*table.numbers("rpy", 3, zero)),
+        origin=np.array(table.numbers("xyz", 3, zero)),
+        inertial=inertia_about(mass, np.array(table.numbers("centre", 3, zero)), about),
     )
-
-
-def numbers_from(table: Table, key: str, count: int, default: tuple[float, ...]) -> Array:
-    """Read a list of `count` finite numbers under `key`; `default` if the key is absent."""
-    if key not in table.content:
-        return np.array(default)
-    entry = table.content[key]
-    good = isinstance(entry, list) and len(entry) == count
-    numbers = entry if good else []
-    if not good or not all(
-        isinstance(x, int | float) and not isinstance(x, bool) and math.isfinite(x) for x in numbers
-    ):
-        raise ExperimentError(
-            f"{table.where(key)}: found {describe_toml_value(entry)}, "
-            f"expected {count} finite numbers"
-        )
-    return np.array([float(x) for x in numbers])

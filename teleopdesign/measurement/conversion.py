@@ -19,10 +19,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.errors import ExperimentError, quote
-from ..base.toml import Table, describe_toml_value
+from ..base.toml import Table
 from ..base.units import converting_factor, is_unit, measures, si_factor, to_si
-from .encoder import Array
-from .signed_numbers import SIGN_BIT, TWOS_COMPLEMENT, SignCode, sign_code_from
+from .encoder import SIGN_BIT, TWOS_COMPLEMENT, Array, SignCode, sign_code_from
 
 #: words for the steps of a counter
 COUNTS = ("counts", "count", "ticks", "increments")
@@ -146,9 +145,7 @@ def _columns(table: Table) -> tuple[str, ...]:
     value = table.content.get("column")
     if isinstance(value, list):
         if not value or not all(isinstance(v, str) and v.strip() for v in value):
-            raise ExperimentError(
-                f"{table.where('column')}: found a list of other things, expected names of columns"
-            )
+            raise table.error("column", "names of columns")
         if len(set(value)) < len(value):
             raise ExperimentError(f"{table.where('column')}: found a column twice")
         return tuple(value)
@@ -156,25 +153,19 @@ def _columns(table: Table) -> tuple[str, ...]:
 
 
 def _scales(table: Table, count: int) -> tuple[float, ...]:
-    value = table.content.get("scale", 1.0)
-    listed = value if isinstance(value, list) else [value] * count
-    numbers = [v for v in listed if isinstance(v, int | float) and not isinstance(v, bool)]
-    if len(numbers) != len(listed) or not all(math.isfinite(v) and v != 0 for v in numbers):
-        raise ExperimentError(
-            f"{table.where('scale')}: found {describe_toml_value(value)}, "
-            "expected a number other than 0" + (", or a list of them" if count > 1 else "")
-        )
-    if len(listed) != count:
-        raise ExperimentError(
-            f"{table.where('scale')}: found {len(listed)} numbers, expected {count}, one a column"
-        )
-    return tuple(float(v) for v in numbers)
+    if isinstance(table.content.get("scale"), list):
+        scales = table.numbers("scale", count)
+    else:
+        scales = [table.number("scale") if "scale" in table.content else 1.0] * count
+    if 0.0 in scales:
+        raise table.error("scale", "numbers other than 0")
+    return tuple(scales)
 
 
 def _sign(table: Table) -> float:
     sign = table.number_or_none("sign")
     if sign not in (None, 1.0, -1.0):
-        raise ExperimentError(f"{table.where('sign')}: found {sign:g}, expected 1 or -1")
+        raise table.error("sign", "1 or -1")
     return 1.0 if sign is None else sign
 
 

@@ -174,5 +174,5 @@ def value_from(table: Table, key: str) -> ModelValue:
     unit = entry.text("unit") if "unit" in entry.content else None
     number, error = entry.number("value"), entry.number_or_none("stderr")
     if error is not None and error < 0:
-        raise ExperimentError(f"{entry.where('stderr')}: found {error:g}, expected 0 or more")
+        raise entry.error("stderr", "0 or more")
     return ModelValue(number, unit, entry.flag("fixed", False), table.where(key), error)

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from ..base.frozen import ByValue
 from .encoder import reading_noise, reading_step
 from .filtering import Array, Spectrum, held_command, spectrum
-from .hum import hum_of, without_hum
 from .limits import HALF
 from .record import Record
+from .spikes import hum_of, without_hum
 
 #: edge of the smoothing over the bandwidth of the comparison: below the bandwidth |H| > 0.998
 SMOOTHING = 1.5

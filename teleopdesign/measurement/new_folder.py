@@ -27,7 +27,7 @@ from .record import Record, RecordEntry, overlap, read_record
 from .reversals import runs_one_way
 from .saving import body_lines, guesses_text, records_text
 from .survey import Survey, spans_of
-from .survey.remarks import STATEMENTS
+from .survey.content import STATEMENTS
 from .tables import open_log
 
 #: (begin, end) of the fit record and of the check record, s from the first row of a log

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
-from .bandwidth import HIGHEST, bandwidth_of
+from .bandwidth import HIGHEST, LARGEST, bandwidth_of, scales
 from .experiment import Experiment
 from .filtering import Array, spectrum
 from .friction_curve import FOLDS, curve_motion
 from .motion import SHORTEST, SMOOTHING, Motion, motions
 from .record import Record
-from .scales import LARGEST, scales
 from .shared_links import Shared
 
 #: seconds at each end of a stretch where the low-pass is not yet in steady state

@@ -1,6 +1,5 @@
 """One recording: signals in SI units on a uniform time, and the corrections of its log."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +12,7 @@ from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.files import follow_links
 from ..base.frozen import ByValue
 from ..base.shown import html_table
-from ..base.toml import Table, describe_toml_value
+from ..base.toml import Table
 from .channel import LogLayout
 from .doors._log import join_names
 from .doors.bag import is_bag
@@ -193,17 +192,10 @@ def _span(table: Table) -> tuple[float, ...] | None:
     """Read [begin, end] in s from the first row of the log; None: the whole file."""
     if "span" not in table.content:
         return None
-    span = table.content["span"]
-    numbers = isinstance(span, list) and all(
-        isinstance(v, int | float) and not isinstance(v, bool) for v in span
-    )
-    if not numbers or len(span) != 2 or not 0 <= span[0] < span[1] < math.inf:
-        raise ExperimentError(
-            f"{table.where('span')}: found {describe_toml_value(span)}, "
-            "expected [begin, end] in s, from the "
-            "log's first row"
-        )
-    return (float(span[0]), float(span[1]))
+    begin, end = table.numbers("span", 2)
+    if not 0 <= begin < end:
+        raise table.error("span", "[begin, end] in s, from the log's first row")
+    return begin, end
 
 
 def overlap(one: Sequence[float], other: Sequence[float]) -> bool:

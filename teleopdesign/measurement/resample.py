@@ -124,21 +124,11 @@ def _position(
     )
     # beyond the ends the last reading is kept
     smooth = np.where(grid < at[0], values[0], np.where(grid > at[-1], values[-1], smooth))
-    slow = np.abs(values[right] - values[left]) <= STEPS * step * (at[right] - at[left])
-    in_steps = _interpolate_in_steps(values[left], values[right], part, step)
-    if slower_clock and step > 0.0:
-        in_steps = values[left] + step * np.rint((smooth - values[left]) / step)
-    return np.where(slow, in_steps, smooth)
-
-
-def _interpolate_in_steps(left: Array, right: Array, part: Array | float, step: float) -> Array:
-    """Readings of an encoder at times between two readings, for a straight motion between them.
-
-    part: of the way between them, 0 to 1;  step: of the encoder; 0: the readings are equal
-    """
     if step == 0.0:
-        return left
-    return left + step * np.rint(part * (right - left) / step)
+        return np.where(values[right] == values[left], values[left], smooth)
+    slow = np.abs(values[right] - values[left]) <= STEPS * step * (at[right] - at[left])
+    way = smooth - values[left] if slower_clock else part * (values[right] - values[left])
+    return np.where(slow, values[left] + step * np.rint(way / step), smooth)
 
 
 def cubic_through_four(values: Array, at: Array, grid: Array, left: NDArray[np.intp]) -> Array:

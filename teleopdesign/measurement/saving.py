@@ -1,10 +1,11 @@
-"""Write an experiment as a folder: experiment.toml, and a table in SI for each record."""
+"""The files of an experiment: experiment.toml, a table in SI for each record, a digest of all."""
 
 from __future__ import annotations
 
 import gzip
+import hashlib
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,11 +13,14 @@ import numpy as np
 
 from ..base.errors import ExperimentError
 from ..base.files import write_beside, write_text
-from ..base.toml import comment_text, inline_text, string_text, toml_text
+from ..base.toml import comment_text, inline_text, read_toml, string_text, toml_text
 from ..base.units import unit_of
 from .channel import BODY_QUANTITIES
 from .description import BodyDescription, Effects, ModelValue
 from .reading import reading_lines
+
+#: bytes that are read at once
+_BLOCK = 1 << 20
 
 if TYPE_CHECKING:
     from .experiment import Experiment
@@ -140,3 +144,62 @@ def _value(value: ModelValue) -> str:
     marks = {key: mark for key, mark in marks.items() if mark is not None}
     number = float(value.value)
     return toml_text({"value": number, **marks} if marks else number)
+
+
+def is_experiment(folder: Path) -> bool:
+    """Whether a folder holds an experiment."""
+    try:
+        return (folder / "experiment.toml").is_file()
+    except OSError:  # a text that is too long for a path
+        return False
+
+
+def experiment_files(folder: Path) -> dict[str, Path | None]:
+    """Name -> file, for experiment.toml and its records; for a folder, each file in it.
+
+    None: the folder has no file of that name. If experiment.toml cannot be read, it is the only
+        entry; `load_experiment` gives the reason.
+    """
+    files: dict[str, Path | None] = {"experiment.toml": _resolve_within(folder, "experiment.toml")}
+    try:
+        table = read_toml(folder / "experiment.toml", f"{folder.name}/experiment.toml")
+        records = [t.text("file") for t in table.tables("records")]
+    except ExperimentError:
+        return files
+    for name in records:
+        if "\0" not in name and (folder / name).is_dir():
+            for path in sorted((folder / name).rglob("*")):
+                inside = path.relative_to(folder).as_posix()
+                files[inside] = _resolve_within(folder, inside)
+        else:
+            files[name] = _resolve_within(folder, name)
+    return files
+
+
+def _resolve_within(folder: Path, name: str) -> Path | None:
+    """The path of a regular file in the folder; None if there is none."""
+    path = folder / name
+    if not path.is_file() or not path.resolve().is_relative_to(folder.resolve()):
+        return None
+    return path
+
+
+def content_digest(folder: Path) -> str:
+    """SHA-256 of the content of an experiment's files and of their names within the folder."""
+    whole = hashlib.sha256()
+    for name, path in experiment_files(folder).items():
+        whole.update(f"{name}\0".encode("utf-8", "surrogatepass"))
+        for block in [b"no file"] if path is None else _blocks(path):
+            whole.update(block)
+        whole.update(b"\0")
+    return whole.hexdigest()
+
+
+def _blocks(path: Path) -> Iterator[bytes]:
+    """The content of a file block by block; one fixed text for a file that cannot be read."""
+    try:
+        with path.open("rb") as file:
+            while block := file.read(_BLOCK):
+                yield block
+    except OSError:
+        yield b"cannot be read"

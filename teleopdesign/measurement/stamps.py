@@ -7,10 +7,13 @@ starts again at midnight; a clock without a zone goes back an hour in autumn.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.units import measures
+from .column_names import bare_name, unit_in_name, unit_of_text
 from .encoder import Array
 from .limits import HALF, SHORTEST
 
@@ -79,6 +82,19 @@ def seconds_since_first(stamps: Array) -> Array:
     set_back = are_set_back(steps, usual)
     since[rows[1:]] += np.cumsum(np.where(set_back, usual - steps, 0.0))
     return np.asarray(since)
+
+
+def unit_of_time(name: str, stated: str | None) -> str | None:
+    """The unit of a column if it is a time: as stated, in its name, or all of it: "Sekunden"."""
+    unit = stated or unit_in_name(name, "time") or unit_of_text(bare_name(name))
+    return unit if unit and unit != "counts" and measures(unit, "time") else None
+
+
+def share_time(spans: Iterable[tuple[float, float]]) -> bool:
+    """Whether clocks (begin, end) share half of the shortest; others count from other instants."""
+    begins, ends = zip(*spans, strict=True)
+    shortest = min(end - begin for begin, end in zip(begins, ends, strict=True))
+    return bool(min(ends) - max(begins) >= HALF * shortest)
 
 
 def unit_of_steps(stamps: Array) -> tuple[str, str]:

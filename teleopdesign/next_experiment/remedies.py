@@ -16,9 +16,9 @@ from ..blocks.body import INERTIA
 from ..diagnose.fit import fit_squares
 from ..diagnose.least_squares import solve_normal
 from ..diagnose.noise_floor import Sensor
+from ..measurement.bandwidth import scales
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared
-from ..measurement.scales import scales
 from .family import Setting, family
 from .limits import Limits, course_of
 from .rivals import Rival, Sums

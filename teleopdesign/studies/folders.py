@@ -17,7 +17,7 @@ from ..base.errors import ExperimentError, ModelError
 from ..base.files import follow_links
 from ..base.frozen import ByValue
 from ..effects import EFFECTS, Effect
-from ..measurement.files import content_digest
+from ..measurement.saving import content_digest
 from .chosen_measures import measures_of
 from .evaluate import StudyTask, Unit
 from .fingerprint import fingerprint, versions

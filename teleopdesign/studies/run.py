@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from ..base.errors import ExperimentError, ModelError, quote, unknown
 from ..diagrams import Diagram
-from ..measurement.files import content_digest, is_experiment
+from ..measurement.saving import content_digest, is_experiment
 from ..simulate import Sampling, Trajectory
 from ..simulate.sampling import SAMPLED
 from .case import SimulatedCase

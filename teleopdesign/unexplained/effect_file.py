@@ -12,8 +12,8 @@ from pathlib import Path
 from ..base.errors import ModelError
 from ..base.files import write_text
 from ..base.sentences import span
+from ..measurement.bandwidth import scales
 from ..measurement.prepare import Prepared
-from ..measurement.scales import scales
 from .effect_law import law_of_formula, law_of_points
 from .result import BodyResidual, DescribedDependence
 from .shapes import COMMAND, FRICTION, LATENESS, LOST, Shape

@@ -9,7 +9,7 @@ import pytest
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
-from teleopdesign.measurement.files import content_digest, experiment_files
+from teleopdesign.measurement.saving import content_digest, experiment_files
 from teleopdesign.studies.folders import answer_files
 
 

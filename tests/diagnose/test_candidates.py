@@ -20,9 +20,9 @@ from teleopdesign.diagnose.fit import estimate, free_parameters
 from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.rank import rank_candidates
 from teleopdesign.effects import CONTACT_ROLES, EFFECTS, catalogue
+from teleopdesign.measurement.bandwidth import scales
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.measurement.saving import write_experiment
-from teleopdesign.measurement.scales import scales
 
 #: scales that are places, with a sign
 ENDS = ("lowest_position", "highest_position")

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors._cells import numbers_of
-from teleopdesign.measurement.files import content_digest, experiment_files
 from teleopdesign.measurement.reversals import look_back_to_reversal, mark_reversals
+from teleopdesign.measurement.saving import content_digest, experiment_files
 
 # reversals
 

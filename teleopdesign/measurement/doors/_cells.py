@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.errors import ExperimentError, quote
-from ..encoder import Array
-from ..signed_numbers import MOST_BITS
+from ..encoder import MOST_BITS, Array
 
 #: whole numbers above are stamps in nanoseconds: 2^53, beyond which float64 skips some
 _LONG = 2**MOST_BITS

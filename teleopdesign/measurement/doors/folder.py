@@ -15,11 +15,10 @@ from typing import Any
 import numpy as np
 
 from ...base.errors import ExperimentError
-from ...base.units import measures, si_factor
-from ..column_names import likeness, unit_in_name
+from ...base.units import si_factor
+from ..column_names import likeness
 from ..encoder import Array
-from ..limits import HALF
-from ..stamps import unit_of_steps, unwrap_stamps
+from ..stamps import share_time, unit_of_steps, unit_of_time, unwrap_stamps
 from ._cells import numbers_of
 from ._log import Log, join_names
 
@@ -134,8 +133,7 @@ def _time_column(log: Log, file: str) -> str:
 
 def _require_shared_time(seconds: Mapping[str, Array], file: str) -> None:
     ends = {name: (float(np.nanmin(s)), float(np.nanmax(s))) for name, s in seconds.items()}
-    shared = min(end for _, end in ends.values()) - max(begin for begin, _ in ends.values())
-    if shared < HALF * min(end - begin for begin, end in ends.values()):
+    if not share_time(ends.values()):
         spans = ", ".join(f"{n} from {b:.9g} to {e:.9g} s" for n, (b, e) in ends.items())
         raise ExperimentError(
             f"{file}: found tables that do not run at the same time ({spans}), expected one clock "
@@ -153,7 +151,5 @@ def _seconds_of(log: Log, column: str, file: str) -> Array:
         if values.dtype.kind in "iu"  # as floats, nanoseconds since 1970 are exact to 256 ns
         else numbers_of(values, column, file)
     )
-    unit = log.units.get(column) or unit_in_name(column, "time")
-    if unit is None or not measures(unit, "time"):
-        unit = unit_of_steps(stamps)[0]
+    unit = unit_of_time(column, log.units.get(column)) or unit_of_steps(stamps)[0]
     return np.asarray(unwrap_stamps(stamps)[0] * si_factor(unit, quantity="time"))

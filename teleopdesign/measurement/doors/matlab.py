@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ._log import DEPTH, MOST_PARTS, Log, Part, log_of_arrays, parts_of, refuse_damage, refuse_size
-from .hdf5 import open_hdf5
+from .typed_arrays import open_hdf5
 
 #: how an HDF5 file begins, at its first byte or behind a head of so many bytes
 _HDF5, _USER_BLOCK = b"\x89HDF\r\n\x1a\n", 512

@@ -1,4 +1,6 @@
-"""Text tables: csv of any dialect. A well-formed table is read fast; errors name row and column.
+"""Text tables: csv of any dialect, and sheets of workbooks (.xlsx), whose cells become such lines.
+
+A well-formed table is read fast; errors name row and column.
 
 The lines become plain rows (`_line_shapes`), the rows a table with a separator, a decimal sign and
 names (`_dialect`), and the table signals with times (`shapes`).
@@ -6,10 +8,12 @@ names (`_dialect`), and the table signals with times (`shapes`).
 
 from __future__ import annotations
 
+import datetime
 import io
+import zipfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -30,7 +34,7 @@ from ._dialect import (
     open_bytes,
 )
 from ._line_shapes import LINE_SHAPES
-from ._log import Log
+from ._log import MOST_BYTES, Log, join_names, optional, refuse_damage, refuse_size
 from ._stray_lines import rows_of_numbers
 from .shapes import best_shape, table_of
 from .shapes._table import MOST_ROWS
@@ -229,3 +233,51 @@ def _columns_of(
     rows = [line.split(separator) if plain else cells_of(line, separator) for line in lines]
     cells = ([r[place] if place < len(r) else "" for r in rows] for place in places)
     return [part_of_column(column, comma=comma) for column in cells]
+
+
+def open_workbook(path: Path, file: str) -> Log:
+    """Open a workbook; raises ExperimentError: a damaged or too large file, no row of numbers."""
+    openpyxl = optional("openpyxl", file)
+    with refuse_damage("workbook", file):
+        with zipfile.ZipFile(path) as packed:
+            size = sum(entry.file_size for entry in packed.infolist())
+        if size > MOST_BYTES // 4:
+            raise ExperimentError(
+                f"{file}: found {size:.3g} bytes unpacked, expected a smaller table"
+            )
+        book = openpyxl.load_workbook(path, read_only=True, data_only=True)
+        sheets = {s.title: [*map(_line, s.iter_rows(values_only=True))] for s in book.worksheets}
+        book.close()
+    tables: dict[str, Log] = {}
+    for title, lines in sheets.items():
+        refuse_size(len(lines), file)
+        try:
+            tables[title] = open_lines([line for line in lines if line.strip()], file)
+        except ExperimentError:  # a sheet of texts, or empty
+            continue
+    if not tables:
+        raise ExperimentError(f"{file}: found no sheet with a table of numbers below its header")
+    title, *others = tables
+    log = tables[title]
+    notes = [f"sheet {title!r}"] if len(sheets) > 1 else []
+    if others:
+        sheet = "sheet" if len(others) == 1 else "sheets"
+        others = [repr(other) for other in others]
+        notes.append(f"{sheet} {join_names(others, 4)}: left out; save each as a file of its own")
+    return replace(log, notes=(*notes, *log.notes))
+
+
+def _line(row: tuple[Any, ...]) -> str:
+    return "\t".join(map(_text, row))
+
+
+def _text(cell: Any) -> str:
+    """A cell as a text table holds it: durations as a time of day, which may have days."""
+    if isinstance(cell, bool):
+        return str(int(cell))
+    if isinstance(cell, datetime.datetime):
+        return cell.isoformat()
+    if isinstance(cell, datetime.timedelta):
+        minutes, seconds = divmod(cell.seconds + 1e-6 * cell.microseconds, 60)
+        return f"{cell.days} days {minutes // 60:02.0f}:{minutes % 60:02.0f}:{seconds:09.6f}"
+    return "" if cell is None else " ".join(str(cell).replace('"', "'").split())

@@ -20,10 +20,9 @@ from ..column_names import is_wanted, likeness
 from ..encoder import Array
 from ..first_guess import balance_factor, explain_force
 from ..limits import SMALL
-from .content import NONE, SURE_NAME, Choices, Survey, SurveyedColumn
+from .content import NONE, SURE_NAME, Choices, Survey, SurveyedColumn, gear_ratio_in
 from .force_entry import PLACEHOLDER, force_to_si
-from .remarks import gear_ratio_in
-from .roles import LEAST_LEFT, says, score_of
+from .roles import LEAST_LEFT, is_current, says, score_of
 
 #: a column without a clear name counts as the force of the hand if it leaves at most this part of
 #: the squares that the motion does not explain: with a higher limit, one of many columns would pass
@@ -201,7 +200,8 @@ def current_that_acted(
     measured = [
         name
         for name, column in columns.items()
-        if name != force and _is_current(column) and not is_wanted(name)
+        if name != force and is_current(column) and not is_wanted(name)
+        if likeness(name, "actuator_force") >= SURE_NAME
         # the current that a drive draws from its supply has one side
         if not _smaller_side(column.values) < SMALL < _smaller_side(columns[force].values)
     ]
@@ -210,13 +210,6 @@ def current_that_acted(
     best = max(measured, key=lambda name: scores[name])
     share = _unexplained_share(columns[force].values, columns[best].values)
     return (best, share**0.5) if share > LEAST_LEFT else None
-
-
-def _is_current(column: SurveyedColumn) -> bool:
-    """Whether a column is the current of a motor, by unit or by name."""
-    if likeness(column.name, "actuator_force") < SURE_NAME:
-        return False
-    return column.unit in ("A", "mA") or column.unit is None and says(column.name, "current")
 
 
 def _smaller_side(x: Array) -> float:

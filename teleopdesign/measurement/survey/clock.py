@@ -8,27 +8,24 @@ from dataclasses import replace
 import numpy as np
 
 from ...base.errors import ExperimentError, quote
-from ...base.units import is_several_times, measures, si_factor
+from ...base.units import is_several_times, si_factor
 from ..column_names import is_wanted, likeness
 from ..doors._cells import holds_dates, numbers_of
 from ..doors._log import Log, bare_column, join_names
-from ..encoder import Array, is_most
+from ..encoder import Array, is_most, sign_code_of
 from ..log_clock import OF_ANOTHER_CLOCK
 from ..record_clock import clock_of
 from ..repeated_rows import rows_between_readings
-from ..signed_numbers import sign_code_of
 from ..spikes import lost_zeros
-from ..stamps import seconds_since_first, unit_of_steps
-from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, rises
+from ..stamps import seconds_since_first, unit_of_steps, unit_of_time
+from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, rises, sample_rate_in
 from .refusals import reasons
-from .remarks import sample_rate_in
 from .roles import unit_in_log
 from .time_role import (
     busiest_clock,
     counts_rows,
     is_called_time,
     score_times,
-    unit_of_time,
     why_time,
 )
 
@@ -115,10 +112,10 @@ def time_column(
             return None, "s"
         if why := why_time(name, list(scores), raw, choices):
             guesses["channels.time.column"] = f"{name!r} is read as the time: {why}"
-    unit = choices.units.get(name) or unit_of_time(name, log)
+    unit = unit_of_time(name, choices.units.get(name) or log.units.get(name))
     if name in choices.units and is_several_times(choices.units[name]):
         return name, choices.units[name]
-    if unit is None or not measures(unit, "time"):
+    if unit is None:
         unit, why = unit_of_steps(raw[name])
         if why:
             counted = "channels.time.column" in guesses and counts_rows(raw[name])
@@ -131,10 +128,16 @@ def duration_of(
     raw: Mapping[str, Array], time_name: str | None, unit: str, choices: Choices
 ) -> float:
     """Time from the first to the last row of the whole log, s."""
+    return float(np.nanmax(seconds_since_first(_stamps_of(raw, time_name, unit, choices))))
+
+
+def _stamps_of(
+    raw: Mapping[str, Array], time_name: str | None, unit: str, choices: Choices
+) -> Array:
+    """The time of each row (n,), s: as written, or counted."""
     if time_name is None:
-        return (max(map(len, raw.values())) - 1) / (choices.sample_rate or ASSUMED)
-    stamps = raw[time_name] * si_factor(unit, quantity="time")
-    return float(np.nanmax(seconds_since_first(stamps)))
+        return np.arange(max(map(len, raw.values()))) / (choices.sample_rate or ASSUMED)
+    return raw[time_name] * si_factor(unit, quantity="time")
 
 
 def interpolate_columns(
@@ -149,11 +152,7 @@ def interpolate_columns(
 
     This is accurate enough to recognise the quantities.
     """
-    if time_name is None:
-        count = max(map(len, raw.values()))
-        stamps = np.arange(count) / (choices.sample_rate or ASSUMED)
-    else:
-        stamps = raw[time_name] * si_factor(unit, quantity="time")
+    stamps = _stamps_of(raw, time_name, unit, choices)
     beside_time = {n: x for n, x in raw.items() if len(x) == len(stamps)}
     rows = np.flatnonzero(np.isfinite(stamps))[:MOST]
     origin = stamps[rows[0]]

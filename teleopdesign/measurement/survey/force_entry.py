@@ -17,10 +17,8 @@ from ...base.toml import Table
 from ...base.units import is_unit, measures, unit_of
 from ..column_names import is_wanted, unit_in_name, why_no_unit
 from ..conversion import conversion_of
-from ..encoder import reading_noise
-from ..signed_numbers import SIGN_BIT
-from .content import Choices, Survey
-from .remarks import torque_constant_in
+from ..encoder import SIGN_BIT, reading_noise
+from .content import Choices, Survey, torque_constant_in
 from .roles import says
 
 #: N*m/A or m: constant of a motor, or lever arm of a force beside an angle, if nothing states it

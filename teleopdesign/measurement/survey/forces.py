@@ -20,10 +20,10 @@ from .roles import (
     AS_LIKELY,
     LEAST_LEFT,
     as_likely,
+    is_current,
     is_named_force,
     is_nameless,
     of_another_axis,
-    says,
     score_of,
     stand_together,
 )
@@ -85,15 +85,15 @@ def score_beside(survey: Survey, position: str, velocity: str | None, x: Array) 
 
 
 def _score_forces(
-    survey: Survey, position: str, free: Mapping[str, SurveyedColumn], is_current: bool
+    survey: Survey, position: str, free: Mapping[str, SurveyedColumn], needs_constant: bool
 ) -> dict[str, float]:
-    """The score of each column that may be the force;  is_current: the user says that it is one."""
+    """The score of each column that may be the force;  needs_constant: one is stated."""
     return {
         n: score_of(
             "actuator_force",
             c,
             left=1.0 - survey.explained[n],
-            its_constant_is_stated=is_current and _is_for_constant(c),
+            its_constant_is_stated=needs_constant and (c.unit == "V" or is_current(c)),
             beside_the_position=stand_together(n, position),
             of_another_axis=of_another_axis(n, position, survey.columns),
         )
@@ -141,13 +141,6 @@ def _find_driving_force(
     if why is not None:
         survey.guesses["channels.actuator_force.column"] = why
     return force, acted is not None
-
-
-def _is_for_constant(column: SurveyedColumn) -> bool:
-    """Whether a column is a current or voltage, by unit or name: it needs a motor constant."""
-    if column.unit is not None:
-        return column.unit in ("A", "mA", "V")
-    return says(column.name, "current")
 
 
 def _position_to_si(survey: Survey) -> float:

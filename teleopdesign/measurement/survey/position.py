@@ -1,4 +1,4 @@
-"""Which columns of a log are position and velocity; axis, unit, wrap and resolution."""
+"""Which columns of a log are position and velocity."""
 
 from __future__ import annotations
 

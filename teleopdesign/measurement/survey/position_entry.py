@@ -11,7 +11,7 @@ from ...base.units import AXES, is_unit, measures, si_factor
 from ..column_names import why_no_unit, words_of
 from ..encoder import ENOUGH, Array, grid_of, reading_step
 from ..limits import SMALL
-from .content import OF_SENSORS, Choices, Survey, SurveyedColumn, sample_time_of
+from .content import OF_SENSORS, Choices, Survey, SurveyedColumn, counts_per_turn_in, sample_time_of
 from .derivative import (
     DERIVATIVE,
     NEAR_USUAL,
@@ -22,7 +22,6 @@ from .derivative import (
     wrap_of,
 )
 from .force_entry import describe_code
-from .remarks import counts_per_turn_in
 from .roles import (
     SAYS,
     says,

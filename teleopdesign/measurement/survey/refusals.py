@@ -1,4 +1,4 @@
-"""What a message says of a log in which no position or no force is certain, and what to do."""
+"""What a message says of a column that is not used, and of a log without position or force."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each column of a log is beside its position, and so why it is in no channel.
+"""What each column of a log is beside its position, such as a set point, and so no force.
 
 A column is no force where one of the relations of `relations_of` holds: it is the position or its
 velocity once more, a set point, or the motion of another body. The same sentence says why the

@@ -1,4 +1,4 @@
-"""Which column has which role: the assignment with the largest score.
+"""Which column has which role, by name, unit and relations: the assignment with the largest score.
 
     score = sum over the roles of ln odds(name and unit | role) - ln(part left by its relation)
 
@@ -143,6 +143,11 @@ def is_nameless(column: SurveyedColumn) -> bool:
     """Whether neither unit nor name of a column says anything: "column 3", "CH2"."""
     kinds = ("position", "velocity", "actuator_force", "interaction_force")
     return column.unit is None and not any(likeness(column.name, kind) > 0 for kind in kinds)
+
+
+def is_current(column: SurveyedColumn) -> bool:
+    """Whether a column is a current, by its unit or, without a unit, by its name."""
+    return column.unit in ("A", "mA") or column.unit is None and says(column.name, "current")
 
 
 def is_named_force(column: SurveyedColumn) -> bool:

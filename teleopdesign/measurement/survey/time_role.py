@@ -13,10 +13,9 @@ from ..column_names import bare_name, is_wanted, likeness, unit_in_name, unit_of
 from ..doors._log import Log
 from ..encoder import Array
 from ..limits import FEWEST, HALF, SEVERAL, SMALL
-from ..stamps import are_out_of_order, step_deviations, unit_of_steps, unwrap_stamps
-from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, rises
+from ..stamps import are_out_of_order, step_deviations, unit_of_steps, unit_of_time, unwrap_stamps
+from .content import ASSUMED, SURE_NAME, Choices, SurveyedColumn, rises, sample_rate_in
 from .derivative import DERIVATIVE, derivative_factor, has_both_signs, unwrap_column, wrap_of
-from .remarks import sample_rate_in
 from .roles import is_unit_of, says, says_only, score_of, unit_in_log
 
 #: quantities whose units are not those of a time
@@ -42,9 +41,8 @@ def rate_without_time(
         usual = float(np.median(steps))
         if not usual > 0 or np.median(np.abs(steps - usual)) > HALF * usual:
             continue
-        unit = choices.units.get(name) or unit_of_time(name, log)
-        if unit is None or not measures(unit, "time"):
-            unit, _ = unit_of_steps(np.cumsum(steps))
+        unit = unit_of_time(name, choices.units.get(name) or log.units.get(name))
+        unit = unit or unit_of_steps(np.cumsum(steps))[0]
         rate = float(f"{1.0 / (usual * si_factor(unit, quantity='time')):.4g}")
         return rate, f"{name!r} holds the usual time from one row to the next"
     return _rate_of_velocity(raw, log, choices)
@@ -103,7 +101,7 @@ def is_called_time(name: str) -> bool:
 
 def _is_coarse_time(name: str, values: Array, log: Log) -> bool:
     """Whether a column is a time by its name or unit, in which many rows share a stamp."""
-    timed = is_unit_of(unit_of_time(name, log), "time")
+    timed = unit_of_time(name, log.units.get(name)) is not None
     if not timed and likeness(name, "time") < SURE_NAME:
         return False
     steps = np.diff(values[np.isfinite(values)])
@@ -121,16 +119,6 @@ def _names_signal(name: str, log: Log, choices: Choices) -> bool:
         return True
     kinds = ("position", "velocity", "actuator_force")
     return any(len(w) > 1 and likeness(w, k) >= SURE_NAME for w in words for k in kinds)
-
-
-def unit_of_time(name: str, log: Log) -> str | None:
-    """The unit of a column if it is a time: of its file, in its name, or all of it: "Sekunden"."""
-    unit = unit_of_text(bare_name(name))
-    return (
-        log.units.get(name)
-        or unit_in_name(name, "time")
-        or (unit if is_unit_of(unit, "time") else None)
-    )
 
 
 def _is_called_clock(name: str) -> bool:

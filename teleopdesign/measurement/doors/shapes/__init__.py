@@ -2,8 +2,7 @@
 
 A shape is a function from a table to a `LongTable`, and None for a table of another shape. Shapes
 judge the first rows, and the best reading is taken: the one with the most numbers, the most
-regular clocks and the fewest cells left over. A new shape is a file
-with a function, and a line in `SHAPES`.
+regular clocks and the fewest cells left over. A new shape is a function, and a line in `SHAPES`.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from ....base.units import si_factor
 from ...encoder import Array
 from ...limits import FEWEST, HALF
 from ...record_clock import DATE
-from ...stamps import step_deviations, unit_of_steps, unwrap_stamps
+from ...stamps import share_time, step_deviations, unit_of_steps, unwrap_stamps
 from .._cells import holds_dates, is_column_of_texts, numbers_of
 from .._log import Log, join_names
 from ._table import CellTable, LongSignal, LongTable, as_text, rises, time_of
@@ -90,7 +89,9 @@ def with_best_shape(log: Log) -> Log:
         return log
     table = table_of(log.read(dict.fromkeys(log.sample, "")), log.units)
     long = shape(table)
-    return log if long is None or _apart_in_time(long) else _log_of(long, log)
+    signals = long.signals if long is not None else ()
+    spans = [(float(s.times.min()), float(s.times.max())) for s in signals if s.times is not None]
+    return _log_of(long, log) if long is not None and spans and share_time(spans) else log
 
 
 def table_of(columns: Mapping[str, Any], units: Mapping[str, str]) -> CellTable:
@@ -152,15 +153,6 @@ def _seconds_of(signals: Iterable[LongSignal]) -> dict[str, Array]:
     out = {c: t * si_factor(unit or usual, quantity="time") for c, (t, unit) in clocks.items()}
     begin = min(float(t[0]) for t in out.values())
     return {c: t - begin for c, t in out.items()} if abs(begin) > DATE else out
-
-
-def _apart_in_time(long: LongTable) -> bool:
-    """Whether clocks share too little of their time, so that they count from other instants."""
-    ends = {s.clock: (s.times.min(), s.times.max()) for s in long.signals if s.times is not None}
-    if not ends:
-        return True
-    shared = min(end for _, end in ends.values()) - max(begin for begin, _ in ends.values())
-    return bool(shared < HALF * min(end - begin for begin, end in ends.values()))
 
 
 def _regularity(times: Array) -> float:

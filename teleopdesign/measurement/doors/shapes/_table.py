@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ....base.units import measures
-from ...column_names import likeness, unit_in_name
+from ...column_names import likeness
 from ...encoder import Array
+from ...stamps import unit_of_time
 
 #: rows of a table by which its shape is judged: batches of up to 200 rows of two machines come back
 MOST_ROWS = 1000
@@ -44,9 +44,7 @@ class CellTable:
         return {n: x for n, x in self.columns.items() if x.dtype.kind == "f"}
 
     def unit_of_time(self, column: str) -> str | None:
-        unit = "s" if column in self.dated else self.units.get(column)
-        unit = unit or unit_in_name(column, "time")
-        return unit if unit and measures(unit, "time") else None
+        return unit_of_time(column, "s" if column in self.dated else self.units.get(column))
 
 
 @dataclass(frozen=True)
