@@ -15,8 +15,7 @@ from itertools import count
 import sympy as sp
 
 from ..base.errors import ModelError
-from .enclosure import Singular, enclosure_of
-from .interval_arithmetic import Enclosure
+from .enclosure import Enclosure, Singular, enclosure_of
 
 #: relative distance of a bound from a value that occurs, at which the bound is tight enough:
 #: friction levels are known to 1e-2 at best, and a tenth of this distance needs a few boxes more
