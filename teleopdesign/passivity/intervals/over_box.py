@@ -28,10 +28,9 @@ from ..claims.claim import use_rotary_units
 from ..declarations import is_shipped
 from ..diagram_claims import composed_claim
 from ..friction_pairs import FrictionPair, friction_pairs, pair_claims, proof_of, refuting
-from ..linear.conditions import is_shown
+from ..linear.conditions import certificates_over_box
 from ..linear.family import family_of_states
 from ..linear.impedance import decimal, exact
-from ..linear.signs import Signs
 from ..ports import drop_absent_effects, nonlinear_parts, ports, without_friction, without_holders
 from .box import IntervalClaim, ValueBox, Worst, box_of, interval_claim, nonlinear_within
 from .linear import CLAIMS, judge_at_points, judge_linear, judge_stability, states_over
@@ -213,4 +212,8 @@ def _rest_is_passive(middle: Diagram, box: ValueBox) -> bool:
     if states is None or states.times:
         return False
     family = family_of_states(states, ports(rest), within.names, within.exact)
-    return is_shown(Signs(within.exact), family, "passive")
+    try:
+        certificates_over_box("the linear rest is passive", family, "passive")
+    except ModelError:
+        return False
+    return True

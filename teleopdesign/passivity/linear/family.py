@@ -32,8 +32,18 @@ from ...diagrams import Diagram
 from ...frequency.late_zeros import count_growing, terms_of, zeros_at_origin
 from ...realise.lti import S
 from .impedance import Impedance, exact
-from .matrices import Matrix, close, cofactors, damper, dampers, determinant, divide_out, hold
-from .signs import Ends, degree
+from .matrices import (
+    Ends,
+    Matrix,
+    close,
+    cofactors,
+    damper,
+    dampers,
+    degree,
+    determinant,
+    divide_out,
+    hold,
+)
 from .unseen import not_decaying
 
 if TYPE_CHECKING:
