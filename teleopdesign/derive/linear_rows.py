@@ -12,7 +12,8 @@ from typing import Any
 
 import sympy as sp
 
-from ..controllers import SIGNALS, ControlLaw, Controller, Stage
+from ..base.errors import ModelError
+from ..controllers import SIGNALS, ControlLaw, Controller, Stage, make_exact
 from ..effects import Effect, delayed
 from ..realise.lti import S
 from .effort import spend
@@ -46,6 +47,32 @@ def late_symbols(
             times[mark := sp.Dummy(f"late_{len(times)}")] = t
             powers[t] = mark
     return times, powers
+
+
+def read_late_ratios(
+    entries: Iterable[sp.Expr], where: str
+) -> tuple[list[tuple[Any, Any]], dict[sp.Symbol, sp.Expr]]:
+    """Expressions in `S` and e^(-S T) as coprime numerators and denominators, and the dead times.
+
+    where: beginning of the message
+    returns: elements of one ring, of s and symbols of e^(-s T);  these symbols -> T
+    raises ModelError: one is no ratio of polynomials in s and dead times
+    """
+    entries = [make_exact(e) for e in entries]
+    powers = set[sp.Expr]().union(*(e.atoms(sp.exp) for e in entries))
+    delays = {power: -power.args[0].coeff(S) for power in powers}
+    times, marks = late_symbols(delays.values())
+    placed = {power: marks[time] for power, time in delays.items()}
+    ring, *_ = sp.ring((S, *times), sp.QQ)
+    pairs = []
+    for e in entries:
+        sides = sp.fraction(sp.together(e.xreplace(placed)))
+        known = all(side.is_polynomial(*ring.symbols) for side in sides)
+        if not known or not all(time.is_Rational for time in times.values()):
+            raise ModelError(f"{where}: expected a ratio of polynomials in s and dead times: {e}")
+        above, below = (ring.from_expr(sp.expand(side)) for side in sides)
+        pairs.append(above.cancel(below))
+    return pairs, times
 
 
 @dataclass(frozen=True)

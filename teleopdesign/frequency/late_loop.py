@@ -20,11 +20,10 @@ import numpy as np
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..controllers import make_exact
 from ..derive.all_states import all_states
+from ..derive.linear_rows import read_late_ratios
 from ..derive.polynomials import RING, cross, roots_of
 from ..diagrams import Diagram
-from ..realise.lti import S
 from .late_zeros import Terms, coefficient, corners_of, degree_of, describe_growth, terms_of
 
 
@@ -84,14 +83,7 @@ def loop_as_written(gain: sp.Expr) -> LateRatio:
 
     raises ModelError: it is no ratio of polynomials in s and dead times
     """
-    powers = {x: sp.Dummy(f"late_{k}") for k, x in enumerate(sorted(gain.atoms(sp.exp), key=str))}
-    sides = sp.fraction(sp.cancel(sp.together(gain.xreplace(powers))))
-    times = {mark: -power.args[0].coeff(S) for power, mark in powers.items()}
-    ring, *_ = sp.ring((S, *times), sp.QQ)
-    is_ratio = all(t.is_Rational for t in times.values())
-    if not is_ratio or not all(p.is_polynomial(S, *times) for p in sides):
-        raise ModelError("loop: expected a ratio of polynomials in s and dead times")
-    above, below = (ring.from_expr(make_exact(sp.expand(p))) for p in sides)
+    ((above, below),), times = read_late_ratios([gain], "loop")
     return _count_modes(above, below, times)
 
 

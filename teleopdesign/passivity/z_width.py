@@ -19,7 +19,8 @@ import sympy as sp
 from ..base.errors import ModelError
 from ..base.finding import Graph, Series
 from ..base.frozen import ByValue
-from .linear.excess import is_positive_real
+from .linear.conditions import holds_exactly
+from .linear.family import family_of_impedance
 from .linear.impedance import exact
 from .search.growing_wave import Z
 from .theorems.sampled_data import travel_operator
@@ -141,7 +142,8 @@ def _agrees(law: sp.Expr, b: sp.Expr, late: sp.Expr, x: sp.Expr, k: float) -> bo
 
     def passive(stiffness: float) -> bool:
         wall = law.subs({WALL_STIFFNESS: exact(stiffness), WALL_DAMPING: x})
-        return is_positive_real(travel_operator(wall, b, late, sp.S(0)))
+        operator = travel_operator(wall, b, late, sp.S(0))
+        return holds_exactly(family_of_impedance(operator), "passive")
 
     margin = _AGREE * float(b / late)
     return passive(max(k - margin, 0.0)) and not passive(k + margin)

@@ -32,12 +32,13 @@ from .family import Family
 from .matrices import Ends, Matrix, close, dampers, degree, determinant, evaluate_at_middle, hold
 
 
-def holds_exactly(family: Family, claim: str) -> bool:
+def holds_exactly(family: Family, claim: str, margin: Fraction = Fraction(0)) -> bool:
     """Whether a claim about a family without values and dead times holds.
 
-    claim: "passive" or "absolutely stable"
+    claim: "passive" or "absolutely stable";  margin: damping that Z loses at each port, N s/m
     """
-    n, d = family.n, family.d
+    n, d = take_damping(family, margin), family.d
+    held = family.held if n is family.n else close(n, d, dampers(n, d))
     # what passes from port to port between dampers is to grow at most like s far out
     is_slow = claim == "passive" or (
         degree(d) + max(degree(n[0][1]), degree(n[1][0]))
@@ -45,7 +46,7 @@ def holds_exactly(family: Family, claim: str) -> bool:
     )
     return (
         is_slow
-        and is_hurwitz(as_poly(family.held, S))
+        and is_hurwitz(as_poly(held, S))
         and all(is_non_negative(as_poly(p, X)) for p in axis_conditions(n, d, claim))
     )
 

@@ -13,24 +13,12 @@ from ...derive.polynomials import (
     X,
     even_part,
     has_positive_root,
-    is_hurwitz,
-    is_non_negative,
     positive_roots,
     value,
 )
+from .conditions import holds_exactly
+from .family import family_of_impedance
 from .impedance import Impedance, MotionKind, exact, impedance
-
-
-def is_positive_real(z: Impedance) -> bool:
-    """Whether Z is positive real, decided exactly; Re Z(j w) = 0 is allowed.
-
-    Z = p/q (coprime, real) is positive real if and only if p + q has all its zeros in the open left
-    half plane and Re p(j w) conj q(j w) >= 0 for every w: then (Z - 1)/(Z + 1) is bounded real.
-    """
-    total = z.p + z.q
-    if total.is_zero or not is_hurwitz(total):
-        return False
-    return is_non_negative(even_part(z.p, z.q))
 
 
 def describe_equality(z: Impedance, margin: Excess) -> str:
@@ -103,23 +91,23 @@ def _verify_bounds(z: Impedance, lowest: float) -> tuple[Fraction | float, Fract
     if not np.isfinite(lowest):
         return infinite
     middle = Fraction(str(exact(lowest)))
-    if _passive_without(z, middle) and not _passive_without(z, middle + _step(middle, 1e-12)):
+    family = family_of_impedance(z)
+
+    def is_passive(less: Fraction) -> bool:
+        return holds_exactly(family, "passive", less)
+
+    if is_passive(middle) and not is_passive(middle + _step(middle, 1e-12)):
         return middle, middle + _step(middle, 1e-12)
     for relative in (1e-12, 1e-9, 1e-6):
         step = _step(middle, relative)
-        if _passive_without(z, middle - step):
-            upper = middle if not _passive_without(z, middle) else middle + step
+        if is_passive(middle - step):
+            upper = middle if not is_passive(middle) else middle + step
             return middle - step, upper
     return infinite
 
 
 def _step(middle: Fraction, relative: float) -> Fraction:
     return abs(middle) * Fraction(relative) or Fraction(relative) ** 2
-
-
-def _passive_without(z: Impedance, c: Fraction) -> bool:
-    p = z.p - z.q.mul_ground(sp.Rational(c.numerator, c.denominator))
-    return is_positive_real(Impedance(p, z.q))
 
 
 def _real_part(z: Impedance) -> tuple[sp.Poly, sp.Poly]:

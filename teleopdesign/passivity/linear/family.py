@@ -24,9 +24,8 @@ import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
 from ...base.errors import ModelError
-from ...controllers import make_exact
 from ...derive.all_states import AllStates, all_states, is_well_posed
-from ...derive.linear_rows import Row, late_symbols
+from ...derive.linear_rows import Row, read_late_ratios
 from ...derive.polynomials import as_poly, element
 from ...diagrams import Diagram
 from ...frequency.late_zeros import count_growing, terms_of, zeros_at_origin
@@ -240,14 +239,10 @@ def family_of_matrix(z: sp.ImmutableMatrix) -> Family:
     z: N s/m, square, in `S` with exact numbers
     raises ModelError: an entry is no ratio of polynomials in s and dead times
     """
-    powers = z.atoms(sp.exp)
-    delays = {power: -power.args[0].coeff(S) for power in powers}
-    times, marks = late_symbols(delays.values())
-    placed = {power: marks[time] for power, time in delays.items()}
-    ring, *_ = sp.ring((S, *times), sp.QQ)
-    pairs = [[_ratio(e.xreplace(placed), ring) for e in row] for row in z.tolist()]
-    d = reduce(lambda p, q: p * q.exquo(p.gcd(q)), (q for row in pairs for _, q in row))
-    n = [[p * d.exquo(q) for p, q in row] for row in pairs]
+    pairs, times = read_late_ratios(z, "impedance")
+    d = reduce(lambda p, q: p * q.exquo(p.gcd(q)), (q for _, q in pairs))
+    entries, size = [p * d.exquo(q) for p, q in pairs], z.rows
+    n = [entries[k : k + size] for k in range(0, len(entries), size)]
     resting = _count_lost(n, d, times) if times else 0
     return Family(n, d, close(n, d, dampers(n, d)), times=times, written=z, resting=resting)
 
@@ -266,12 +261,3 @@ def family_of_impedance(z: Impedance) -> Family:
     """The family of an impedance of one port without further states."""
     n, d = element(z.p), element(z.q)
     return Family([[n]], d, n + d * damper(n, d))
-
-
-def _ratio(e: sp.Expr, ring: Any) -> tuple[Any, Any]:
-    above, below = sp.fraction(sp.together(make_exact(e)))
-    if not all(side.is_polynomial(*ring.symbols) for side in (above, below)):
-        raise ModelError(f"impedance: not a ratio of polynomials in s and dead times: {e}")
-    p, q = (ring.from_expr(sp.expand(side)) for side in (above, below))
-    made: tuple[Any, Any] = p.cancel(q)
-    return made
