@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..show.figures.diagnosis import BACKWARD, FORWARD, label_of
-from ..show.figures.style import AFTER, BEFORE
+from ..show.figures.diagnosis import label_of
+from ..show.figures.style import AFTER, BACKWARD, BEFORE, FORWARD
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -10,6 +10,7 @@ from ..base.sentences import percent
 from ..base.units import si_factor
 from ..diagnose.noise_floor import say_floors
 from ..next_experiment.prediction import DECIDES, SAME
+from .figures.graph import draw_graph
 from .registry import shows
 
 if TYPE_CHECKING:
@@ -257,22 +258,10 @@ def plot_proposal(proposal: Proposal) -> Figure:
         height_ratios=(1.6, 1.6, 0.4 + 0.34 * len(proposal.separations)),
     )
     graphs = [f.graph for f in proposal.findings() if f.graph is not None]
-    _graph(axes[0], graphs[0])
+    draw_graph(graphs[0], axes[0])
     _plot_separation(axes[1], proposal)
     _separations(axes[2], proposal)
     return figure
-
-
-def _graph(ax: Axes, graph: Graph) -> None:
-    for series in graph.series:
-        _line(ax, series, len(graph.series) > 1)
-    ax.set(xlabel=graph.x_label, ylabel=graph.y_label)
-    if len(graph.series) > 1:
-        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
-
-
-def _line(ax: Axes, series: Series, named: bool) -> None:
-    ax.plot(series.x, series.y, lw=0.9, label=series.name if named else None)
 
 
 def _plot_separation(ax: Axes, proposal: Proposal) -> None:

@@ -187,7 +187,7 @@ def _frequency(rows: Rows, whiteness: Whiteness) -> Graph:
         "frequency (Hz)",
         y_label,
         (
-            Series("measured force", frequency[used], factor * measured[used], "measured"),
+            Series("measured force", frequency[used], factor * measured[used], "course"),
             Series("residual", frequency[used], factor * left[used], "trend"),
         ),
         logarithmic=True,

@@ -90,7 +90,7 @@ def test_correlations_of_the_last_model_stand_in_a_table(bench):
 
 def test_the_simulated_motion_of_the_last_model_is_drawn(bench):
     figure = pages.simulated_motion(bench)
-    assert figure.axes[0].get_ylabel() == "position (m)"
+    assert figure.axes[0].get_ylabel() == "position (mm)"
 
 
 def test_a_chart_shows_the_residual_of_both(bench):

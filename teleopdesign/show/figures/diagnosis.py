@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,8 +12,9 @@ from ...diagnose.comparison import residual_data
 from ..diagnose.text import name_of_error
 from ..registry import shows
 from .carrier import CarryingVariable, carrier_of, with_carrier
-from .friction_curve import draw_friction_curve
-from .style import AFTER, BEFORE, MEASURED
+from .friction_curve import curve_graph
+from .graph import draw_graph
+from .style import AFTER, BACKWARD, BEFORE, FORWARD, MEASURED, UNTOLD
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,7 +24,6 @@ if TYPE_CHECKING:
     from ...measurement.prepare import Prepared
     from ...model import Model
 
-FORWARD, BACKWARD, UNTOLD = "#009E73", "#CC79A7", "0.6"
 #: inches: of a joint's row, of what stands around all rows; of the ladder, and each of its rungs
 ROW, AROUND, LADDER, RUNG = 1.4, 0.6, 0.75, 0.22
 #: most points drawn in a panel; more are not visible and make files large
@@ -90,8 +91,7 @@ def draw_over_time(ax: Axes, data: Any, name: str, color: str, label: str, width
 
 def direction_legend(ax: Axes) -> None:
     """A legend of the directions above the panel, so that it covers no points."""
-    ax.legend(
-        markerscale=6,
+    legend = ax.legend(
         loc="lower right",
         bbox_to_anchor=(1.0, 1.0),
         borderaxespad=0.1,
@@ -99,6 +99,8 @@ def direction_legend(ax: Axes) -> None:
         columnspacing=0.8,
         handletextpad=0.1,
     )
+    for handle in legend.get_lines():
+        handle.set_markersize(6.0)
 
 
 def share_scale(*panels: Axes) -> None:
@@ -108,11 +110,22 @@ def share_scale(*panels: Axes) -> None:
         ax.set_ylim(min(low), max(high))
 
 
-def force_axes(ax: Axes, data: Any) -> None:
-    """Labels and legend of a panel with measured and modelled force over time."""
-    force = label_of(data, "measured").replace("measured", "force")
-    ax.set(xlabel=label_of(data, "time"), ylabel=force)
-    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=3)
+def draw_courses(force: Axes, residual: Axes, models: Mapping[str, Any]) -> None:
+    """Measured and modelled force, and the residual, over time: a line for each model.
+
+    models: name -> its data; the first of two is before, the second after
+    """
+    first = next(iter(models.values()))
+    draw_over_time(force, first, "measured", MEASURED, "measured", 1.6)
+    colours = (BEFORE, AFTER) if len(models) > 1 else (AFTER,)
+    for (name, data), colour in zip(models.items(), colours, strict=True):
+        draw_over_time(force, data, "model", colour, name, 0.6)
+        draw_over_time(residual, data, "residual", colour, name, 0.7)
+    force.set_ylabel(label_of(first, "measured").replace("measured", "force"))
+    residual.set_ylabel(label_of(first, "residual"))
+    for ax in (force, residual):
+        ax.set_xlabel(label_of(first, "time"))
+        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=3)
 
 
 @shows("figure")
@@ -149,20 +162,10 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
         figsize=(7.16, 8.6),
         height_ratios=[1.1, 1.0, 1.1, 1.1, 0.35 + 0.22 * len(diagnosis.rungs)],
     )
-    ax = axes["force"]
-    draw_over_time(ax, before, "measured", MEASURED, "measured", 1.6)
-    draw_over_time(ax, before, "model", BEFORE, "your model", 0.6)
-    if changed:
-        draw_over_time(ax, after, "model", AFTER, "with what was missing", 0.6)
-    force_axes(ax, before)
+    models = {"before": before, "after": after} if changed else {"your model": before}
+    draw_courses(axes["force"], axes["time"], models)
     # anybody's text: no formula in it
     figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
-    ax = axes["time"]
-    draw_over_time(ax, before, "residual", BEFORE, "before", 0.7)
-    if changed:
-        draw_over_time(ax, after, "residual", AFTER, "after", 0.7)
-    ax.set(xlabel=label_of(before, "time"), ylabel=label_of(before, "residual"))
-    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
     _residual_maps(axes, before, after, changed=changed)
     draw_ladder(axes["ladder"], diagnosis, of="the measured force")
     return figure
@@ -174,15 +177,14 @@ def _plot_friction_curve(diagnosis: Diagnosis) -> Figure:
 
     rows = [residual_data(r.model, diagnosis.prepared) for r in (diagnosis.before, diagnosis.after)]
     changed = len(diagnosis.rungs) > 1
-    curves = {"your model": (diagnosis.fit(diagnosis.before.model), BEFORE)}
-    if changed:
-        curves["with what was missing"] = (diagnosis.last_fit, AFTER)
+    models = {"your model": diagnosis.fit(diagnosis.before.model)}
+    models |= {"with what was missing": diagnosis.last_fit} if changed else {}
     figure, axes = plt.subplot_mosaic(
         [["curve", "curve"], ["v0", "v1"], ["ladder", "ladder"]],
         figsize=(7.16, 6.4),
         height_ratios=[1.7, 1.0, 0.35 + 0.22 * len(diagnosis.rungs)],
     )
-    draw_friction_curve(axes["curve"], diagnosis.prepared, curves)
+    draw_graph(curve_graph(diagnosis.prepared, models), axes["curve"])
     figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
     for ax, data, word in zip((axes["v0"], axes["v1"]), rows, ("before", "after"), strict=True):
         draw_by_direction(ax, data, "velocity")
@@ -212,11 +214,11 @@ def _plot_joints(diagnosis: Diagnosis) -> Figure:
     axes = upper.subplots(len(joints), 3, squeeze=False, width_ratios=[1.25, 1.25, 1.0])
     for joint, row in zip(joints, axes, strict=True):
         _plot_joint(list(row), diagnosis, joint, [parts[joint] for parts in ends])
-    for ax in axes[0, :2]:
-        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.1), borderaxespad=0.1, ncols=3)
+    for ax in axes[1:, :2].flat:
+        ax.get_legend().remove()
+    for ax in axes[:-1, :2].flat:
+        ax.set_xlabel("")
     direction_legend(axes[0, 2])
-    for ax in axes[-1, :2]:
-        ax.set_xlabel("time (s)")
     # anybody's text: no formula in it
     upper.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
     of = "the measured force, root of the mean square over joints"
@@ -232,14 +234,9 @@ def _plot_joint(
     before, after = (check_rows(residual_data(model, prepared)) for prepared, model in ends)
     force, time, velocity = row
     every, before, after = after, _first_record(before), _first_record(after)
-    draw_over_time(force, before, "measured", MEASURED, "measured", 1.4)
-    draw_over_time(force, after, "model", AFTER, "model", 0.6)
-    unit = label_of(before, "measured").removeprefix("measured ")
-    force.set_ylabel(f"{joint}\nforce {unit}")
-    draw_over_time(time, before, "residual", BEFORE, "before", 0.6)
-    if changed:
-        draw_over_time(time, after, "residual", AFTER, "after", 0.6)
-    time.set_ylabel(label_of(before, "residual"))
+    models = {"before": before, "after": after} if changed else {"your model": after}
+    draw_courses(force, time, models)
+    force.set_ylabel(f"{joint}\n{force.get_ylabel()}")
     draw_by_direction(velocity, every, "velocity")
     velocity.set_ylim(time.get_ylim())
     velocity.set_ylabel("")

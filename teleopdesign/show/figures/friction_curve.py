@@ -8,15 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...base.finding import Finding, Graph, Series
-from ...base.sentences import unit_at_axis
+from ...base.sentences import unit_on_page
 from ...base.units import unit_of
 from ...diagnose.covariance import friction_at
 from ...measurement.filtering import Array
-from .style import MEASURED
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from ...diagnose.diagnosis import Diagnosis
     from ...diagnose.fit import Fit
     from ...measurement.prepare import Prepared
@@ -52,41 +49,30 @@ def points_of(prepared: Prepared, use: str) -> tuple[Array, Array]:
 def labels_of(prepared: Prepared) -> tuple[str, str]:
     """Labels of the axes, with their units."""
     axis = next(iter(prepared.experiment.bodies.values())).axis
-    velocity, force = (unit_at_axis(unit_of(q, axis)) for q in ("velocity", "force"))
+    velocity, force = (unit_on_page(unit_of(q, axis)) for q in ("velocity", "force"))
     return f"velocity ({velocity})", f"force ({force})"
+
+
+def curve_graph(prepared: Prepared, models: Mapping[str, Fit]) -> Graph:
+    """Force over speed: the points, and each fitted model with a band of two standard errors.
+
+    models: name -> fit
+    """
+    named = {"fit": "measured", "check": "measured, not fitted"}
+    series = [Series(name, *points_of(prepared, use)) for use, name in named.items()]
+    sides = speeds_of(prepared)
+    for name, fit in models.items():
+        over = np.concatenate(sides)
+        force, error = friction_at(fit, over)
+        line = (over, force, force - BAND * error, force + BAND * error)
+        # a gap between both directions, for a line jumps there
+        x, y, low, high = (np.insert(values, len(sides[0]), np.nan) for values in line)
+        series.append(Series(name, x, y, "model", low, high))
+    return Graph(*labels_of(prepared), tuple(s for s in series if len(s.x)))
 
 
 def curve_finding(diagnosis: Diagnosis) -> Finding:
     """The points and the curve of the final model, as a finding with its graph."""
-    prepared = diagnosis.prepared
-    series = [Series("measured", *points_of(prepared, use)) for use in ("fit", "check")]
-    for over in speeds_of(prepared):
-        force, error = friction_at(diagnosis.last_fit, over)
-        band = force - BAND * error, force + BAND * error
-        series.append(Series("model", over, force, "model", *band))
-    graph = Graph(*labels_of(prepared), tuple(s for s in series if len(s.x)))
+    graph = curve_graph(diagnosis.prepared, {"model": diagnosis.last_fit})
     words = "the points, and the friction of the final model with two standard errors."
     return Finding("friction curve", "note", words, graph=graph)
-
-
-def draw_friction_curve(
-    ax: Axes, prepared: Prepared, curves: Mapping[str, tuple[Fit, str]]
-) -> None:
-    """Force over speed: points grey, each model as a line with its band of two standard errors.
-
-    curves: name -> fitted model and its colour
-    """
-    for use, marker, label in (("fit", "o", "measured"), ("check", "x", "measured, not fitted")):
-        velocity, force = points_of(prepared, use)
-        if len(velocity):
-            ax.plot(velocity, force, marker, ms=3.0, color=MEASURED, label=label)
-    for number, over in enumerate(speeds_of(prepared)):
-        for name, (fit, color) in curves.items():
-            force, error = friction_at(fit, over)
-            ax.plot(over, force, color=color, lw=1.0, label=name if number == 0 else None)
-            band = force - BAND * error, force + BAND * error
-            ax.fill_between(over, *band, color=color, alpha=0.2, lw=0)
-    ax.axhline(0, color="k", lw=0.5)
-    x_label, y_label = labels_of(prepared)
-    ax.set(xlabel=x_label, ylabel=y_label)
-    ax.legend(loc="lower right")

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.finding import Array, Graph, Series
-from .diagnosis import BACKWARD, FORWARD
-from .style import AFTER, BEFORE, MEASURED
+from .style import AFTER, BACKWARD, BEFORE, FORWARD, MEASURED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,18 +29,25 @@ COLOURS = {
 }
 POINTS = ("measured", "rest")
 #: most points drawn of one series; more are not seen on a panel of a few inches
-MOST = 1000
-#: up to so many points are drawn large enough to be seen under a line
-FEW = 300
+MOST = 6000
+#: up to so many points are drawn large enough to be seen under a line; from so many on, small
+FEW, MANY = 300, 1000
+#: inches that an entry of a legend takes beside its words, and that a letter takes
+ENTRY, LETTER = 0.35, 0.045
 
 
 def draw_graph(
-    graph: Graph, axes: Axes, *, most: int = MOST, colours: Mapping[str, str] | None = None
+    graph: Graph,
+    axes: Axes,
+    *,
+    colours: Mapping[str, str] | None = None,
+    legend: bool = True,
 ) -> None:
     """Draw every series of a graph with labels and, for more than one series, a legend above.
 
-    most: limit on the points of one series; a longer series keeps its extremes (see `thin_series`)
     colours: name of a series -> its colour, if it differs from the colour of its kind
+
+    A series of more than `MOST` points keeps its extremes (see `thin_series`).
 
     Texts are drawn without formulas; a name from a file may contain a dollar sign.
     """
@@ -51,11 +57,11 @@ def draw_graph(
     drawn: Counter[str] = Counter()
     for series in graph.series:
         default = _colour(series.kind, drawn[series.kind], totals)
-        _draw(thin_series(series, most), axes, (colours or {}).get(series.name, default))
+        _draw(thin_series(series, MOST), axes, (colours or {}).get(series.name, default))
         drawn[series.kind] += 1
     axes.set_xlabel(graph.x_label, parse_math=False)
     axes.set_ylabel(graph.y_label, parse_math=False)
-    if len(graph.series) > 1:
+    if legend and len(graph.series) > 1:
         _legend(axes)
 
 
@@ -90,21 +96,22 @@ def _colour(kind: str, number: int, totals: Counter[str]) -> str:
 
 
 def _draw(series: Series, axes: Axes, colour: str) -> None:
+    # one point has no line: it is drawn as a point, its band as a bar
+    is_cloud, count = series.kind in POINTS or len(series.x) == 1, len(series.x)
     if series.low is not None and series.high is not None:
-        axes.fill_between(series.x, series.low, series.high, color=colour, alpha=0.22, lw=0)
+        if is_cloud:
+            axes.vlines(series.x, series.low, series.high, color=colour, lw=0.7)
+        else:
+            axes.fill_between(series.x, series.low, series.high, color=colour, alpha=0.22, lw=0)
     style: dict[str, Any]
-    if series.kind in POINTS:
-        size = 3.6 if len(series.x) <= FEW else 2.4
+    if is_cloud:
+        size = 4.5 if count <= FEW else 2.4 if count <= MANY else 1.0
         style = {"linestyle": "none", "marker": ".", "markersize": size}
-        style["rasterized"] = len(series.x) > FEW  # a vector each would be most of a page
+        style["rasterized"] = count > FEW  # a vector each would be most of a page
     elif series.kind == "limit":
         style = {"linestyle": "--", "linewidth": 0.8}
     else:
         style = {"linestyle": "-", "linewidth": 2.6 if series.kind == "course" else 1.0}
-    # a series of one point is a level; a line through one point would not be seen
-    if series.kind not in POINTS and len(series.x) == 1:
-        axes.axhline(float(series.y[0]), color=colour, label=_label(series), **style)
-        return
     axes.plot(series.x, series.y, color=colour, label=_label(series), **style)
 
 
@@ -129,12 +136,13 @@ def _logarithmic(graph: Graph, axes: Axes) -> None:
 
 
 def _legend(axes: Axes) -> None:
-    longest = max(len(str(label)) for label in axes.get_legend_handles_labels()[1])
+    names = [str(label) for label in axes.get_legend_handles_labels()[1]]
+    wide = axes.get_position().width * axes.figure.bbox.width / axes.figure.dpi  # inches
     legend = axes.legend(
         loc="lower left",
         bbox_to_anchor=(0.0, 1.0),
         borderaxespad=0.1,
-        ncols=3 if longest < 14 else 1 if longest > 30 else 2,
+        ncols=max(1, int(wide / (ENTRY + LETTER * max(map(len, names))))),
         columnspacing=1.2,
         handletextpad=0.5,
         markerscale=2.5,

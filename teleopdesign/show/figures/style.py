@@ -34,6 +34,8 @@ CASES = {
 #: colours of what is proved, what is refuted, a theory, and all else
 #: of measured signals, of the model before and of the model after
 MEASURED, BEFORE, AFTER = "0.55", "#D55E00", "#0072B2"
+#: of the directions of motion
+FORWARD, BACKWARD, UNTOLD = "#009E73", "#CC79A7", "0.6"
 PROVED, REFUTED, THEORY, GREY = "#009E73", "#D55E00", "#0072B2", "#7F7F7F"
 #: symbols of signals that are no letter with an index
 _SYMBOLS = {

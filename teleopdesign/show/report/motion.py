@@ -232,15 +232,15 @@ def simulated_motions(
     use = "check" if any(e.use == "check" for e in comparison.errors) else "fit"
     made = []
     for at in dict.fromkeys(e.at for e in comparison.errors if e.use == use and e.at in places):
-        courses = {h: c for (u, a, h), c in comparison.courses.items() if (u, a) == (use, at)}
-        axis = comparison.model.body(at).axis
         fit = comparison.error(np.inf, use=use, at=at).fit
-        made.append(MotionOverlay(at, use, fit, _overlay(courses, axis)))
+        made.append(MotionOverlay(at, use, fit, _overlay(comparison, use, at)))
     return tuple(made)
 
 
-def _overlay(courses: dict[float, tuple[Array, ...]], axis: str) -> Graph:
+def _overlay(comparison: SimulationComparison, use: str, at: str) -> Graph:
     """Measured and simulated position over time; a model that drifts away leaves the picture."""
+    courses = {h: c for (u, a, h), c in comparison.courses.items() if (u, a) == (use, at)}
+    axis = comparison.model.body(at).axis
     series: list[Series] = []
     scale, low, high = None, 0.0, 0.0
     for horizon, stretches in sorted(courses.items(), reverse=True):
@@ -255,6 +255,7 @@ def _overlay(courses: dict[float, tuple[Array, ...]], axis: str) -> Graph:
         room = 0.5 * (high - low)
         inside = (simulated > low - room) & (simulated < high + room)
         name = "simulated" if np.isinf(horizon) else f"restarted each {horizon:g} s"
+        name += f": fit {comparison.error(horizon, use=use, at=at).fit:.1f} %"
         y = np.where(inside, scale.factor * simulated, np.nan)
         series.append(Series(name, time, y, "model"))
     unit = "" if scale is None else f" ({scale.unit})"
