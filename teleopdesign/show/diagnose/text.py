@@ -98,8 +98,7 @@ def _lines_of_joints(diagnosis: Diagnosis) -> list[str]:
         lines += ["", f"{joint}: {sentence(one)}", *(f"  {line}" for line in rest)]
     if diagnosis.left_out:
         lines += ["", *(f"left out: {words}" for words in diagnosis.left_out)]
-    names = ", ".join(map(str, diagnosis.missing))
-    return [*lines, "", f"verdict: {diagnosis.verdict}{': ' + names if names else ''}"]
+    return [*lines, "", sentence(diagnosis)]
 
 
 def _lines_of_rest(diagnosis: Diagnosis) -> list[str]:
@@ -210,7 +209,10 @@ def records_line(diagnosis: Diagnosis) -> str:
 
 
 def sentence(diagnosis: Diagnosis) -> str:
-    """The verdict of a diagnosis in words."""
+    """The verdict of a diagnosis in words; what is left of an arm is said of each joint."""
+    if diagnosis.joints:
+        names = ", ".join(map(str, diagnosis.missing))
+        return f"verdict: {diagnosis.verdict}{': ' + names if names else ''}."
     rest = _rest(diagnosis)
     if diagnosis.verdict == "model_adequate":
         noise = f" The remaining error is noise ({diagnosis.left:.2f} noise floors)."

@@ -6,15 +6,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ...base.sentences import join_names
-from ...base.sentences import number_on_page as number
 from ...base.sentences import percent_on_page as percent
-from ...diagnose.criteria import CRITERIA
 from ...diagnose.diagnosis import Diagnosis
 from ...diagnose.ranking import REFUSALS
 from ...diagnose.statements import CandidateResult, LadderRow, StepResult
 from ...measurement.experiment import Experiment
-from ..diagnose.text import command_error_text
+from ..diagnose.text import command_error_text, sentence
 
 
 def sentence_of(entry: object | None) -> str:
@@ -37,77 +34,22 @@ def describe_judgement(experiment: Experiment) -> str:
     return "blocks of the records that were held out of the fit"
 
 
-def _floors(left: float) -> str:
-    """An error in noise floors; no number where the floor is next to zero."""
-    return number(left, 2) if left <= CRITERIA.countable else f"more than {CRITERIA.countable:g}"
+#: beginning of a verdict -> the same on a page
+HEADS = {"effects_missing: ": "Your model lacks ", "model_adequate": "Your model is adequate"}
 
 
 def verdict(diagnosis: Diagnosis) -> str:
-    """The verdict in one or two sentences."""
-    if diagnosis.joints:
-        return _verdict_on_arm(diagnosis)
-    before, after = diagnosis.before.check_error, diagnosis.after.check_error
-    floor, left = percent(diagnosis.floor.value), _floors(diagnosis.left)
-    fell = f"the force error on {describe_judgement(diagnosis.experiment)} falls from "
-    fell += f"{percent(before)} to {percent(after)}"
-    added = [step_name(r) for r in diagnosis.rungs if r.added is not None]
-    more = diagnosis.more_is_missing
-    rest = (
-        f"The remaining error is {left} times what sensor noise alone would leave: more is missing."
-        if more
-        else f"The remaining error is near what sensor noise alone would leave, {floor}."
-    )
-    if diagnosis.verdict == "model_adequate":
-        return (
-            f"Your model is adequate: it leaves {percent(after)} of the force unexplained, and "
-            f"sensor noise alone would leave {floor}."
-        )
-    if diagnosis.verdict == "effects_missing":
-        named = [step_name(r) for r in diagnosis.rungs if r.added in diagnosis.missing]
-        either = "".join(
-            f" Also {' or '.join(map(str, group))} is missing: these records do not decide which."
-            for group in diagnosis.groups
-            if any(group[0] == r.added for r in diagnosis.either)
-        )
-        rest_of = (r for r in diagnosis.rungs[1:] if r.added not in diagnosis.missing)
-        less = [step_name(r) for r in rest_of if r not in diagnosis.either]
-        helps = "helps, but is" if len(less) == 1 else "help, but each is"
-        others = f" {join_names(less)} {helps} less likely than not." if less else ""
-        added_words = "this effect" if len(added) == 1 else "all added effects"
-        lacks = f"Your model lacks {join_names(named)}."
-        return f"{lacks} With {added_words}, {fell}.{either}{others} {rest}"
-    if diagnosis.silence:
-        return f"Undecided. {diagnosis.silence}"
-    if not added:
-        return (
-            "Undecided: something is missing, but no candidate effect explains the remaining "
-            f"force. The force error is {percent(after)}, {left} times what sensor noise alone "
-            "would leave."
-        )
-    if all(r.alternatives for r in diagnosis.rungs[1:]):
-        names = join_names(added)
-        return f"Undecided, {names}: these records do not decide. Either way {fell}. {rest}"
-    each = "it is" if len(added) == 1 else "each is"
-    return f"Undecided: with {join_names(added)} {fell}, but {each} less likely than not. {rest}"
-
-
-def _verdict_on_arm(diagnosis: Diagnosis) -> str:
-    """The verdict on an arm; that on each joint stands in the part of the joint."""
+    """The verdict, and what becomes of the force error."""
+    text = sentence(diagnosis).removeprefix("verdict: ")
+    for head, words in HEADS.items():
+        text = text.replace(head, words, 1) if text.startswith(head) else text
     before, after = percent(diagnosis.before.check_error), percent(diagnosis.after.check_error)
-    where = describe_judgement(diagnosis.experiment)
-    if diagnosis.verdict == "model_adequate":
-        return (
-            f"Your model of the arm is adequate: it leaves {after} of the forces unexplained on "
-            f"{where}."
-        )
-    fell = f"the force error on {where} falls from {before} to {after}"
-    if diagnosis.verdict == "effects_missing":
-        names = join_names([str(c) for c in diagnosis.missing])
-        return f"Your model of the arm lacks {names}. With all that was added {fell}."
-    if len(diagnosis.rungs) > 1:
-        added = join_names([r.title for r in diagnosis.rungs[1:]])
-        return f"Undecided: with {added} {fell}, but these records do not show what is missing."
-    return f"Undecided: something is missing, but no candidate effect explains the {after}."
+    change = f"falls from {before} to {after}" if len(diagnosis.rungs) > 1 else f"is {after}"
+    return (
+        f"{text[:1].upper()}{text[1:]} The force error on "
+        f"{describe_judgement(diagnosis.experiment)} {change}; sensor noise alone would leave "
+        f"{percent(diagnosis.floor.value)}."
+    )
 
 
 @dataclass(frozen=True)
