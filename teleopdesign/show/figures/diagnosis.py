@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.sentences import percent_on_page as percent
 from ...base.sentences import unit_at_axis
 from ...diagnose.comparison import residual_data
 from ..diagnose.text import name_of_error
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from ...model import Model
 
 #: inches: of a joint's row, of what stands around all rows; of the ladder, and each of its rungs
-ROW, AROUND, LADDER, RUNG = 1.4, 0.6, 0.75, 0.22
+ROW, AROUND, LADDER, RUNG = 1.4, 0.6, 0.75, 0.4
 #: most points drawn in a panel; more are not visible and make files large
 POINTS = 6000
 
@@ -160,14 +161,14 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
             ["ladder", "ladder"],
         ],
         figsize=(7.16, 8.6),
-        height_ratios=[1.1, 1.0, 1.1, 1.1, 0.35 + 0.22 * len(diagnosis.rungs)],
+        height_ratios=[1.1, 1.0, 1.1, 1.1, 0.4 + 0.4 * len(diagnosis.rungs)],
     )
     models = {"before": before, "after": after} if changed else {"your model": before}
     draw_courses(axes["force"], axes["time"], models)
     # anybody's text: no formula in it
     figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
     _residual_maps(axes, before, after, changed=changed)
-    draw_ladder(axes["ladder"], diagnosis, of="the measured force")
+    _plot_ladder(axes["ladder"], diagnosis)
     return figure
 
 
@@ -182,7 +183,7 @@ def _plot_friction_curve(diagnosis: Diagnosis) -> Figure:
     figure, axes = plt.subplot_mosaic(
         [["curve", "curve"], ["v0", "v1"], ["ladder", "ladder"]],
         figsize=(7.16, 6.4),
-        height_ratios=[1.7, 1.0, 0.35 + 0.22 * len(diagnosis.rungs)],
+        height_ratios=[1.7, 1.0, 0.4 + 0.4 * len(diagnosis.rungs)],
     )
     draw_graph(curve_graph(diagnosis.prepared, models), axes["curve"])
     figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
@@ -192,7 +193,7 @@ def _plot_friction_curve(diagnosis: Diagnosis) -> Figure:
         for points in ax.lines:
             points.set_markersize(3.0)
     share_scale(axes["v0"], axes["v1"])
-    draw_ladder(axes["ladder"], diagnosis, of="the measured force")
+    _plot_ladder(axes["ladder"], diagnosis)
     return figure
 
 
@@ -222,7 +223,7 @@ def _plot_joints(diagnosis: Diagnosis) -> Figure:
     # anybody's text: no formula in it
     upper.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
     of = "the measured force, root of the mean square over joints"
-    draw_ladder(lower.subplots(), diagnosis, of=of)
+    _plot_ladder(lower.subplots(), diagnosis, of=of)
     return figure
 
 
@@ -265,33 +266,43 @@ def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None
     direction_legend(axes["v0"])
 
 
-def draw_ladder(ax: Axes, diagnosis: Diagnosis, *, of: str) -> None:
-    """Check errors of the ladder as bars, with the noise floor.
+def _plot_ladder(ax: Axes, diagnosis: Diagnosis, *, of: str = "the measured force") -> None:
+    """The ladder of a diagnosis;  of: words for what the errors are relative to."""
+    rows = [
+        ("your model, re-estimated" if r.added is None else r.title, r.check_error, r.fit_error)
+        for r in diagnosis.rungs
+    ]
+    draw_ladder(ax, rows, diagnosis.floor.value)
+    ax.set_xlabel(f"{name_of_error(diagnosis)}; rings: fit error (% of {of})")
 
-    of: words for what the errors are relative to
+
+def draw_ladder(ax: Axes, rows: Sequence[tuple[str, float, float]], floor: float) -> None:
+    """Check errors of the ladder as bars, fit errors as rings, the noise floor as a line.
+
+    rows: name, check error and fit error; a part that is no number is not drawn
     """
-    rungs, floor = diagnosis.rungs, 100 * diagnosis.floor.value
-    names = ["your model, re-estimated" if r.added is None else f"+ {r.title}" for r in rungs]
-    errors = [100 * r.check_error for r in rungs]
-    rows = np.arange(len(names))
-    colors = [BEFORE] + [AFTER] * (len(names) - 1)
-    ax.barh(rows, errors, height=0.62, color=colors)
-    for y, error in zip(rows, errors, strict=True):
-        # the label stands clear of the floor's line
-        end = max(error, floor) if error > floor - 0.12 * max(errors) else error
-        ax.annotate(
-            f"{error:.2f} %", (end, y), xytext=(3, 0), textcoords="offset points", va="center"
-        )
-    ax.axvline(floor, color="k", lw=0.8, ls="--")
+    sizes = np.nan_to_num([[check, fit] for _, check, fit in rows], posinf=0.0)
+    line = floor if np.isfinite(floor) else 0.0
+    for y, ((name, error, _), (check, fit)) in enumerate(zip(rows, sizes, strict=True)):
+        ax.barh(y, 100 * check, height=0.42, color=AFTER if y else BEFORE)
+        ax.plot(100 * fit, y, "o", ms=4.5, mfc="w", mec="k", mew=0.9)
+        # on separate paper, for the line of the noise floor may cross it
+        look: Any = {"bbox": {"facecolor": "w", "edgecolor": "none", "pad": 0.8}, "zorder": 3.5}
+        text = f"+ {name}" if y else name
+        ax.text(0, y - 0.29, text, va="bottom", ha="left", parse_math=False, **look)
+        right = ax.get_yaxis_transform()
+        ax.text(1, y, percent(error), transform=right, ha="right", va="center", weight="bold")
+    ax.axvline(100 * line, color="k", lw=0.9, ls="--")
     ax.annotate(
-        f"noise floor {floor:.2f} %",
-        (floor, 1.0),
+        f"noise floor {percent(floor)}",
+        (100 * line, 1.0),
         xycoords=("data", "axes fraction"),
         xytext=(2, 2),
         textcoords="offset points",
         va="bottom",
     )
-    ax.set_yticks(rows, names)
-    ax.invert_yaxis()
-    ax.set_xlim(0, 1.15 * max(*errors, floor))
-    ax.set_xlabel(f"{name_of_error(diagnosis)} (% of {of})")
+    ax.set_ylim(len(rows) - 0.55, -0.62)
+    # the figures stand to the right of the longest bar
+    ax.set_xlim(0, 122 * (max(float(sizes.max()), line) or 1.0))
+    ax.set_yticks([])
+    ax.spines["left"].set_visible(False)

@@ -12,7 +12,6 @@ import warnings
 from base64 import b64encode
 from collections.abc import Callable
 from io import BytesIO
-from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +21,7 @@ from ...base.finding import Graph
 from ...base.sentences import number_on_page as number
 from ...base.sentences import percent_on_page as percent
 from ...base.sentences import unit_on_page as unit_text
+from ..figures.diagnosis import draw_ladder
 from ..figures.graph import draw_graph
 from ..figures.style import AFTER, BEFORE, STYLE, further_fonts
 from ..frequency.impedance import legend_below
@@ -58,29 +58,7 @@ def ladder_figure(rows: tuple[LadderLine, ...], floor: float) -> Markup:
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
-        # an error that is no number has no bar
-        checked = [r.check_error if isfinite(r.check_error) else 0.0 for r in rows]
-        fitted = [r.fit_error if isfinite(r.fit_error) else 0.0 for r in rows]
-        line = floor if isfinite(floor) else 0.0
-        largest = max(*checked, *fitted, line) or 1.0
-        for y, row in enumerate(rows):
-            colour = BEFORE if y == 0 else AFTER
-            axes.barh(y, 100 * checked[y], height=0.42, color=colour)
-            axes.plot(100 * fitted[y], y, "o", ms=4.5, mfc="w", mec="k", mew=0.9)
-            name = row.name if y == 0 else f"+ {row.name}"
-            # on separate paper, for the line of the noise floor may cross it
-            paper = {"facecolor": "w", "edgecolor": "none", "pad": 0.8}
-            axes.text(
-                0, y - 0.29, name, va="bottom", ha="left", parse_math=False, bbox=paper, zorder=3.5
-            )
-            error = percent(row.check_error)
-            right = axes.get_yaxis_transform()
-            axes.text(1.0, y, error, transform=right, ha="right", va="center", weight="bold")
-        axes.axvline(100 * line, color="k", lw=0.9, ls="--")
-        axes.set_ylim(len(rows) - 0.55, -0.62)
-        axes.set_xlim(0, 122 * largest)  # the figures stand to the right of the longest bar
-        axes.set_yticks([])
-        axes.spines["left"].set_visible(False)
+        draw_ladder(axes, [(r.name, r.check_error, r.fit_error) for r in rows], floor)
         axes.set_xlabel("force error (% of the measured force)")
 
     errors = ", ".join(f"{r.name}: {percent(r.check_error)}" for r in rows)
