@@ -7,9 +7,8 @@ import json
 import math
 import re
 from base64 import b64encode
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from functools import cache
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -32,22 +31,15 @@ from .page import Page, Unexplained, page_data, page_of
 TEMPLATES = Path(__file__).with_name("templates")
 
 
-@dataclass(frozen=True)
-class Figures:
-    """The pictures of a page; scales, steps etc. by body, findings by (section, row).
-
-    joints: of the joints of an arm
-    """
-
-    ladder: Markup
-    scales: tuple[Markup, ...]
-    steps: tuple[tuple[Markup, ...], ...]
-    over_carrier: tuple[Markup, ...]
-    excerpts: tuple[Markup, ...]
-    simulated: tuple[Markup, ...]
-    impedances: tuple[Markup, ...]
-    findings: dict[tuple[str, int], Markup]
-    joints: tuple[Figures, ...]
+#: the pictures of a page by the names that its template calls
+FIGURES: Mapping[str, Callable[..., Markup]] = {
+    "ladder": ladder_figure,
+    "scale": colour_scale,
+    "step": step_figure,
+    "graph": graph_figure,
+    "wide": partial(graph_figure, width=WIDE),
+    "impedance": impedance_figure,
+}
 
 
 def write_report(
@@ -73,12 +65,13 @@ def write_report(
         next_steps=next_steps,
         simulation=simulation,
     )
-    html = render(page, figures_of(page), page_data(page, diagnosis))
-    write_text(path, html)
+    write_text(path, render(page, page_data(page, diagnosis)))
 
 
-def render(page: Page, figures: Figures, data: dict[str, Any]) -> str:
-    """The page as HTML with embedded data, all its texts escaped."""
+def render(
+    page: Page, data: dict[str, Any], figures: Mapping[str, Callable[..., Markup]] = FIGURES
+) -> str:
+    """The page as HTML with embedded data, all its texts escaped; figures: those of `FIGURES`."""
     template = _environment().get_template("report.html.jinja")
     script = figure_script()
     text = template.render(
@@ -108,53 +101,6 @@ def embedded_json(data: dict[str, Any]) -> Markup:
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return Markup(text)
-
-
-def figures_of(page: Page) -> Figures:
-    """Draw every picture of the page."""
-    sections = {
-        "cannot-tell": page.cannot_tell,
-        "unexplained": page.unexplained,
-        "next": page.next_steps,
-        "soundness": page.soundness,
-    }
-    return Figures(
-        ladder=ladder_figure(page.ladder, page.floor),
-        scales=tuple(colour_scale(v) for v in page.views),
-        steps=tuple(tuple(step_figure(v, k) for k in range(len(v.steps))) for v in page.views),
-        over_carrier=tuple(
-            graph_figure(
-                v.over_carrier,
-                _describe_figure(v.body, f"mean residual over {v.carrier}"),
-                width=WIDE,
-            )
-            for v in page.views
-        ),
-        excerpts=tuple(
-            graph_figure(
-                v.excerpt,
-                _describe_figure(v.body, "measured and modelled force"),
-                width=WIDE,
-            )
-            for v in page.views
-        ),
-        simulated=tuple(
-            graph_figure(one.graph, f"{one.body}: measured and simulated position.", width=WIDE)
-            for one in page.simulated
-        ),
-        impedances=tuple(impedance_figure(one) for one in page.impedances),
-        findings={
-            (section, i): graph_figure(f.graph, f"{f.topic}: {f.sentence}")
-            for section, rows in sections.items()
-            for i, f in enumerate(rows)
-            if f.graph is not None
-        },
-        joints=tuple(figures_of(joint.page) for joint in page.joints),
-    )
-
-
-def _describe_figure(body: str, what: str) -> str:
-    return f"{body}: {what}, before and after."
 
 
 @cache

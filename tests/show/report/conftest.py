@@ -3,7 +3,6 @@
 import pytest
 
 from teleopdesign.show.report.page import page_of
-from teleopdesign.show.report.write import figures_of
 
 
 @pytest.fixture(scope="session")
@@ -14,8 +13,3 @@ def diagnosis(rod_diagnosis):
 @pytest.fixture(scope="session")
 def page(diagnosis):
     return page_of(diagnosis)
-
-
-@pytest.fixture(scope="session")
-def figures(page):
-    return figures_of(page)

@@ -22,7 +22,7 @@ from teleopdesign.diagnose.answer import answer
 from teleopdesign.show.report import write_report
 from teleopdesign.show.report.figures import graph_figure
 from teleopdesign.show.report.page import page_of
-from teleopdesign.show.report.write import Figures, embedded_json, figure_script, render
+from teleopdesign.show.report.write import FIGURES, embedded_json, figure_script, render
 
 HOSTILE = (
     '</script><script>alert(1)</script>"><img src=x onerror=alert(1)>',
@@ -125,19 +125,14 @@ def test_a_page_stays_small_however_much_the_findings_hold(page, written, diagno
     assert len(written) + data + 20 * len(drawn) < 2e6
 
 
-@pytest.fixture(scope="module")
-def bare(page):
-    """Empty figures, to be drawn in no time."""
-    empty = Markup("<b></b>")
-    steps = tuple(tuple(empty for _ in v.steps) for v in page.views)
-    each = tuple(empty for _ in page.views)
-    return Figures(empty, each, steps, each, each, (), each, {}, ())
+#: empty figures, drawn in no time
+BARE = dict.fromkeys(FIGURES, lambda *_: Markup("<b></b>"))
 
 
 @pytest.fixture(scope="module")
-def page_with(page, bare):
+def page_with(page):
     """The page, its figures left empty, with a text wherever one can come from a file."""
-    return lambda text: HtmlPage(render(with_text(page, text), bare, {"text": text}))
+    return lambda text: HtmlPage(render(with_text(page, text), {"text": text}, BARE))
 
 
 @pytest.fixture(scope="module")
@@ -189,17 +184,17 @@ def test_no_text_changes_the_elements_of_the_page(text, page_with, harmless):
 
 
 @pytest.mark.parametrize("text", HOSTILE)
-def test_findings_are_escaped_in_text_names_and_figures(text, page, bare):
+def test_findings_are_escaped_in_text_names_and_figures(text, page):
     graph = Graph(text, text, (Series(text, np.arange(3.0), np.arange(3.0)),) * 2)
-    one = Finding(text, "warning", text, {text: 1.5}, text, graph)
-    full = dataclasses.replace(page, soundness=(one,), unexplained=(one,), next_steps=(one,))
-    drawn = {("next", 0): graph_figure(graph, text)}
-    figures = dataclasses.replace(bare, findings=drawn)
-    read = HtmlPage(render(full, figures, {"report": make_plain(full)}))
+    one = Finding(text, "warning", text, {text: 1.5}, text)
+    drawn = dataclasses.replace(one, graph=graph)
+    full = dataclasses.replace(page, soundness=(one,), unexplained=(one,), next_steps=(drawn,))
+    figures = {**BARE, "graph": graph_figure}
+    read = HtmlPage(render(full, {"report": make_plain(full)}, figures))
     assert [e.attributes.get("type") for e in read.all("script")] == ["application/json", None]
     assert read.all("script")[1].text == figure_script()
     (shown,) = read.all("img")
-    assert shown.attributes["alt"] == text
+    assert shown.attributes["alt"] == f"{text}: {text}"
     assert read.data["report"]["soundness"][0]["numbers"] == {text: 1.5}
     svg = b64decode(shown.attributes["src"].partition(",")[2]).decode("utf-8")
     labels = [e for e in ElementTree.fromstring(svg).iter() if e.text == text]
