@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,24 +24,57 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class ForceVelocity(Shown, ByValue):
-    """Force against velocity.
-
-    data: `force` and `velocity` over `case` and `time`
-    rms: case -> rms of the force;  at_peak_speed: case -> mean absolute force at the peak speed
-    """
+class AbstractCurves(Shown, ByValue):
+    """Signals of several simulations;  data: over `case` and `time`."""
 
     data: xarray.Dataset
-    rms: Mapping[str, float]
-    at_peak_speed: Mapping[str, float]
 
     def plot(self) -> matplotlib.figure.Figure:
-        """Plot one panel for each case, from top to bottom."""
+        """Plot the curves of every case."""
         return figure_of(self)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the curves with their units to a netCDF file."""
         write_netcdf(path, self.data)
+
+
+def _curves(
+    simulations: Mapping[str, Simulation], signals: Mapping[str, tuple[str, int]], after: float
+) -> xarray.Dataset:
+    """Signals of each simulation from the time `after` (s) on, over `case` and `time`.
+
+    signals: name -> signal and the sign with which it counts
+    raises ModelError: no simulation
+    """
+    import xarray
+
+    if not simulations:
+        raise ModelError("simulations: found none, expected at least one, by case")
+    kept = [s.data["time"].values >= after - 1e-9 for s in simulations.values()]
+    data: dict[str, Any] = {}
+    for name, (signal, sign) in signals.items():
+        runs = [s[signal] for s in simulations.values()]
+        rows = [sign * run.values[k] for run, k in zip(runs, kept, strict=True)]
+        attributes = {"units": runs[-1].attrs["units"], "signal": signal}
+        data[name] = (("case", "time"), np.array(rows), attributes)
+    time = next(iter(simulations.values())).data["time"][kept[0]]
+    return xarray.Dataset(data, {"case": list(simulations), "time": time})
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+@dataclass(frozen=True, eq=False)
+class ForceVelocity(AbstractCurves):
+    """Force against velocity, a panel for each case from top to bottom.
+
+    data: `force` and `velocity` over `case` and `time`
+    rms: case -> rms of the force;  at_peak_speed: case -> mean absolute force at the peak speed
+    """
+
+    rms: Mapping[str, float]
+    at_peak_speed: Mapping[str, float]
 
     def to_json(self, path: str | Path) -> None:
         """Write the figures of each case to a JSON file."""
@@ -67,28 +100,11 @@ def force_velocity(
     after: start of the whole cycles that are used, s
     raises ModelError: no simulation
     """
-    import xarray
-
-    if not simulations:
-        raise ModelError("force_velocity: found no simulation, expected at least one, by case")
-    forces, speeds = [], []
-    for simulation in simulations.values():
-        kept = simulation.data["time"].values >= after - 1e-9
-        time = simulation.data["time"][kept]
-        forces.append(simulation[force].values[kept])
-        speeds.append(simulation[velocity].values[kept])
-        units = simulation[force].attrs["units"], simulation[velocity].attrs["units"]
-    dims = ("case", "time")
-    data = xarray.Dataset(
-        {
-            "force": (dims, np.array(forces), {"units": units[0], "signal": force}),
-            "velocity": (dims, np.array(speeds), {"units": units[1], "signal": velocity}),
-        },
-        {"case": list(simulations), "time": time},
-    )
+    data = _curves(simulations, {"force": (force, 1), "velocity": (velocity, 1)}, after)
     rms, peak = {}, {}
-    for case, f, v in zip(simulations, forces, speeds, strict=True):
-        rms[case] = float(np.sqrt(np.mean(f**2)))
+    curves = zip(simulations, data["force"].values, data["velocity"].values, strict=True)
+    for case, f, v in curves:
+        rms[case] = _rms(f)
         # within a thousandth of the peak speed: 5 degrees of a sinusoid
         peak[case] = float(np.mean(np.abs(f[np.abs(v) > 0.999 * np.abs(v).max()])))
     return ForceVelocity(data, rms, peak)
@@ -107,7 +123,7 @@ class Loop:
 
 
 @dataclass(frozen=True, eq=False)
-class ForceDisplacement(Shown, ByValue):
+class ForceDisplacement(AbstractCurves):
     """Force against displacement at the user's hand and at the environment.
 
     data: `force` and `displacement` at the hand, `environment_force` and `environment_displacement`
@@ -117,18 +133,9 @@ class ForceDisplacement(Shown, ByValue):
     rms: case -> rms of the user's force minus the force on the environment at the same time, N
     """
 
-    data: xarray.Dataset
     loops: Mapping[str, Loop]
     environment: Mapping[str, Loop]
     rms: Mapping[str, float]
-
-    def plot(self) -> matplotlib.figure.Figure:
-        """Plot displacement and force over time, and force over displacement."""
-        return figure_of(self)
-
-    def to_netcdf(self, path: str | Path) -> None:
-        """Write the curves with their units to a netCDF file."""
-        write_netcdf(path, self.data)
 
     def to_json(self, path: str | Path) -> None:
         """Write the figures of each case to a JSON file (N, N/m)."""
@@ -159,33 +166,13 @@ def force_displacement(
     after: start of the whole cycles that are used, s
     raises ModelError: the motion never passes these displacements in both directions
     """
-    import xarray
-
-    if not simulations:
-        raise ModelError("force_displacement: found no simulation, expected at least one, by case")
-    rows: dict[str, list[np.ndarray]] = {name: [] for name in _SIGNALS}
+    data = _curves(simulations, _SIGNALS, after)
     loops, environment, rms = {}, {}, {}
-    for case, simulation in simulations.items():
-        kept = simulation.data["time"].values >= after - 1e-9
-        time = simulation.data["time"][kept]
-        signals = {n: sign * simulation[s].values[kept] for n, (s, sign) in _SIGNALS.items()}
-        for name, values in signals.items():
-            rows[name].append(values)
-        loops[case] = loop_of(signals["displacement"], signals["force"], within=within)
-        there = signals["environment_displacement"]
-        environment[case] = loop_of(there, signals["environment_force"], within=within)
-        rms[case] = float(np.sqrt(np.mean((signals["force"] - signals["environment_force"]) ** 2)))
-    data = xarray.Dataset(
-        {
-            name: (
-                ("case", "time"),
-                np.array(values),
-                {"units": "m" if "displacement" in name else "N", "signal": _SIGNALS[name][0]},
-            )
-            for name, values in rows.items()
-        },
-        {"case": list(simulations), "time": time},
-    )
+    for case in simulations:
+        x, force, tip, resisting = (data[n].sel(case=case).values for n in _SIGNALS)
+        loops[case] = loop_of(x, force, within=within)
+        environment[case] = loop_of(tip, resisting, within=within)
+        rms[case] = _rms(force - resisting)
     return ForceDisplacement(data, loops, environment, rms)
 
 
