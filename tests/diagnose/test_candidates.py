@@ -15,7 +15,6 @@ from teleopdesign.diagnose.candidates import (
     candidates,
     make_starts,
 )
-from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.fit import estimate, free_parameters
 from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.rank import rank_candidates
@@ -23,9 +22,6 @@ from teleopdesign.effects import CONTACT_ROLES, EFFECTS, catalogue
 from teleopdesign.measurement.bandwidth import scales
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.measurement.saving import write_experiment
-
-#: scales that are places, with a sign
-ENDS = ("lowest_position", "highest_position")
 
 
 @pytest.fixture(scope="module")
@@ -95,29 +91,6 @@ def test_a_channel_says_that_its_force_was_measured(experiment, tmp_path):
         load_experiment(path.parent)
 
 
-def test_elements_that_may_change_places_go_softest_first(model, prepared):
-    """The same hysteresis; those that may be rigid come last, and those that are told first."""
-    level = model.parameters["device.coulomb.level"].value
-    stiff, soft = 1e7, 1e3
-    values = {"stiffness_1": stiff, "stiffness_2": soft, "level_2": 0.5 * level}
-    # the softest carries hardly anything: nobody could tell how soft it is
-    values |= {"stiffness_3": 3 * soft, "level_3": 0.2 * level}
-    values |= {"stiffness_4": 1.0, "level_4": 0.01 * level}
-    mixed = replace(model, known=EFFECTS).with_effect("maxwell_slip", values=values)
-    ordered = mixed.in_order()
-    there = {n.rpartition(".")[2]: v.value for n, v in ordered.parameters.items() if "slip" in n}
-    assert [there[f"stiffness_{i}"] for i in (1, 2, 3, 4)] == [soft, 3 * soft, stiff, 1.0]
-    assert there["level_2"] == pytest.approx(0.2 * level)
-    assert there["level_3"] == pytest.approx(0.29 * level), "what the others left of the level"
-    assert ordered.in_order() is ordered
-    name = "device.maxwell_slip.stiffness_1"
-    held = mixed.with_values({name: replace(mixed.parameters[name], fixed=True)})
-    assert held.in_order() is held, "a value that a user holds stays where it is"
-    errors = [force_error(one, prepared.of("fit")) for one in (mixed, ordered)]
-    # the same law: only the order of its sum differs
-    assert errors[0] == pytest.approx(errors[1], rel=1e-9)
-
-
 def needs_of(name):
     """What an effect needs, and what that needs, in the order in which it can be added."""
     needs = sorted(EFFECTS[name].needs)
@@ -146,34 +119,6 @@ def test_a_search_starts_within_bounds_at_every_combination(name, slower, model,
             value = values[f"{name}.{parameter}"].value
             assert np.isfinite(value)
             assert declared.lower <= value <= declared.upper
-
-
-@pytest.mark.parametrize("factor", [0.0, 1e-300, 1e-110, 1e-30, 1e30, 1e150])
-def test_scales_are_numbers_whatever_the_size_of_the_motion(factor, prepared):
-    (motion,) = [s.motion for s in prepared.of("fit")]
-    signals = {n: factor * getattr(motion, n) for n in ("position", "velocity", "acceleration")}
-    unit = scales([replace(motion, **signals)], prepared.bandwidth)
-    assert all(np.isfinite(v) for v in unit.values())
-    assert all(v > 0.0 for name, v in unit.items() if name not in ENDS)
-
-
-def test_every_quantity_of_an_effect_has_a_scale(prepared):
-    unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
-    wanted = {p.scale for e in EFFECTS.values() for p in e.parameters.values()}
-    assert wanted <= set(unit)
-
-
-@pytest.mark.parametrize("name", ["cogging", "torque_ripple", "position_dependent_friction"])
-def test_no_period_lies_far_from_where_its_search_starts(name, model, prepared):
-    """Starts a whole cycle apart over the travel leave some between them that neither correlates
-    with, whatever the shape of the motion."""
-    motions = [s.motion for s in prepared.of("fit")]
-    travel = max(np.ptp(m.position) for m in motions)
-    models = make_starts(model.with_effect(name), scales(motions, prepared.bandwidth))
-    periods = {m.parameters[f"device.{name}.period"].value for m in models}
-    cycles = np.sort([travel / p for p in periods])
-    assert np.diff(cycles).max() < 0.76
-    assert cycles[0] < 0.76 and cycles[-1] > 100
 
 
 def test_the_period_of_teeth_is_known_however_many_turns_a_rotor_makes(tmp_path):

@@ -9,8 +9,8 @@ BIAS, NOISE = 0.03, 3e-3  # N*m
 
 
 def joint(travel):
-    """20 s of a joint with a constant torque, exact but for the noise of the torque."""
-    t = np.arange(0, 20, 0.004)
+    """8 s of a joint with a constant torque, exact but for the noise of the torque."""
+    t = np.arange(0, 8, 0.004)
     parts = [(0.7, 2.1), (0.2, 7.3), (0.1, 17.0)]  # of the travel, rad/s
     q = travel * sum(a * np.sin(w * t) for a, w in parts)
     v = travel * sum(a * w * np.cos(w * t) for a, w in parts)

@@ -2,17 +2,13 @@
 
 import os
 import signal
-import subprocess
 import sys
 import time
 
-import numpy as np
 import pytest
-from threadpoolctl import threadpool_info
 
 from teleopdesign.diagnose import cores
 from teleopdesign.diagnose.cores import map_in_threads, map_on_cores
-from teleopdesign.diagnose.least_squares import minimise
 
 copied = pytest.mark.skipif(sys.platform != "linux", reason="processes are copied on Linux only")
 
@@ -72,26 +68,6 @@ def test_an_interrupt_ends_the_copies(monkeypatch):
         os.waitpid(-1, os.WNOHANG)
 
 
-@pytest.mark.slow
-@copied
-def test_copies_end_with_a_process_that_is_killed():
-    code = """
-import os, time
-from teleopdesign.diagnose import cores
-cores.count_workers = lambda: 2
-def wait(_):
-    os.write(1, b".")
-    time.sleep(60)
-cores.map_on_cores(wait, range(2))
-"""
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE) as process:
-        assert process.stdout.read(2) == b".."
-        process.kill()
-        begin = time.monotonic()
-        assert process.stdout.read() == b""  # until the last process that may write has ended
-        assert time.monotonic() - begin < 30
-
-
 def test_a_part_makes_no_copies_itself(work):
     def inner(x):
         return map_on_cores(lambda y: (os.getpid(), x + y), range(3)), os.getpid()
@@ -99,19 +75,3 @@ def test_a_part_makes_no_copies_itself(work):
     for x, (pairs, outer) in enumerate(map_on_cores(inner, range(4))):
         assert work == "alone" or {pid for pid, _ in pairs} == {outer}
         assert [value for _, value in pairs] == [x, x + 1, x + 2]
-
-
-def test_no_thread_of_linear_algebra_waits_for_another_one_while_a_fit_runs():
-    def threads():
-        return [one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"]
-
-    def line(x):
-        meanwhile.extend(threads())
-        return 2.0 * x - np.ones(3), 2.0 * np.ones((3, 1))
-
-    before, meanwhile = threads(), []
-    ends = np.array([-9.0]), np.array([9.0])
-    minimum = minimise(line, np.zeros(1), *ends, tolerance=1e-9, evaluations=20)
-    assert minimum.values == pytest.approx([0.5])
-    assert before and set(meanwhile) == {1}
-    assert threads() == before

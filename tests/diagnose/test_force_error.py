@@ -47,41 +47,16 @@ def test_the_error_is_that_of_the_plain_formula(prepared, model):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scorer", ["own", "shared"])
-def test_the_error_can_be_recomputed_from_the_predictions(scorer, diagnosis, tmp_path):
+def test_the_error_can_be_recomputed_from_the_predictions(diagnosis, tmp_path):
     file = tmp_path / "predictions.csv.gz"
     write_predictions(diagnosis, file)
-    if scorer == "shared":
-        path = shared_folder("hidden/score.py")
-        spec = importlib.util.spec_from_file_location("score", path)
-        score = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(score)
-        error, problem = score.recompute(file, diagnosis.prepared.bandwidth)
-        assert problem is None
-    else:
-        error = recomputed(file, diagnosis)
+    spec = importlib.util.spec_from_file_location("score", shared_folder("hidden/score.py"))
+    score = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(score)
+    error, problem = score.recompute(file, diagnosis.prepared.bandwidth)
+    assert problem is None
     # thinning and the half sample of the held command
     assert error == pytest.approx(diagnosis.after.check_error, rel=0.01)
-
-
-def recomputed(file, diagnosis):
-    """The check error after all effects, from the file alone, by scipy's filter."""
-    import csv
-    import gzip
-
-    from scipy.signal import butter, sosfiltfilt
-
-    with gzip.open(file, "rt") as opened:
-        rows = [r for r in csv.DictReader(opened) if r["record"] == "check.csv.gz"]
-    rate = round(1 / (float(rows[1]["t"]) - float(rows[0]["t"])))
-    sos = butter(4, diagnosis.prepared.bandwidth, fs=rate, output="sos")
-
-    def inside(column):
-        y = np.array([float(r[column]) for r in rows])
-        return sosfiltfilt(sos, y, padlen=int(0.6 * rate))[rate // 4 : -rate // 4]
-
-    left, measured = inside("device.residual_after"), inside("device.measured")
-    return np.sqrt(np.sum(left**2) / np.sum(measured**2))
 
 
 def test_a_model_with_nothing_in_it_leaves_everything(prepared, model):

@@ -7,7 +7,6 @@ friction says little of it, and one linear step beside a bristle gives a spring 
 import numpy as np
 import pytest
 from diagnose.made_records import write_made
-from diagnose.test_slip_elements import slip
 
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.fit import estimate, fit_squares
@@ -20,6 +19,15 @@ ELEMENT, LEVEL = 44.0, 3.7  # N m/rad, N m
 #: turns of the fit and of the check record (rad)
 GROWING = (0.035, 0.052, 0.11, 0.112, 0.111, 0.22, 0.223, 0.222, 0.33), (0.1, 0.33, 0.335, 0.338)
 STEPPED = (0.1, 0.2, 0.3, 0.35), (0.3, 0.3, 0.3)
+
+
+def slip(position, stiffness, level):
+    """Force (n,) of a spring that slips at a level, at rest at first."""
+    force = np.zeros(len(position))
+    for k in range(1, len(position)):
+        moved = force[k - 1] + stiffness * (position[k] - position[k - 1])
+        force[k] = np.clip(moved, -level, level)
+    return force
 
 
 def cycles(amplitudes, speed=0.6):

@@ -11,7 +11,6 @@ import teleopdesign as td
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.record_shift import name_of_hand
-from teleopdesign.diagnose.residual import residuals
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.show.diagnose.text import ladder_text
@@ -72,29 +71,6 @@ def test_the_filter_of_the_hands_sensor_is_reported_and_nothing_is_missing(adequ
     for name, value in right.model.parameters.items():
         there = diagnosis.model.parameters[name].value
         assert there == pytest.approx(value.value, rel=0.03, abs=5 * value.stderr)
-
-
-@pytest.mark.parametrize("effect", [None, "transmission_compliance", "actuator_lag"])
-def test_the_slope_by_the_shift_is_that_of_the_residual(late, effect):
-    """Where a tip follows the hand too, and behind an actuation that does not."""
-    model = td.Model.from_experiment(late)
-    if effect is not None:
-        model = model.with_effect(effect, at="device")
-        start = {"tip_inertia": 0.2, "stiffness": 3e3, "damping": 3.0, "time_constant": 2e-3}
-        values = {f"device.{effect}.{n}": td.Value(start[n]) for n in EFFECTS[effect].parameters}
-        model = model.with_values(values)
-    stretches = prepare(late).of("fit")
-
-    def at(seconds):
-        there = model.with_record_shift({HAND: td.Value(seconds)})
-        return residuals(there, stretches, ["device.interaction_shift"])
-
-    step = 1e-6
-    threes = zip(at(2e-3), at(2e-3 + step), at(2e-3 - step), strict=True)
-    for (_, slope), (more, _), (less, _) in threes:
-        # where friction holds the residual is no smooth function of the force
-        error = np.abs((more - less) / (2 * step) - slope[0])
-        assert np.quantile(error, 0.9) < 1e-2 * np.abs(slope).max()
 
 
 @pytest.mark.parametrize("effect", ["actuator_lag"])

@@ -11,7 +11,7 @@ import teleopdesign as td
 from teleopdesign.diagnose.error import weigh_residuals
 from teleopdesign.diagnose.evidence import check_squares
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.outside_tone import _tone_squares, best_tone
+from teleopdesign.diagnose.outside_tone import best_tone
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.measurement.prepare import prepare
 
@@ -65,7 +65,7 @@ def test_what_repeats_with_the_motion_is_no_tone_from_outside(rod):
     assert best_tone(swing, prepared).squares == float("inf")
 
 
-@pytest.mark.parametrize("harmonic", [2, 3, 4, 5])
+@pytest.mark.parametrize("harmonic", [2, 3])
 def test_harmonics_of_a_periodic_motion_are_no_tone_from_outside(tmp_path, harmonic):
     """Friction makes them of one sine: of its direction the odd ones, of its size the even ones."""
 
@@ -82,24 +82,6 @@ def test_harmonics_of_a_periodic_motion_are_no_tone_from_outside(tmp_path, harmo
     assert best_tone(left, prepared).residual is None
     beside = with_residual(fit, prepared, lambda t: np.sin(2 * np.pi * 0.5 * (harmonic + 0.5) * t))
     assert best_tone(beside, prepared).residual is not None
-
-
-def test_a_tone_on_a_body_that_often_sticks_is_taken_as_the_force_it_is(rod):
-    """Off the residual alone it leaves what friction balances while the body sticks."""
-    prepared, fit = rod
-    level = fit.model.parameters["device.coulomb.level"].value
-
-    def driven(stretch):
-        motion = stretch.motion
-        wave = 0.8 * level * np.sin(2 * np.pi * 23.0 * motion.time)
-        return replace(stretch, motion=replace(motion, interaction=motion.interaction + wave))
-
-    stretches = tuple(driven(s) for s in prepared.stretches)
-    hummed = replace(prepared, stretches=stretches)
-    before = estimate(fit.model, hummed)
-    off = _off_the_residual(before, hummed)
-    assert best_tone(before, hummed).squares == pytest.approx(check_squares(fit), rel=0.05)
-    assert off > 1.5 * check_squares(fit)
 
 
 @pytest.mark.parametrize("bandwidth", [18.0, 60.0])
@@ -126,10 +108,3 @@ def test_a_hum_that_moves_the_machine_is_no_tip_that_rings(tmp_path, seed):
     folder = write_simulated(tmp_path / "case", "outside_hum", seed=seed, level="outside")
     among = ["transmission_compliance", "backlash"]
     assert not td.find_missing(td.load_experiment(folder), among=among).missing
-
-
-def _off_the_residual(fit, prepared):
-    stretches = prepared.of("check")
-    parts = np.split(fit.check_residual, np.cumsum([len(s.keep) for s in stretches])[:-1])
-    squares = sum(_tone_squares(s, r, 23.0) for s, r in zip(stretches, parts, strict=True))
-    return check_squares(fit) - squares

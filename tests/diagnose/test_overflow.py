@@ -1,15 +1,12 @@
 """A search may try values at which numbers overflow: such a model must never look good."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from teleopdesign import Model, example, load_experiment
 from teleopdesign.diagnose.error import force_error
-from teleopdesign.diagnose.fit import estimate, fit_squares
-from teleopdesign.diagnose.linear_start import Promises
 from teleopdesign.diagnose.residual import relative_residuals
 from teleopdesign.measurement.prepare import prepare
 
@@ -29,13 +26,3 @@ def test_an_infinite_acting_force_leaves_no_number_rather_than_no_residual(ampli
     ((residual, slope),) = relative_residuals(model, prepared.of("fit"), [GAIN])
     assert np.isnan(residual).all() and np.isnan(slope).all()
     assert force_error(model, prepared.of("check")) == math.inf
-
-
-def test_a_start_with_an_infinite_force_is_the_worst_of_all(amplified):
-    model, prepared = amplified
-    absent = estimate(model.without_effect("actuator_gain"), prepared)
-    promises = Promises(prepared, absent)
-    assert promises.squares(model) == math.inf
-    assert promises.squares(model.with_values({GAIN: 1.0})) < 1.1 * fit_squares(absent)
-    overflowed = replace(absent, fit_residual=np.full_like(absent.fit_residual, np.nan))
-    assert min([overflowed, absent], key=fit_squares) is absent

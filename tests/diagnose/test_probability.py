@@ -43,21 +43,6 @@ def test_it_is_a_probability(left, share, score):
         assert 0.0 <= one <= 1.0
 
 
-def test_beside_a_model_that_leaves_only_noise_an_effect_is_believed_by_what_it_takes_away():
-    """Of 1.6 floors 1.4 are left: less than half of what sensors do not explain."""
-    part = (1.6**2 - 1.4**2) / (1.6**2 - 1.0)
-    added = replace(EVIDENCE, left=1.4, explained=part)
-    assert added.probability() == pytest.approx(0.97)
-    assert replace(added, from_noise=True).probability() == pytest.approx(0.97 * part)
-    assert replace(added, from_noise=True).probability() < 0.5
-
-
-def test_those_as_good_share_what_the_accepted_one_has():
-    one = replace(EVIDENCE, share=0.5)
-    other = replace(EVIDENCE, share=0.5, accepted=False, as_good=True)
-    assert one.probability() == other.probability() == pytest.approx(EVIDENCE.probability() / 2)
-
-
 @pytest.mark.parametrize("structure", ["transmission_compliance", "backlash"])
 def test_an_effect_is_not_named_without_the_accepted_one_that_it_needs(end, structure):
     on, friction = (Candidate(EFFECTS[n], "device") for n in (structure, "tip_friction"))

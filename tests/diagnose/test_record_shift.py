@@ -13,7 +13,6 @@ from teleopdesign.diagnose.clock import with_late_starts, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.model_data import model_data, model_from
 from teleopdesign.diagnose.record_shift import shifts_of
-from teleopdesign.diagnose.residual import residuals
 from teleopdesign.diagnose.search import estimate_from_starts
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
@@ -99,24 +98,6 @@ def check_shift(adequate, plain, late, rows):
     assert late.check_error == pytest.approx(plain.check_error, rel=0.02)
 
 
-def test_the_slope_by_the_shift_is_that_of_the_residual(adequate):
-    prepared = prepare(adequate)
-    model, stretches = td.Model.from_experiment(adequate), prepared.of("fit")
-    place, row = next(iter(model.bodies)), adequate.records[0].sample_time
-
-    def at(late):
-        there = model.with_record_shift({place: td.Value(late)})
-        return residuals(there, stretches, [f"{place}.record_shift"])
-
-    step = 1e-3 * row
-    pairs = zip(at(0.2 * row), at(0.2 * row + step), at(0.2 * row - step), strict=True)
-    for (_, slope), (more, _), (less, _) in pairs:
-        size = np.abs(slope).max()
-        # where friction holds the residual is no smooth function of the force
-        near = np.abs(slope[0] - (more - less) / (2 * step)) < 0.01 * size
-        assert near.mean() > 0.99
-
-
 def test_a_delay_of_several_rows_is_no_clock(adequate):
     late = shifted(shifted(adequate, -2.0), -2.0)
     row = late.records[0].sample_time
@@ -199,12 +180,6 @@ def test_a_shift_that_raises_the_error_on_unseen_records_is_held_at_none(adequat
     data = json.loads(json.dumps(model_data(held.model)))
     back = model_from(data, EFFECTS, "models")
     assert back.record_shift[place] == held.model.record_shift[place]
-
-
-def test_a_shift_of_a_row_stays_a_clock_where_a_dead_time_would_do_as_well(adequate):
-    experiment = shifted(adequate, -1.0)
-    kept = with_paying_shift(fitted(experiment), prepare(experiment))
-    assert rows_late(kept, experiment)[0] == pytest.approx(-1.0, abs=0.1)
 
 
 def logged_late(experiment, rows):

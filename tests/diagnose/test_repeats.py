@@ -102,7 +102,7 @@ def test_noise_that_is_alike_by_chance_does_not_repeat(tmp_path, seconds):
     assert exact.repeating == pytest.approx(exact.left, rel=0.05)
 
 
-@pytest.mark.parametrize("finest", [0.4, 0.1, 0.05])
+@pytest.mark.parametrize("finest", [0.4, 0.05])
 def test_a_motion_that_is_only_nearly_made_again_leaves_no_missing_force_to_chance(
     tmp_path, finest
 ):
