@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from check.made_channels import H, channel, clipped, flat, leaps, outliers, repeated, slower, swing
+from check.made_channels import H, channel, clipped, flat, leaps, repeated, slower, swing
 
 # leaps
 
@@ -27,13 +27,6 @@ def test_a_leap_by_anything_else_is_no_turn(part, unit):
     assert "turn" not in finding.sentence and "unwrap" not in finding.sentence
 
 
-def test_a_leap_is_shown_with_the_samples_before_and_after_it():
-    (finding,) = leaps(leaping(3.0))
-    marked = finding.graph.series[1]
-    assert marked.x.tolist() == pytest.approx([0.699, 0.7])
-    assert marked.y[1] - marked.y[0] == pytest.approx(3.0, abs=0.02)
-
-
 @pytest.mark.parametrize("way", [1, -1])
 @pytest.mark.parametrize("sample", ["before", "after"])
 def test_a_reading_that_was_held_and_catches_up_does_not_leap(sample, way):
@@ -47,19 +40,6 @@ def test_a_reading_that_was_held_and_catches_up_does_not_leap(sample, way):
     else:
         x[701] = x[700]
     assert leaps(channel(x)) == []
-
-
-@pytest.mark.parametrize("off", [5, 7, 9])
-def test_a_body_that_sticks_for_a_row_as_it_turns_round_does_not_leap(off):
-    """Its speed changes by less there than from row to row elsewhere: "no body does that"."""
-    change = np.round(140 * np.sin(0.12 * np.arange(3000)))
-    # a reversal: down to a row of rest, and on with the friction of the other direction
-    change[1500:1512] = [102, 85, 68, 51, 34, 17, 0, -17 + off, *range(-28, -68, -10)]
-    change[1512:] = np.round(140 * np.sin(0.12 * np.arange(3000 - 1512) + np.pi + 0.5))
-    x = np.cumsum(change)
-    assert leaps(channel(x, step=1.0)) == []
-    x[1700:] += 400  # more than any change of speed
-    assert len(leaps(channel(x, step=1.0))) == 1
 
 
 @pytest.mark.parametrize("size", [10.0, 40.0, 1e3])
@@ -112,26 +92,6 @@ def test_a_body_that_is_logged_more_slowly_than_another_is_to_be_diagnosed_alone
     ) == advised
 
 
-def test_a_channel_that_changes_at_odd_times_or_always_has_no_rate():
-    assert slower(held_in_turn(1)) == []
-    assert slower(held_in_turn(10, off=1, part=0.4)) == []
-    position = [channel(held_in_turn(10, n=n).values, "position") for n in (500, 520)]
-    assert slower(position[0]) == []  # fifty changes, 49 distances
-    assert len(slower(position[1])) == 1
-
-
-def test_a_current_that_is_read_every_eighth_row_shows_it_in_few_seconds():
-    """A force takes no even times, as a position at constant speed does: twenty changes tell."""
-    short, long = (held_in_turn(8, n=n).values for n in (160, 176))
-    assert slower(channel(short, "actuator_force")) == []
-    assert slower(channel(long, "position")) == []
-    (finding,) = slower(channel(long, "actuator_force"))
-    assert "changes only every 8 samples" in finding.sentence
-    assert "of a measured force, what is faster than half of this rate is lost" in finding.sentence
-    relay = np.repeat(np.arange(22) % 2, 8).astype(float)
-    assert slower(channel(relay, "actuator_force")) == [], "a test by steps"
-
-
 def stuck_at(*holds):
     x = 100.0 * np.sin(2 * np.pi * 3.0 * H * np.arange(4000))
     for a, b in holds:
@@ -147,12 +107,6 @@ def test_a_stuck_channel_is_reported_from_its_first_to_its_last_sample():
     )
     assert "from 1.005 to 1.099 s: cut that out" in finding.sentence
     assert finding.numbers["duration"] == pytest.approx(0.095) and finding.numbers["count"] == 1
-
-
-def test_of_several_stuck_stretches_the_longest_is_reported_and_all_are_counted():
-    (finding,) = flat(stuck_at((1005, 1040), (2000, 2095), (3010, 3040)))
-    assert "from 2 to 2.094 s (3 times, 0.16 s in all)" in finding.sentence
-    assert finding.numbers["duration"] == pytest.approx(0.16)
 
 
 def test_samples_that_a_log_repeats_are_counted_among_those_in_motion():
@@ -205,51 +159,3 @@ def test_a_limit_of_a_command_may_be_meant_and_one_of_a_sensor_is_not(quantity, 
     assert ("largest" if side > 0 else "smallest") in finding.sentence
     begins = finding.graph.series[0].x[0]
     assert begins == pytest.approx((at[0] - 100) * H)
-
-
-@pytest.mark.parametrize("row", [150, 450, 550])
-def test_a_lone_sample_or_leap_of_a_later_stretch_is_reported_by_its_row_in_the_record(row):
-    halves = (slice(0, 300), slice(300, 600))
-    x = np.random.default_rng(0).normal(size=600)
-    x[row] += 100.0
-    (finding,) = outliers(channel(x, "actuator_force", segments=halves))
-    assert finding.numbers["row"] == row + 1 and finding.numbers["time"] == pytest.approx(row * H)
-    x[row] -= 100.0
-    x[row:] += 100.0 * (np.arange(row, 600) < halves[row >= 300].stop)
-    (finding,) = leaps(channel(x, segments=halves))
-    assert finding.numbers["time"] == pytest.approx((row - 1) * H)
-
-
-@pytest.mark.parametrize(
-    ("lost", "is_counted"),
-    [(0.45, False), (0.55, True), (1.4, True), (-3.0, False), (990.0, True)],
-)
-def test_a_leap_along_the_motion_says_how_many_samples_may_be_missing(lost, is_counted):
-    """A cart at 1 m/s, read to a nanometre; from half a sample on."""
-    x = H * np.arange(2000.0)
-    x[1000:] += lost * H
-    (finding,) = leaps(channel(x))
-    assert finding.numbers["samples"] == pytest.approx(lost, rel=1e-6)
-    assert ("if samples are missing" in finding.sentence) == is_counted
-    assert ("look at the encoder or the log" in finding.sentence) != is_counted
-    assert f"in {lost:.0f} samples" in finding.sentence or not is_counted
-
-
-@pytest.mark.parametrize("short", [4, 15])
-@pytest.mark.parametrize("where", ["before", "after"])
-def test_a_stretch_too_short_to_be_judged_moves_no_finding_of_another(short, where):
-    """A stretch of few samples says nothing, whatever is in it."""
-    x = np.r_[swing(short), swing()] if where == "before" else np.r_[swing(), swing(short)]
-    begin = short if where == "before" else 0
-    cuts = (
-        (slice(0, short), slice(short, len(x))) if begin else (slice(0, 2000), slice(2000, len(x)))
-    )
-    x[begin + 500] += 7.0
-    x[(0 if begin else 2000) + short // 2] += 9.0
-    (finding,) = outliers(channel(x, "actuator_force", segments=cuts))
-    assert finding.numbers["row"] == begin + 501 and finding.numbers["count"] == 1
-    x[begin + 500] -= 7.0
-    x[begin + 900 : begin + 2000] += 3.0
-    (finding,) = leaps(channel(x, segments=cuts))
-    assert finding.numbers["count"] == 1 and finding.numbers["size"] == pytest.approx(3.0, abs=0.02)
-    assert f"row {begin + 900}" in finding.sentence

@@ -71,35 +71,3 @@ def test_a_hum_is_taken_off_the_force_and_nothing_else_is(rod, key, frequency):
     # ends are off by what the force itself has at that frequency
     assert np.sqrt(np.mean(left**2)) < 0.02 * 0.1 * clean.std()
     assert without_mains(first, key) is clean
-
-
-@pytest.mark.parametrize("frequency", [49.93, 50.0, 60.04])
-def test_a_tone_is_reported_with_its_frequency_and_rms_and_taken_off_whole(frequency):
-    """Beside noise of a hundredth of it, and a constant force that is no part of it."""
-    h, n = 1e-3, 8000
-    random = np.random.default_rng(1)
-    noise = 0.02 * random.standard_normal(n) + 7.0
-    tone = 2.0 * np.sin(2 * np.pi * frequency * h * np.arange(n) + 0.4)
-    hum = hum_of(noise + tone, [random.standard_normal(n)], h)
-    assert hum.mains == round(frequency, -1)
-    assert hum.frequency == pytest.approx(frequency, abs=1e-3)
-    # between two lines of the spectrum the higher one holds 15 % less: 8 s have a line each 1/8 Hz
-    assert hum.rms == pytest.approx(2.0 / 2**0.5, rel=0.16) and hum.rms < 1.01 * 2.0 / 2**0.5
-    left = without_hum(noise + tone, hum, h) - noise
-    assert np.sqrt(np.mean(left**2)) < 0.005
-
-
-@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
-@pytest.mark.parametrize("frequency", [50.0, 59.94])
-def test_a_hum_is_reported_with_frequency_and_share_in_any_unit(unit, frequency):
-    t = 1e-3 * np.arange(8000)
-    random = np.random.default_rng(0)
-    motion = np.sin(2 * np.pi * 1.3 * t) + 0.01 * random.normal(size=8000)
-    for share, is_reported in ((0.03, True), (0.003, False)):
-        tone = np.sqrt(2) * share * motion.std() * np.sin(2 * np.pi * frequency * t + 1)
-        hum = hum_of(unit * (motion + tone), [np.sin(2 * np.pi * 1.3 * t)], 1e-3)
-        assert (hum is not None) == is_reported
-        if hum:
-            assert hum.mains == round(frequency, -1)
-            assert hum.frequency == pytest.approx(frequency, abs=2e-3)
-            assert hum.rms == pytest.approx(share * unit * motion.std(), rel=0.2)

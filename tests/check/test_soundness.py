@@ -8,9 +8,6 @@ import pytest
 from check.made_channels import (
     ask,
     channel,
-    clock_errors,
-    interruptions,
-    record_of,
     strange_velocity,
     swing,
 )
@@ -19,11 +16,7 @@ from shared_data import shared_folder
 
 from teleopdesign import example, load_experiment
 from teleopdesign.check import CheckedRecording, findings_of
-from teleopdesign.check.flat_channels import visits
 from teleopdesign.check.velocity import factor_cause, shift_and_factor
-from teleopdesign.measurement.encoder import sampling_jitter
-from teleopdesign.measurement.reading import ReadingStep
-from teleopdesign.measurement.repeated_rows import repeats, stuck_stretches
 
 RATE = 1000.0
 T = np.arange(12_000) / RATE
@@ -95,14 +88,6 @@ def test_lone_samples_of_a_command_out_of_its_range_are_counted_where_they_are(r
     assert "2 samples lie" in finding.sentence and "at 5 s (row 5001)" in finding.sentence
     inside = put(3000, lambda x: x.max())  # a command may have any value within its range
     assert warnings(spoilt(rod, "actuator_force", inside), "outliers") == []
-
-
-def test_a_smooth_motion_read_in_steps_has_no_holds():
-    for seed in range(10):
-        x = read(motion(seed))
-        assert len(repeats(x, STEP)) == 0
-        assert stuck_stretches(x, STEP, "position") == []
-        assert sampling_jitter(x, STEP, 1 / RATE) == 0.0
 
 
 def test_lost_samples_are_counted_where_a_position_leaps(rod):
@@ -195,19 +180,6 @@ def test_an_averaged_log_of_a_coarse_encoder_neither_repeats_samples_nor_runs_fl
     assert [f for f in check_signals(experiment) if f.concern == "warning"] == []
 
 
-def test_samples_that_repeat_while_the_body_goes_on_are_counted():
-    rng = np.random.default_rng(3)
-    x = read(5 * motion())
-    held = np.sort(rng.choice(np.arange(20, 11_900, 5), 200, replace=False))
-    spoiled = x.copy()
-    spoiled[held] = x[held - 1]
-    rows = repeats(spoiled, STEP)
-    assert set(rows) <= set(held)
-    # where it moves less than six steps a sample, a repeat may be the encoder's
-    fast = held[np.abs(x[held + 8] - x[held - 8]) / 16 > 6 * STEP]
-    assert len(set(fast) - set(rows)) <= 0.05 * len(fast)
-
-
 def test_a_force_sampled_at_a_tenth_of_the_rate_is_noticed(rod):
     spoiled = spoilt(rod, "interaction_force", lambda x: np.repeat(x[::10], 10))
     findings = warnings(spoiled, "held samples")
@@ -270,14 +242,6 @@ def test_noise_that_is_not_the_stated_one_is_measured(rod, factor):
     assert findings[0].numbers["ratio"] == pytest.approx(1 / factor, rel=0.1)
 
 
-def test_positions_taken_early_or_late_show_the_jitter_of_the_clock():
-    rng = np.random.default_rng(4)
-    late = 1e-4 * rng.standard_normal(len(T))
-    x = read(np.interp(T + late, T, 10 * motion()))
-    # a median over the fast quarter of pieces of 64 samples; the pieces' own speed varies
-    assert sampling_jitter(x, STEP, 1 / RATE) == pytest.approx(1e-4, rel=0.2)
-
-
 def test_a_clock_that_jitters_is_reported_with_its_size_in_time_and_place(rod):
     rng = np.random.default_rng(4)
     late, moves = 1e-4 * rng.standard_normal(len(T)), 10 * motion()
@@ -289,13 +253,6 @@ def test_a_clock_that_jitters_is_reported_with_its_size_in_time_and_place(rod):
     # the jitter itself adds to the speed of the readings
     assert finding.numbers["position"] == pytest.approx(1e-4 * speed, rel=0.3)
     assert "rms early or late" in finding.sentence
-
-
-def test_clocks_in_order_say_whether_stamps_or_samples_are_counted(rod):
-    (stamped,), (counted,) = ask("sample_clock", rod), clock_errors(record_of(100))
-    assert stamped.sentence.startswith("the time stamps are uniform, 1000 Hz")
-    assert counted.sentence.startswith("samples are counted at the stated rate, 1000 Hz")
-    assert stamped.numbers == {"rate": pytest.approx(1000.0)}
 
 
 def rewritten(folder, stamps):
@@ -387,38 +344,9 @@ def test_simulated_measurements_raise_no_warning():
     assert {f.name: w for f in sorted(cases.iterdir()) if (w := warnings(load_experiment(f)))} == {}
 
 
-@pytest.mark.parametrize(("size", "concern"), [(0.02, "note"), (0.021, "warning")])
-def test_a_step_of_reading_that_adds_over_two_percent_to_the_force_error_needs_care(
-    rod, size, concern
-):
-    step = ReadingStep("fit.csv", "3 rows are lost", "filled", "none", size=size, topic="gaps")
-    with_effect = replace(step, effect="0.3 N at most")
-    record = replace(rod.records[0], reading=(step, with_effect))
-    first, second = ask("log_reading", replace(rod, records=(record,)))
-    assert (first.concern, first.topic) == (concern, "gaps")
-    assert first.sentence == "3 rows are lost: filled."
-    assert second.sentence == "3 rows are lost: filled (0.3 N at most)."
-
-
 def test_a_body_that_rests_is_not_held_against_its_velocity_channel():
     position = channel(np.zeros(2000))
     assert strange_velocity(position, channel(np.sin(np.arange(2000)), "velocity")) == []
-
-
-@pytest.mark.parametrize(("lasts", "stays"), [(2, 0), (3, 6)])
-@pytest.mark.parametrize("noisy", [False, True])
-def test_a_stay_at_a_limit_lasts_three_samples_after_four_of_approach(lasts, stays, noisy):
-    once = [0.0, 1.0, 2.0, 3.0, *[4.0] * lasts]
-    assert visits(np.array(once * 6), 4.0, 0.1, noisy=noisy) == stays
-
-
-@pytest.mark.parametrize(
-    ("approach", "stays"), [([0.0, 2.0, 2.6, 3.0], 0), ([3.0, 2.0, 1.0, 0.0], 0), ([0, 1, 2, 3], 1)]
-)
-@pytest.mark.parametrize("unit", [1.0, 1e3, 1e-3])
-def test_a_signal_that_comes_to_rest_or_turned_away_did_not_run_into_a_limit(approach, stays, unit):
-    x = unit * np.array([*approach, 4.0, 4.0, 4.0], dtype=float)
-    assert visits(x, unit * 4.0, unit * 0.1, noisy=False) == stays
 
 
 @pytest.mark.parametrize(
@@ -442,13 +370,6 @@ def test_a_factor_of_a_velocity_names_the_unit_that_makes_it(rod, axis, factor, 
     sentence = factor_cause(factor, position, replace(position, name="velocity"))
     assert cause in sentence
     assert ("sign = -1" in sentence) == (factor < 0)
-
-
-def test_segments_of_which_over_a_tenth_is_too_short_need_care(rod):
-    segments = tuple(slice(k, k + 100) for k in range(0, 2000, 100))
-    record = replace(rod.records[0], segments=(*segments, slice(2000, 12_000)))
-    (finding,) = interruptions(record)
-    assert finding.concern == "warning" and finding.numbers["left_out"] == pytest.approx(2.0)
 
 
 def test_what_is_in_order_is_reported_beside_what_is_not_and_never_of_the_same(rod, tmp_path):

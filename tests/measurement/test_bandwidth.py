@@ -81,52 +81,6 @@ def test_a_slow_record_does_not_cut_off_the_motion_of_a_fast_one(frequencies):
     assert slow < 2.6 < together == fast
 
 
-def test_a_bandwidth_too_high_for_the_samples_shows_no_motion():
-    assert share_in_motion(recorded(1000.0), "device", 0.5 * RATE) == 0.0
-
-
-def ripple_at_speed(period):
-    """A rotor that turns at about 10 rad/s against a torque of that period; position and torque."""
-    rate = 500.0
-    t = np.arange(2000) / rate
-    x = 10.0 * t
-    for _ in range(3):  # the motion that the ripple makes: 2 mm at 10 rad/s
-        x = 10.0 * t + 2e-3 * np.sin(2 * np.pi * x / period)
-    # rounding alone is no noise here: 200 steps a row
-    x = 1e-4 * np.round(x / 1e-4 + np.random.default_rng(0).standard_normal(len(t)))
-    return td.experiment(
-        {"t": t, "x": x, "F": np.ones(len(t))},
-        axis="revolute",
-        time="t",
-        position={"column": "x", "resolution": 1e-4},
-        actuator_force="F",
-        inertia=0.1,
-    )
-
-
-@pytest.mark.parametrize(("period", "beyond"), [(0.1, 100.0), (0.5, None)])
-def test_a_motion_beyond_the_chosen_bandwidth_is_noticed(period, beyond):
-    """A ripple at 100 Hz lies above a tenth of the rate, one at 20 Hz below."""
-    experiment = ripple_at_speed(period)
-    chosen = default_bandwidth(experiment)
-    assert chosen <= 50.0
-    assert motion_beyond(experiment, chosen) == (
-        None if beyond is None else pytest.approx(beyond, rel=0.02)
-    )
-    assert motion_beyond(replace(experiment, bandwidth=chosen), chosen) is None
-
-
-@pytest.mark.parametrize("slope", [5.0, 20.0])
-def test_a_motion_along_a_slope_is_as_fast_as_without_it(slope):
-    """Twice the frequency of the fastest motion is compared; a slope that goes on adds none."""
-    t = np.arange(8000) / 400.0
-    slow, fast = joined(0.4, 2.6).records
-    x = fast.signals["device.position"] + slope * t
-    moved = replace(fast, signals={**fast.signals, "device.position": x})
-    chosen = default_bandwidth(replace(recorded(1000.0), records=(slow, moved)))
-    assert chosen == pytest.approx(2 * 2.6, abs=0.2)  # a line of the spectrum is 0.1 Hz wide
-
-
 @pytest.mark.parametrize("rate", [100.0, 500.0])
 def test_a_motion_of_all_frequencies_is_compared_up_to_a_tenth_of_the_rate(rate):
     random = np.random.default_rng(1)

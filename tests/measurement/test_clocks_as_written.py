@@ -12,9 +12,8 @@ from measurement.columns_by_hand import Q as ANGLE
 from measurement.columns_by_hand import U as TORQUE
 from measurement.columns_by_hand import look
 
-from teleopdesign.measurement.doors._cells import stamps_in_texts, stamps_of
 from teleopdesign.measurement.from_arrays import log_of
-from teleopdesign.measurement.stamps import seconds_since_first, unit_of_steps, unwrap_stamps
+from teleopdesign.measurement.stamps import seconds_since_first, unwrap_stamps
 from teleopdesign.measurement.survey import Choices, spans_of, survey_log
 from teleopdesign.measurement.tables import open_log, read_columns
 
@@ -109,25 +108,6 @@ def test_dates_and_durations_are_seconds_whatever_the_name_says(tmp_path, name):
     assert log_of(frame).units[name] == "s"
     frame.to_parquet(tmp_path / "log.parquet")
     assert open_log(tmp_path / "log.parquet", "l").units == {name: "s"}
-
-
-def test_dates_with_an_empty_cell_are_dates():
-    cells = ["2026-11-20 21:03:04.5", "", None, "2026-11-20 21:03:05.0"]
-    assert np.array_equal(np.diff(stamps_in_texts(cells)[[0, 3]]), [0.5])
-    assert np.isnan(stamps_in_texts(cells)[1:3]).all()
-    assert stamps_in_texts(["2026-11-20 21:03:04.5", "left"]) is None
-    assert stamps_in_texts(["0.5", "21:03:04"]) is None
-
-
-@pytest.mark.parametrize("cell", ["2026-13-40 10:00:00", "31/02/2026 10:00:00", "20-Xyz-2026 1:00"])
-def test_days_that_no_calendar_has_are_no_dates(cell):
-    assert stamps_of([cell]) is None
-
-
-def test_days_of_a_spreadsheet_are_days():
-    assert unit_of_steps(46346.9 + T / 86400)[0] == "day"
-    assert unit_of_steps(0.25 + T / 86400)[0] == "day"
-    assert unit_of_steps(T)[0] == "s"
 
 
 def test_of_two_clocks_that_of_the_position_is_the_time():

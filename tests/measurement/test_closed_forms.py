@@ -4,45 +4,11 @@ import datetime
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors._cells import numbers_of
-from teleopdesign.measurement.reversals import look_back_to_reversal, mark_reversals
 from teleopdesign.measurement.saving import content_digest, experiment_files
-
-# reversals
-
-
-@given(
-    signs=st.lists(st.sampled_from([-1, 0, 0, 1]), min_size=1, max_size=40), rest=st.integers(0, 4)
-)
-def test_what_is_behind_each_sample_is_counted_from_where_its_motion_began(signs, rest):
-    direction, h = np.array(signs, dtype=np.int8), 0.5
-    position = np.cumsum(direction * 1.5)
-    back = look_back_to_reversal(direction, position, sample_time=h, rest=(rest + 0.5) * h)
-    began, before, last = None, 0.0, None
-    for k, way in enumerate(signs):
-        if way:
-            gap = 0 if last is None else k - last
-            if began is None or way != signs[last] or gap > rest + 0.5:
-                began, before = k, gap * h
-            last = k
-        assert back.known[k] == (began is not None)
-        assert back.time[k] == (0.0 if began is None else (k - began) * h)
-        assert back.travel[k] == (0.0 if began is None else abs(position[k] - position[began]))
-        assert back.rested[k] == (0.0 if began is None else before)
-
-
-@given(signs=st.lists(st.sampled_from([-1, 0, 1]), min_size=1, max_size=40), n=st.integers(0, 5))
-def test_samples_near_a_reversal_are_those_within_so_many_of_it(signs, n):
-    moving = [k for k, way in enumerate(signs) if way]
-    turned = [b for a, b in zip(moving, moving[1:], strict=False) if signs[a] != signs[b]]
-    near = mark_reversals(np.array(signs, dtype=np.int8), within=n)
-    assert near.tolist() == [any(abs(k - t) <= n for t in turned) for k in range(len(signs))]
-
 
 # columns
 
@@ -132,12 +98,6 @@ def test_the_files_of_a_bag_count_one_by_one(tmp_path):
     assert list(experiment_files(tmp_path)) == names
     (tmp_path / "experiment.toml").write_text("[[records]\n")
     assert list(experiment_files(tmp_path)) == ["experiment.toml"]
-
-
-# filters of a spectrum, at a sine that they know
-
-
-# first values
 
 
 # how short a record may be, and how uneven

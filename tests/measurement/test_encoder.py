@@ -68,31 +68,6 @@ def test_the_jitter_of_a_clock_is_read_off_what_scatters_with_speed(jitter, size
     assert sampling_jitter(read[:400], 0.0, H) == 0.0, "too short to tell"
 
 
-@pytest.mark.parametrize("unit", [1e-6, 1e-3, 1.0, 1e3])
-def test_a_step_is_known_to_the_digits_that_the_whole_travel_tells_in_any_unit(unit):
-    """From neighbours on, whose few steps say it to half a per cent, to places far apart."""
-    random = np.random.default_rng(0)
-    counts = random.choice(10_000, 500, replace=False) + random.uniform(-0.1, 0.1, 500)
-    assert grid_of(unit * counts, unit) == pytest.approx(unit, rel=1e-5)
-
-
-@pytest.mark.parametrize("size", [1e-6, 1.0, 1e4])
-def test_units_change_neither_jitter_nor_noise_nor_step(size):
-    """The scatter at rest is a third of that at speed: without it, the jitter would differ."""
-    rng = np.random.default_rng(5)
-    late = 1e-4 * rng.standard_normal(len(T))
-    slow = np.sin(2 * np.pi * 0.05 * (T + late))  # rests at the ends, for many pieces
-    read = 20.0 * slow + 2.2e-4 * rng.standard_normal(len(T))
-    jitter = sampling_jitter(read, 0.0, H)
-    assert jitter == pytest.approx(1e-4, rel=0.3)
-    assert sampling_jitter(size * read, 0.0, H) == pytest.approx(jitter, rel=1e-6)
-    assert reading_noise(size * read) == pytest.approx(size * reading_noise(read), rel=1e-6)
-    coarse = np.round(read / 0.02) * 0.02
-    assert reading_step(size * coarse) == pytest.approx(size * 0.02, rel=1e-6)
-    # a clock of another unit
-    assert sampling_jitter(read, 0.0, 1e3 * H) == pytest.approx(1e3 * jitter, rel=1e-6)
-
-
 def test_of_readings_that_are_held_one_each_counts():
     """A reading that comes in each fifth row jitters by a part of its own period."""
     rng = np.random.default_rng(6)

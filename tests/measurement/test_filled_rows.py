@@ -6,15 +6,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import teleopdesign as td
-from teleopdesign.measurement.channel import Channel, LogLayout
-from teleopdesign.measurement.conversion import Conversion
-from teleopdesign.measurement.record import RecordEntry, record_of
 from teleopdesign.measurement.record_clock import RecordClock
 from teleopdesign.measurement.resample import (
     filling_error,
     interpolate_by_rule,
 )
-from teleopdesign.measurement.tables import LogColumns
 
 H = 0.01
 
@@ -39,14 +35,6 @@ def test_a_position_that_moves_as_a_cubic_is_filled_without_error(c, lost):
     assert filling_error(x, clock_of(places), "position", step=0.0) == pytest.approx(0.0, abs=1e-12)
     filled = interpolate_by_rule(x, places * 1.0, np.arange(60.0), "position", step=0.0)
     assert filled == pytest.approx(np.polyval(c, np.arange(60) / 30.0 - 1.0), abs=1e-9)
-
-
-@given(a=st.floats(-2.0, 2.0), b=st.floats(-2.0, 2.0))
-def test_a_line_is_filled_without_error_and_a_parabola_errs_by_half_its_second_difference(a, b):
-    k = np.arange(40.0)
-    for rule in ("line", "held"):
-        error = filling_error(b * k + a * k**2, clock_of(np.arange(40)), rule, step=0.0)
-        assert error == pytest.approx(abs(a), abs=1e-9)
 
 
 @pytest.mark.parametrize("step", [0.5, 1.0, 2.0])
@@ -105,31 +93,3 @@ def test_a_record_fills_each_signal_by_its_rule_and_says_by_how_much_that_errs(s
     assert note.size == pytest.approx(error, rel=0.02)
     assert "18 rows lost, 1.8 %" in note.observed
     assert f"adds at most {100 * note.size:.2g} % of the force" in note.effect
-
-
-@pytest.mark.parametrize("delay", [0.0, 0.05, -0.02])
-@pytest.mark.parametrize("rate", [250.0, 62.5])
-def test_a_topic_with_stamps_beside_the_record_is_put_at_its_time_less_its_delay(delay, rate):
-    """In any order, with stamps that come twice."""
-    t = H * np.arange(1000)
-    stamps = np.arange(0.0, 10.0, 1.0 / rate)
-    mixed = np.random.default_rng(0).permutation(np.r_[stamps, stamps[5:9]])
-    tone = lambda at: np.sin(2 * np.pi * 0.7 * at)  # noqa: E731
-    columns = LogColumns(
-        {"t": t, "x": tone(t), "u": tone(t + 0.2), "f": tone(mixed - delay)}, {"f": mixed}
-    )
-    whats = {"position": "x", "actuator_force": "u", "interaction_force": "f"}
-    channels = {
-        f"device.{what}": Channel(
-            what, "device", name, "1", None, None,
-            Conversion((name,), (1.0,), delay=delay * (name == "f")),
-        )
-        for what, name in whats.items()
-    }  # fmt: skip
-    channels["time"] = Channel("time", None, "t", "s", None, None)
-    record = record_of(columns, "log", RecordEntry("log", "fit"), LogLayout(channels, {}))
-    inner = slice(10, -10)
-    off = record.signals["device.interaction_force"] - tone(t)
-    assert np.abs(off[inner]).max() < (2 * np.pi * 0.7 / rate) ** 2 / 8 * 1.01
-    (note,) = (s.observed for s in record.reading if "stamps of its own" in s.observed)
-    assert note.endswith(f", {rate:g} Hz")

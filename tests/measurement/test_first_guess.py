@@ -8,7 +8,6 @@ from teleopdesign.measurement.first_guess import (
     balance_factor,
     explain_force,
     is_turned,
-    motion_columns,
 )
 
 H = 0.005
@@ -39,29 +38,6 @@ def test_what_makes_more_of_the_force_decides():
     assert is_turned(0.1 * np.sign(v) - 0.2 * a, SWING, H)
 
 
-@pytest.mark.parametrize("size", [1e-6, 1e-3, 1e3])
-def test_units_of_the_position_change_no_direction(size):
-    """Micrometres a second, or revolutions: what is slow is so beside the fastest."""
-    v, _, direction = motion_columns(size * SWING, H)
-    one, _, same = motion_columns(SWING, H)
-    assert v == pytest.approx(size * one) and direction == pytest.approx(same)
-    x = size * SWING
-    guess = explain_force(0.1 * rate_of(x, 2) / size + 0.5 * np.sign(rate_of(x)), x, H)
-    assert guess.level == pytest.approx(0.5, abs=0.03)
-    assert guess.inertia == pytest.approx(0.1 / size, rel=0.05)
-
-
-def test_numbers_beyond_all_measure_are_not_turned():
-    assert not is_turned(-1e200 * rate_of(SWING, 2), SWING, H)
-
-
-def test_of_noise_rest_and_short_records_nothing_is_turned():
-    noise = np.random.default_rng(0).standard_normal(len(T))
-    assert not is_turned(noise, SWING, H) and not is_turned(-noise, SWING, H)
-    assert not is_turned(noise, np.zeros(len(T)), H)
-    assert not is_turned(-rate_of(SWING)[:150], SWING[:150], H)
-
-
 def test_a_motion_in_one_direction_tells_a_constant_force_from_no_friction():
     """Only its inertia is told, and only if that is surely of one sign."""
     x = 10.0 * T + 0.2 * SWING
@@ -85,9 +61,8 @@ def test_the_force_that_balances_is_detected_whatever_the_body_is(factor):
     assert balance_factor(held, hand, still, H)[0] == pytest.approx(factor, abs=0.1)
 
 
-@pytest.mark.parametrize("rate", [0.3, 0.9, 1.8])
-@pytest.mark.parametrize("level", [0.2, 0.4])
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("rate", [0.3, 1.8])
+@pytest.mark.parametrize(("level", "seed"), [(0.2, 0), (0.4, 1)])
 def test_a_spring_with_friction_at_one_frequency_is_no_turned_inertia(rate, level, seed):
     """A cyclic test: in cycles of one duration a spring is a negative inertia, but friction brakes.
 
@@ -103,8 +78,8 @@ def test_a_spring_with_friction_at_one_frequency_is_no_turned_inertia(rate, leve
     assert is_turned(-body + 0.1 * rng.standard_normal(len(t)), x, 0.02)
 
 
-@pytest.mark.parametrize("rate", [0.05, 0.18, 0.5])
-@pytest.mark.parametrize("stiffness", [0.0, 0.3, 3.0, 10.0])
+@pytest.mark.parametrize("rate", [0.05, 0.5])
+@pytest.mark.parametrize("stiffness", [0.3, 10.0])
 def test_a_pendulum_below_its_natural_frequency_is_no_turned_inertia(rate, stiffness):
     """Chirps from rest; by itself the body swings at up to 14 rad/s."""
     t = 0.01 * np.arange(1500)
@@ -116,30 +91,6 @@ def test_a_pendulum_below_its_natural_frequency_is_no_turned_inertia(rate, stiff
     assert is_turned(-force, x, 0.01)
     if rate > 0.1:  # slower, inertia is 3 % of the friction
         assert explain_force(force, x, 0.01).inertia == pytest.approx(0.05, rel=0.3)
-
-
-def test_each_value_has_the_error_by_which_it_scatters():
-    """Over records with other noise; each second counts as one reading, so the error is wide."""
-    v, a = rate_of(SWING), rate_of(SWING, 2)
-    clean, values, errors = 0.2 * a + 1.0 * np.sign(v) + 0.5 * v, [], []
-    # slow noise: its parts within a second agree
-    for seed in range(12):
-        steps = np.random.default_rng(seed).standard_normal(len(T) // 200 + 1)
-        guess = explain_force(clean + np.repeat(steps, 200)[: len(T)], SWING, H)
-        values.append((guess.inertia, guess.level, guess.damping))
-        errors.append(guess.errors)
-    ratio = np.std(values, axis=0) / np.mean(errors, axis=0)
-    assert ((0.15 < ratio) & (ratio < 2.5)).all()
-    mean = np.mean(errors, axis=0)
-    # the columns have other sizes: an acceleration is known better than a direction
-    assert mean[0] < 0.5 * mean[2] < mean[1] or len({*np.round(mean, 6)}) == 3
-    # twice the noise, twice each error; a motion twice as large, half of those of a and v
-    noise = np.repeat(np.random.default_rng(3).standard_normal(len(T) // 200 + 1), 200)[: len(T)]
-    one = np.array(explain_force(clean + noise, SWING, H).errors)
-    twice = np.array(explain_force(clean + 2 * noise, SWING, H).errors)
-    wide = np.array(explain_force(clean + noise, 2 * SWING, H).errors)
-    assert twice / one == pytest.approx([2.0] * 3, rel=0.1)
-    assert wide / one == pytest.approx([0.5, 1.0, 0.5], rel=0.01)
 
 
 def test_a_slow_motor_with_much_friction_gets_a_start_of_its_inertia():
@@ -174,13 +125,3 @@ def test_a_motor_that_lets_down_a_weight_is_not_turned(way, rigid):
     force = 0.9 * way - 1.2 * rate_of(q) + rigid * rate_of(q, 2) + noise
     assert not is_turned(force, q, H)
     assert not is_turned(force[::-1], q[::-1], H)
-
-
-@pytest.mark.parametrize("way", [1.0, -1.0])
-@pytest.mark.parametrize("inertia", [0.1, 0.5])
-def test_the_inertia_of_a_motion_one_way_tells_the_sign(way, inertia):
-    q = stroke(way)
-    v = np.round(rate_of(q), 6)
-    force = inertia * rate_of(q, 2) + 0.3 * np.sign(v)
-    force += 0.01 * np.random.default_rng(2).standard_normal(len(q))
-    assert is_turned(-force, q, H) and not is_turned(force, q, H)

@@ -46,15 +46,6 @@ def test_lists_of_json_and_records_without_a_key(tmp_path):
     assert np.array_equal(column(path, "q"), [1, np.nan, 3], equal_nan=True)
 
 
-def spun(begin, push, rows=400):
-    """(time, voltage, position, speed) of a motor that speeds up, as a logger of trials."""
-    t = 0.005 * np.arange(rows)
-    speed = push(t) * 8.0 * (1 - np.exp(-t / 0.3))
-    place = np.cumsum(speed) * 0.005
-    voltage = push(t) + 0.03 * np.gradient(speed, 0.005)
-    return np.column_stack([begin + t, voltage, place, speed]).round(6).tolist()
-
-
 @pytest.mark.parametrize("text", ["[]", "3", '{"a": 1}', "[" * 100_000, "left\nright\n", "\0", ""])
 def test_json_without_records_is_one_line(tmp_path, text):
     path = tmp_path / "log.json"
@@ -152,15 +143,6 @@ def swings(count, rows):
         }
         for k in range(count)
     ]
-
-
-def test_the_joints_of_a_robot_are_no_trials(tmp_path):
-    states = [{"q": [0.1 * k, 0.2, 0.3], "tau": [1.0 * k, 2.0, 3.0]} for k in range(90)]
-    (tmp_path / "log.json").write_text(json.dumps(states))
-    assert set(open_log(tmp_path / "log.json", "log.json").names) == {
-        *(f"q({k})" for k in (1, 2, 3)),
-        *(f"tau({k})" for k in (1, 2, 3)),
-    }
 
 
 @pytest.mark.parametrize("inside", [True, False])

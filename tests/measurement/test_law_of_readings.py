@@ -179,16 +179,3 @@ def test_a_measured_force_is_no_law_of_the_readings(device):
     spring = (150.0 * mass + stiffness) * x  # the true spring, read by a sensor
     assert known(device, x, rounded(spring, 2000)) is None
     assert known(device, x, rounded(spring + 1e-3 * np.ptp(spring) * noise)) is None
-
-
-@DEVICE
-def test_a_law_of_position_and_measured_velocity(device):
-    _, step, rate = device
-    t = np.arange(ROWS) / rate
-    x = step * np.round(300.0 * waves(t))
-    w = np.gradient(300.0 * step * waves(t), 1.0 / rate)
-    u = -2.0 * x - 0.1 * w
-    law_known = known(device, x, u, velocity=w)
-    assert law_known.stiffness == pytest.approx(2.0) and law_known.damping == pytest.approx(0.1)
-    assert law_known.is_damped and known(device, x, u) is None
-    assert not known(device, x, -2.0 * x, velocity=w).is_damped

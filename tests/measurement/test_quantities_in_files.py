@@ -5,7 +5,6 @@ import pytest
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
-from teleopdesign.measurement.column_names import likeness
 from teleopdesign.measurement.tables import open_log
 
 T = np.arange(3000) / 250.0
@@ -66,7 +65,3 @@ def test_runs_with_a_position_and_a_torque_stay_runs(tmp_path, names):
         write(tmp_path / "run", f"{name}.csv", ["t", "q1", "tau1"], T, Q[:, 0], TAU[:, 0])
     with pytest.raises(ExperimentError, match="tables of the same columns"):
         open_log(tmp_path / "run", "run")
-
-
-def test_velocities_is_a_word_of_velocities():
-    assert likeness("joint.velocities", "velocity") > 0.0

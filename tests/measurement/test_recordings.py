@@ -80,7 +80,8 @@ def test_every_published_file_has_a_commit_and_a_hash():
             int(file.commit + file.sha256, 16)
 
 
-@pytest.mark.parametrize("folder", ["data", pytest.param("hidden/cases", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("folder", ["data", "hidden/cases"])
 def test_every_shared_experiment_loads(shared, folder):
     experiments = sorted((shared / folder).glob("*/experiment.toml"))
     if not experiments:

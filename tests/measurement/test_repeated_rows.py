@@ -80,15 +80,6 @@ def test_a_motion_without_noise_that_stops_for_a_while_has_lost_nothing():
     assert not repeated_rows([smooth, force, 3 * force], [smooth], [force]).any()
 
 
-def test_nothing_is_reported_where_no_channel_tells():
-    _, x, u, _ = moved()
-    again = np.zeros(ROWS, dtype=bool)
-    again[300:1700:50] = True
-    _, x, u = spoilt((x, x, u), again)
-    assert not repeated_rows([x, u], [x]).any()
-    assert not repeated_rows([]).any() and not repeated_rows([x], [x]).any()
-
-
 @pytest.mark.parametrize("with_time", [True, False])
 def test_a_record_with_repeated_rows_is_that_of_lost_rows(with_time):
     again = np.zeros(ROWS, dtype=bool)
@@ -134,37 +125,9 @@ def test_of_rows_that_come_faster_than_readings_one_of_each_stays(times, jitter)
     assert kept[changes].all(), "no reading is left out"
 
 
-def test_a_coarse_encoder_is_no_slow_source():
-    stamps = np.arange(0.0, 8.0, 0.002)
-    for x in (0.01 * stamps, np.sin(stamps), np.sin(stamps) * np.cos(0.3 * stamps)):
-        for step in (1e-4, 1e-3, 1e-2):
-            coarse = np.round(x / step) * step
-            held = np.round(3 * np.sin(2 * stamps))
-            assert not rows_between_readings([coarse, held], [coarse], stamps).any()
-
-
-def test_a_force_that_goes_on_between_positions_is_no_slow_source():
-    stamps, x, _ = polled(0.008, 0.002)
-    assert not rows_between_readings([x, np.cos(31 * stamps)], [x], stamps).any()
-
-
 @pytest.mark.parametrize("rest", [0.3, 0.45])
 def test_a_body_that_rests_a_good_part_of_the_time_is_no_slow_source(rest):
     stamps = np.arange(0.0, 8.0, 0.002)
     moves = stamps % 2.0 >= 2.0 * rest
     x = np.where(moves, np.sin(np.pi * (stamps % 2.0)), 0.0)
     assert not rows_between_readings([x, 3 * x], [x], stamps).any()
-
-
-@pytest.mark.parametrize(("times", "is_lost"), [(1, False), (2, True), (20, True)])
-def test_rows_that_agree_by_chance_are_lost_only_where_there_are_more_than_chance_makes(
-    times, is_lost
-):
-    """Three readings of twenty values each agree in a row by chance once in 8000 rows."""
-    random = np.random.default_rng(1)
-    x, one, two = random.integers(0, 20, (3, ROWS)).astype(float)
-    at = np.linspace(100, ROWS - 100, times).astype(int)
-    for y in (x, one, two):
-        y[at] = y[at - 1]
-    lost = np.flatnonzero(repeated_rows([x, one, two], [x], [one, two]))
-    assert lost.tolist() == (at.tolist() if is_lost else [])

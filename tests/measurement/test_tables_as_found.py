@@ -2,17 +2,12 @@
 
 import numpy as np
 import openpyxl
-import pandas
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.column_names import likeness, unit_in_name
-from teleopdesign.measurement.doors._cells import NO_READING, numbers_of
+from teleopdesign.measurement.doors._cells import NO_READING
 from teleopdesign.measurement.survey import Choices, survey_log
-from teleopdesign.measurement.survey.content import SURE_NAME
-from teleopdesign.measurement.survey.position_entry import _step_of_readings
 from teleopdesign.measurement.tables import open_log, read_columns
 
 T = np.arange(400) / 200.0
@@ -42,11 +37,6 @@ def test_a_word_for_no_reading_is_an_empty_cell(tmp_path, ending, word):
     assert np.array_equal(values["t"], [row[0] for row in rows])
 
 
-def test_numbers_that_a_frame_holds_as_text_are_numbers():
-    column = pandas.Series(["0.5", "n/a", "-1e-3", None], dtype=object)
-    assert np.array_equal(numbers_of(column, "x", "frame"), [0.5, np.nan, -1e-3, np.nan], True)
-
-
 @pytest.mark.parametrize("ending", [".csv", ".xlsx"])
 def test_columns_of_one_name_are_counted(tmp_path, ending):
     rows = [[k / 100, float(k), -float(k)] for k in range(80)]
@@ -70,37 +60,6 @@ def test_where_nothing_can_be_used_the_reason_of_each_column_is_reported(tmp_pat
     path = written(tmp_path, ".csv", ["t", "x", "u", "way"], rows)
     with pytest.raises(ExperimentError, match="'x': row 51: found \"left\", expected a number"):
         survey_log(open_log(path, path.name), path.name, Choices(position="x"))
-
-
-@given(
-    step=st.floats(1e-6, 10.0),
-    digits=st.integers(3, 6),
-    seed=st.integers(0, 1000),
-)
-def test_an_encoder_is_recognised_through_the_digits_that_were_printed(step, digits, seed):
-    """The last digit is a tenth of a step or less; the travel is 2000 steps."""
-    rng = np.random.default_rng(seed)
-    swing = np.sin(np.linspace(0, 9, 4000) + rng.uniform(0, 6)) * rng.uniform(0.8, 1.2)
-    places = np.round(1000 * swing)
-    last = 10.0 ** np.floor(np.log10(step * 10.0 ** (1 - digits) * 10))
-    readings = np.round(places * step / last) * last
-    assert _step_of_readings(readings) == pytest.approx(step, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("name", "quantity"),
-    [
-        ("Zeit", "time"), ("temps (s)", "time"), ("tiempo [s]", "time"), ("時間[s]", "time"),
-        ("Istposition", "position"), ("Motorwinkel", "position"), ("posición", "position"),
-        ("位置[rad]", "position"), ("関節角度", "position"), ("Istgeschwindigkeit", "velocity"),
-        ("vitesse", "velocity"), ("Sollmoment", "actuator_force"), ("Istmoment", "actuator_force"),
-        ("couple moteur", "actuator_force"), ("指令トルク[Nm]", "actuator_force"),
-        ("corriente", "actuator_force"), ("Handkraft", "interaction_force"),
-        ("操作力[Nm]", "interaction_force"),
-    ],
-)  # fmt: skip
-def test_names_in_other_languages_are_understood(name, quantity):
-    assert likeness(name, quantity) >= SURE_NAME
 
 
 @pytest.mark.parametrize(

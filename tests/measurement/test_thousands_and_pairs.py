@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.measurement.doors._line_shapes import pairs_of
 from teleopdesign.measurement.doors.text import open_text
 
 ROWS = 800
@@ -85,16 +84,3 @@ def test_lines_with_other_names_midway_are_refused(tmp_path):
     log = open_lines(tmp_path / "dump.log", rows)
     with pytest.raises(ExperimentError, match="row 20001: found 1 cells, expected 2"):
         read_all(log)
-
-
-@pytest.mark.parametrize("line", ["a=1", "12:30:05, 4", "a=1 b", "a=1 b=2 and so on", "t=0,5 x=1,2",
-                                  "a==1 b=2", "=1 =2", "http://x/1 a=2"])  # fmt: skip
-def test_other_lines_are_no_pairs(line):
-    assert pairs_of(line) == []
-
-
-@pytest.mark.parametrize(
-    "line", ["a=" * 50_000, "a=1 " * 50_000, "a" * 200_000, "a=1" + "0" * 10**5]
-)
-def test_a_long_line_is_decided_at_once(line):
-    pairs_of(line)

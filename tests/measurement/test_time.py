@@ -4,9 +4,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from measurement.rod_example import rod_columns, rows
 
-from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement import load_experiment
-from teleopdesign.measurement.record_clock import clock_of
 
 
 def with_segments(folder, labels, stamps=None):
@@ -80,15 +78,3 @@ def test_stamps_that_are_rounded_give_the_true_rate(rod, rate, digits):
     record = with_stamps(rod, np.arange(count) / rate, digits)
     assert record.sample_time * rate == pytest.approx(1, abs=10.0**-digits)
     assert len(record.time) == count
-
-
-def test_rows_that_a_logger_writes_in_reversed_blocks_are_sorted_and_not_refused():
-    """Two steps of three go back, and the log goes on."""
-    n = 300
-    order = np.arange(n).reshape(-1, 3)[:, ::-1].ravel()
-    clock = clock_of(0.01 * order, (slice(0, n),), np.zeros(n, dtype=bool), "log")
-    assert "out of order" in clock.remarks[0][0] and not clock.set_back and len(clock.time) == n
-    assert np.array_equal(order[clock.rows], np.arange(n))
-    backwards = 0.01 * np.arange(n)[::-1]
-    with pytest.raises(ExperimentError, match="time that does not increase"):
-        clock_of(backwards, (slice(0, n),), np.zeros(n, dtype=bool), "log")

@@ -4,8 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from teleopdesign.measurement.record_clock import clock_of, segments_of
 
@@ -20,24 +18,6 @@ def counts_of(clock, noun):
     """The numbers of rows or pauses in the remarks of a clock: "5 rows out of order"."""
     words = [observed.split() for observed, _, _ in clock.remarks]
     return [int(number) for number, what, *_ in words if what.startswith(noun)]
-
-
-@given(seed=st.integers(0, 10_000), jitter=st.floats(0.0, 0.1))
-def test_rows_that_are_missing_leave_their_places(seed, jitter):
-    rng = np.random.default_rng(seed)
-    places = np.flatnonzero(rng.random(600) > 0.05)
-    if np.diff(places).max() > 6:
-        return
-    h = 0.004
-    stamps = 30.0 + h * (places + jitter * rng.uniform(-1, 1, len(places)))
-    clock = clock_by(stamps)
-    assert not clock.remarks and len(clock.of_rows) == 1
-    assert np.array_equal(clock.places, places - places[0])
-    assert len(clock.time) == places[-1] - places[0] + 1
-    assert clock.lost == len(clock.time) - len(places)
-    assert clock.sample_time == pytest.approx(h, rel=1e-3)
-    assert clock.time[0] == pytest.approx(30.0 + h * places[0], abs=0.2 * h)
-    assert clock.jitter <= jitter * h + 1e-12 and not counts_of(clock, "pause")
 
 
 @pytest.mark.parametrize(("lost", "pauses"), [((5, 5), 0), ((6, 5), 1), ((6, 40), 2)])
@@ -56,25 +36,6 @@ def test_a_pause_parts_the_rows_and_the_longest_is_reported(lost, pauses):
     assert [s.stop - s.start for s in clock.of_rows] == (
         [900] if not pauses else [200, 700] if pauses == 1 else [200, 300, 400]
     )
-
-
-def test_rows_twice_are_dropped_and_rows_out_of_order_moved():
-    h = 0.01
-    order = np.arange(500)
-    order[[100, 101]] = [101, 100]
-    order[[200, 201, 202]] = [202, 200, 201]
-    order = np.insert(order, 300, 299)
-    stamps = h * order
-    clock = clock_by(stamps)
-    assert np.all(np.diff(clock.stamps) > 0) and len(clock.rows) == 500
-    assert counts_of(clock, "row") == [1, 5] and not clock.set_back
-    # a row that says the same again less than half a step later is a repeat as well
-    for early, same, dropped in [(0.49, True, 1), (0.51, True, 0), (0.49, False, 0)]:
-        stamps = np.insert(h * np.arange(500), 300, h * (299 + early))
-        says = np.zeros(501, dtype=bool)
-        says[300] = same
-        clock = clock_by(stamps, same=says)
-        assert counts_of(clock, "row") == [dropped] * dropped and len(clock.rows) == 501 - dropped
 
 
 def test_a_clock_that_was_set_anew_begins_a_stretch_and_time_goes_on():
@@ -113,12 +74,3 @@ def test_stamps_of_no_clock_get_a_grid_of_as_many_samples():
     assert clock.sample_time == pytest.approx(np.ptp(stamps) / 799, rel=0.1)
     near = np.abs(clock.time[clock.places] - stamps)
     assert near.max() <= 0.5 * clock.sample_time + 1e-9
-
-
-@pytest.mark.parametrize("change", [1, 40, 149])
-def test_rows_with_two_stamps_alone_are_counted_from_the_first_to_the_last(change):
-    """Whole seconds of a log of 1.5 s: no stretch lies between two changes."""
-    stamps = np.where(np.arange(150) < change, 7.0, 8.0)
-    clock = clock_by(stamps)
-    assert clock.counted and clock.sample_time == pytest.approx(1 / 149)
-    assert clock.time == pytest.approx(7.0 + np.arange(150) / 149)

@@ -6,7 +6,6 @@ import pytest
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.base.units import is_unit, to_si
-from teleopdesign.measurement.column_names import unfit_unit, unit_in_name
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import Choices, survey_log
 from teleopdesign.measurement.value_text import motor_constant
@@ -40,47 +39,6 @@ def look(columns, **choices):
 )
 def test_inches_pounds_and_points_are_converted(unit, quantity, axis, si):
     assert to_si(1.0, unit, quantity=quantity, axis=axis) == pytest.approx(si, rel=1e-12)
-
-
-@pytest.mark.parametrize("unit", ["N/m-s", "N/m.s", "s-1", "N-", "-N", "N..m", "N.-m"])
-def test_a_hyphen_that_may_mean_two_things_is_refused(unit):
-    with pytest.raises(ExperimentError, match="expected"):
-        to_si(1.0, unit, quantity="damping")
-
-
-@pytest.mark.parametrize(
-    ("name", "quantity", "axis", "unit"),
-    [
-        ("Torque (oz-in)", "force", "revolute", "ozf*in"),
-        ("Torque [in-lbs]", "force", "revolute", "lbf*in"),
-        ("servo torque (kg*cm)", "force", "revolute", "kgf*cm"),
-        ("F [lbs]", "force", "prismatic", "lbf"),
-        ("x [in]", "position", "prismatic", "in"),
-        ("vel_dps", "velocity", "revolute", "deg/s"),
-        ("x_in", "position", "prismatic", None),  # what goes in
-        ("hand_ft", "position", "prismatic", None),  # force and torque
-        ("counts", "position", "revolute", "counts"),
-        ("volts", "force", "revolute", "V"),
-    ],
-)
-def test_the_unit_of_a_motors_sheet_in_a_name(name, quantity, axis, unit):
-    assert unit_in_name(name, quantity, axis) == unit
-
-
-@pytest.mark.parametrize(
-    ("name", "text"),
-    [
-        ("Hand [N]", "N"),
-        ("Pos (px)", "px"),
-        ("F (kg/s)", "kg/s"),
-        ("Torque (cmd)", None),
-        ("Pos (filtered)", None),
-        ("q (1)", None),
-        ("q", None),
-    ],
-)
-def test_a_word_in_brackets_is_no_unit(name, text):
-    assert unfit_unit(name) == text
 
 
 def test_a_log_in_inches_and_pounds_is_read_in_metres_and_newtons():
@@ -184,24 +142,6 @@ def test_several_times_a_unit_of_time_is_no_unit_of_a_position_or_of_a_column_by
     with pytest.raises(ExperimentError, match="expected one of a position"):
         look({"t": T, "angle_rad": Q, "u [Nm]": U}, units={"angle_rad": "125 us"})
     assert not is_unit("10 ms"), "a name may say that there is a row every 10 ms"
-
-
-@pytest.mark.parametrize(
-    ("name", "unit"),
-    [
-        ("velocity (rad/sec)", "rad/s"),
-        ("vel [deg/sec]", "deg/s"),
-        ("speed (m/second)", "m/s"),
-        ("speed (revs per second)", "rev/s"),
-        ("speed_rps", "turns/s"),
-        ("v [U/s]", "turns/s"),
-        ("v [r/s]", "turns/s"),
-        ("rate (counts/s)", None),
-        ("gain (x/sec)", None),
-    ],
-)
-def test_speeds_are_known_as_loggers_write_them(name, unit):
-    assert unit_in_name(name) == unit
 
 
 def test_a_speed_in_hertz_counts_turns():
