@@ -64,23 +64,6 @@ def test_only_what_changes_is_filtered_and_nothing_else_comes_out(seed, open_sha
     assert friction.rows() == pytest.approx(step_by_step(*signals), abs=1e-10)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "places",
-    [(0, 9_000), (150, 19_850), (5_000, 5_200, 12_000), (0, 200, 19_700, 19_999), (301, 19_698)],
-)
-def test_windows_about_few_open_rows_give_what_the_whole_record_does(places):
-    needed, low, high = bounded(5, 0.0, n=20_000)
-    is_open = np.zeros(20_000, dtype=bool)
-    for place in places:
-        is_open[place : place + 7] = True
-    up = np.where(is_open & (high.value < 0.0), -1.0, 1.0)
-    down = np.where(is_open & (low.value > 0.0), -1.0, 1.0)
-    signals = (needed, low.times(down), high.times(up))
-    friction = balance_within_bounds(*signals, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME)
-    assert friction.rows() == pytest.approx(step_by_step(*signals), abs=1e-10)
-
-
 @pytest.mark.parametrize("rows_of_a_turn", [1, 2])
 @pytest.mark.parametrize("bandwidth", [5.0, 20.0])
 def test_static_friction_at_few_rows_is_the_best_within_its_bounds(rows_of_a_turn, bandwidth):

@@ -43,39 +43,6 @@ def test_two_blocks_are_the_series_of_their_laws(computer):
     np.testing.assert_allclose(moved(in_two_blocks(), computer), expected, rtol=0, atol=1e-15)
 
 
-def test_a_limit_by_another_signal_is_exact():
-    """(abs(f + l) - abs(f - l))/2 with l = 0.2 abs(L) N/mm."""
-    made = haptic_interface(body(0.1), cancellation=controller("magnitude", {"gain": 200.0}))
-    half = controller("magnitude", {"gain": 0.5})
-    bounded = replace(
-        made,
-        blocks=(
-            *made.blocks,
-            Control("A", half, "more", "more_half"),
-            Control("B", half, "less", "less_half"),
-        ),
-        junctions=(
-            *(j for j in made.junctions if j.output != "R_A"),
-            Junction("more", {"R_D": 1, "R_MBC": 1}),
-            Junction("less", {"R_D": 1, "R_MBC": -1}),
-            Junction("R_A", {"more_half": 1, "less_half": -1}),
-        ),
-    )
-    simulation = simulate(
-        bounded,
-        duration=0.2,
-        inputs={"R_D": lambda t: np.sin(60 * t)},
-        motion={"L": sine(amplitude=0.01, frequency=5.0)},
-        jit=False,
-    )
-    wanted, limit = (
-        (simulation["more"].values + simulation["less"].values) / 2,
-        simulation["R_MBC"].values,
-    )
-    expected = np.clip(wanted, -limit, limit)
-    np.testing.assert_allclose(simulation["R_A"].values, expected, rtol=0, atol=1e-12)
-
-
 def test_a_law_of_the_output_of_that_law_is_refused_in_one_line():
     made = in_two_blocks()
     loop = replace(

@@ -4,15 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import sympy as sp
 from effects.along import body_of, motion_along, signals, unled
 from scipy.integrate import solve_ivp
 
-from teleopdesign.blocks import Body, Value
-from teleopdesign.effects import Effect, Parameter
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.stages_along import INTERACTION_SHIFT, RECORD_SHIFT
-from teleopdesign.realise.tangent_columns import Probe
 
 INSIDE = slice(150, -150)
 
@@ -153,57 +149,3 @@ def test_friction_of_each_side_is_its_level_and_none_where_that_is_below_zero(di
     assert np.all(by_level[ahead] == 1.0) and np.all(by_difference[ahead] == 1.0)
     assert np.all(by_level[back] == (-1.0 if least else 0.0))
     assert np.all(by_difference[back] == (1.0 if least else 0.0))
-
-
-def test_the_slope_by_the_strength_of_what_is_absent_holds_at_the_probes_other_values():
-    """Cogging of no amplitude, asked at a period of 4 mm: what one newton of it would take."""
-    motion = recorded()
-    named = {"cogging.amplitude": 0.0, "cogging.period": 0.01, "cogging.phase": 0.3}
-    body = body_of("cogging", "viscous", values=named)
-    symbols = body.symbols()
-    at = {symbols["cogging.period"]: 0.004, symbols["cogging.phase"]: 1.1}
-    probe = Probe("device", symbols["cogging.amplitude"], at)
-    along = residual_along(body, motion, ["viscous.damping", probe]).residual.tangent
-    there = {"cogging.amplitude": 1.0, "cogging.period": 0.004, "cogging.phase": 1.1}
-    sides = [residual_along(b, motion).residual.value for b in (body.with_values(there), body)]
-    np.testing.assert_allclose(along[1], sides[0] - sides[1], atol=1e-9)
-    np.testing.assert_allclose(along[0], -motion.velocity, atol=1e-9)
-    assert np.ptp(along[1]) > 1.5
-
-
-#: a user's damping k that is there under some condition on the motion and on k: law, and where
-JOINED = {
-    "both": (lambda v, k: sp.And(v > 0, k > 1), lambda v: v > 0),
-    "either": (lambda v, k: sp.Or(v > 0, k > 9), lambda v: v > 0),
-    "not both": (lambda v, k: sp.Not(sp.And(v > 0, k > 1)), lambda v: v <= 0),
-    "one by the other": (
-        lambda v, k: sp.Piecewise((k, v > 0), (v, True)) > 1, lambda v: np.where(v > 0, 2.0, v) > 1,
-    ),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", JOINED)
-def test_a_users_law_may_join_conditions_on_the_motion_and_on_its_parameters(name):
-    """It ended in a traceback of numpy, for some are as long as the record and some are numbers."""
-    condition, where = JOINED[name]
-    effect = Effect(
-        role="force",
-        law=lambda now, p: sp.Piecewise(
-            (p.k * now.velocity, condition(now.velocity, p.k)), (0, True)
-        ),
-        parameters={"k": Parameter("damping", "k")},
-        absent={"k": 0.0},
-    ).named("mine", "")
-    motion = recorded()
-    body = Body("prismatic", {"inertia": Value(0.2), "mine.k": Value(2.0)}, (effect,))
-    along = residual_along(body, motion, ["mine.k"])
-    bare = residual_along(Body("prismatic", {"inertia": Value(0.2)}), motion).residual.value
-    there = where(motion.velocity)
-    assert 0.1 < there.mean() < 0.9
-    expected = np.where(there, 2.0 * motion.velocity, 0.0)
-    np.testing.assert_allclose(bare - along.residual.value, expected, atol=1e-9)
-    slope = np.where(there, -motion.velocity, 0.0)
-    np.testing.assert_allclose(along.residual.tangent[0], slope, atol=1e-9)
-    probe = Probe("device", body.symbols()["mine.k"], {})
-    tangent = residual_along(body, motion, [probe]).residual.tangent[0]
-    np.testing.assert_allclose(tangent, slope, atol=1e-9)

@@ -121,33 +121,6 @@ def test_samples_beyond_a_limit_are_blind(side):
     np.testing.assert_array_equal(command_error.blind, side * motion.command > 3.0)
 
 
-def led_back(body, motion, residual):
-    along = residual_along(body, motion)
-    return residual_at_command(
-        body, motion, replace(along, residual=Traced(residual, along.residual.tangent))
-    )
-
-
-def test_stages_in_series_are_led_back_one_by_one():
-    """r behind a gain of 1/2 and a delay is 2 r, earlier by the delay."""
-    motion = one_way()
-    omega = 2 * np.pi * 1.2
-    body = Body(
-        "prismatic",
-        {
-            "inertia": Value(0.2),
-            "actuation_delay.delay": Value(0.04),
-            "actuator_gain.gain": Value(0.5),
-        },
-        (EFFECTS["actuator_gain"], EFFECTS["actuation_delay"]),
-    )
-    forces = led_back(body, motion, np.sin(omega * motion.time))
-    inside = slice(int(RATE), -int(RATE))
-    expected = 2.0 * np.sin(omega * (motion.time + 0.04))
-    np.testing.assert_allclose(forces.residual[inside], expected[inside], atol=0.02)
-    assert not forces.blind.any()
-
-
 def test_without_a_law_between_nothing_is_changed():
     motion = one_way()
     body = Body("prismatic", {"inertia": Value(0.2), "coulomb.level": Value(1.0)},
