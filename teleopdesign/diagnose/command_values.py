@@ -14,10 +14,9 @@ import numpy as np
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
-from .fit import free_parameters
 from .least_squares import minimise
 from .search_plan import Effort
-from .solve import SearchResiduals, search_problem
+from .solve import SearchProblem, search_problem
 
 #: step of a value of size one, for a derivative
 _STEP = 1e-4
@@ -56,16 +55,16 @@ def solve_with_command(
 
     prepared: the records, with any command of these values
     """
-    free, count = free_parameters(model), len(command.start)
+    count = len(command.start)
 
-    def problem(x: Array) -> tuple[SearchResiduals, Array, Array, Array]:
-        return search_problem(model, free, prepared, command.stretches(x[:count]), effort)
+    def problem(x: Array) -> SearchProblem:
+        return search_problem(model, prepared, effort, command.stretches(x[:count]))
 
     def residual(x: Array) -> Array:
-        return problem(x)[0].residual_with_prior(x[count:])
+        return problem(x).residual_with_prior(x[count:])
 
     def both(x: Array) -> tuple[Array, Array]:
-        here, jacobian = problem(x)[0].with_prior(x[count:])
+        here, jacobian = problem(x).with_prior(x[count:])
         columns = []
         for i in range(count):
             moved = x.copy()
@@ -73,19 +72,19 @@ def solve_with_command(
             columns.append((residual(moved) - here) / (moved[i] - x[i]))
         return here, np.hstack([np.column_stack(columns), jacobian])
 
-    left, start, lower, upper = problem(command.start)
+    first = problem(command.start)
     minimum = minimise(
         both,
-        np.append(command.start, start),
-        np.append(command.lower, lower),
-        np.append(command.upper, upper),
+        np.append(command.start, first.start),
+        np.append(command.lower, first.lower),
+        np.append(command.upper, first.upper),
         tolerance=effort.tolerance,
         evaluations=effort.evaluations,
         residual_alone=residual,
     )
-    rows, best = len(minimum.residual) - len(left.shifts.logs), minimum.values
+    rows, best = len(minimum.residual) - len(first.shifts.logs), minimum.values
     return CommandSolution(
-        left.model_at(best[count:]),
+        first.model_at(best[count:]),
         best[:count],
         minimum.residual[:rows],
         minimum.jacobian[:rows],

@@ -18,10 +18,11 @@ from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate, make_starts
 from .cores import map_on_cores
-from .fit import Fit, fit_squares, free_parameters
+from .fit import Fit, fit_squares
 from .linear_start import Promises
 from .search import Base, estimate_best_start, is_rugged
 from .search_plan import PLAN
+from .solve import free_parameters
 
 
 def search_among_draws(

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.frozen import ByValue
-from ..blocks import Value
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
@@ -92,11 +91,6 @@ def fit_squares(fit: Fit) -> float:
     return sum_of_squares(fit.fit_residual)
 
 
-def free_parameters(model: Model) -> tuple[str, ...]:
-    """Names of the parameters that are not fixed."""
-    return tuple(n for n, v in model.parameters.items() if not v.fixed)
-
-
 def block_numbers(stretches: Sequence[Stretch]) -> NDArray[np.intp]:
     """Block number of each row; a block is a quarter of a second of one stretch."""
     parts, first = [], 0
@@ -113,15 +107,14 @@ def estimate(model: Model, prepared: Prepared, *, effort: Effort = EFFORTS.fine)
     Without check records, blocks of the fit records are held out in turn. The check error then
     comes from fits without those blocks.
     """
-    solution = solve(model, free_parameters(model), prepared, prepared.of("fit"), effort)
-    return fit_of(solution, prepared)
+    return fit_of(solve(model, prepared, effort), prepared)
 
 
 def fit_of(solution: Solution, prepared: Prepared) -> Fit:
     """The fit of a solution on the fit records, with its errors on both uses."""
-    stretches, free = prepared.of("fit"), free_parameters(solution.model)
+    stretches, free, p = prepared.of("fit"), solution.free, len(solution.free)
     blocks = block_numbers(stretches)
-    fitted = with_errors(_with_held_shifts(solution, stretches), free, blocks).canonical()
+    fitted = with_errors(_with_held_shifts(solution, stretches), blocks).canonical()
     check = prepared.of("check")
     if check:
         along = follow_records(fitted, check)
@@ -135,15 +128,15 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
         free=free,
         fit_error=force_error(fitted, stretches),
         check_error=check_error,
-        at_bound=tuple(n for n, b in zip(free, solution.at_bound, strict=True) if b),
+        at_bound=tuple(n for n, b in zip(free, solution.at_bound[:p], strict=True) if b),
         fit_residual=solution.residual,
         check_residual=weigh_residuals(check, parts),
         at_command=command_error,
         fit_blocks=blocks,
         check_blocks=block_numbers(check),
-        jacobian=solution.jacobian,
-        scale=solution.scale,
-        by_shift=solution.by_shift[:, ~solution.shift_at_bound],
+        jacobian=solution.jacobian[:, :p],
+        scale=solution.scale[:p],
+        by_shift=solution.by_shift,
     )
 
 
@@ -157,35 +150,38 @@ def _with_held_shifts(solution: Solution, stretches: Sequence[Stretch]) -> Solut
     if not shifts.held.any():
         return solution
     here = select_bodies(stretches, shifts.bodies)
-    columns = np.zeros_like(solution.by_shift)
-    columns[here.rows] = here.relative(solution.model, shifts.names)[1] * shifts.row
-    return replace(solution, by_shift=columns)
+    jacobian = solution.jacobian.copy()
+    jacobian[:, len(solution.free) :] = 0.0
+    columns = here.relative(solution.model, shifts.names)[1] * shifts.row
+    jacobian[here.rows, len(solution.free) :] = columns
+    return replace(solution, jacobian=jacobian)
 
 
 def rough_fit(model: Model, prepared: Prepared) -> Fit:
     """A fit precise enough for a ranking: estimated on few samples first, then on all of them."""
-    coarse, free = prepared.coarse, free_parameters(model)
+    coarse = prepared.coarse
     if coarse is prepared:
         return estimate(model, prepared, effort=EFFORTS.rough)
-    there = solve(model, free, coarse, coarse.of("fit"), EFFORTS.rough)
+    there = solve(model, coarse, EFFORTS.rough)
     return estimate(there.model, prepared, effort=EFFORTS.continued)
 
 
-def with_errors(solution: Solution, free: tuple[str, ...], blocks: NDArray[np.intp]) -> Model:
+def with_errors(solution: Solution, blocks: NDArray[np.intp]) -> Model:
     """The model of a solution, with standard errors of all that was estimated.
 
     A shift at its bound counts as certain: it adds nothing to the other standard errors.
     """
-    shifts, bound = solution.shifts, solution.shift_at_bound
-    whole = np.hstack([solution.jacobian, np.where(bound, 0.0, solution.by_shift)])
-    errors = standard_errors(*shifts.observed(solution.residual, whole, blocks))
-    parameter_errors = errors[: len(free)] * solution.scale
+    shifts, model, p = solution.shifts, solution.model, len(solution.free)
+    jacobian = solution.jacobian.copy()
+    jacobian[:, p:][:, solution.at_bound[p:]] = 0.0
+    errors = standard_errors(*shifts.observed(solution.residual, jacobian, blocks))
+    parameter_errors = errors[:p] * solution.scale[:p]
     values = {
-        n: Value(float(v), solution.model.parameters[n].fixed, float(e))
-        for n, v, e in zip(free, solution.values, parameter_errors, strict=True)
+        n: replace(model.parameters[n], stderr=float(e))
+        for n, e in zip(solution.free, parameter_errors, strict=True)
     }
-    model = solution.model.with_values(values)
-    return shifts.beside(model, shifts.start(model), errors[len(free) :])
+    model = model.with_values(values)
+    return shifts.beside(model, shifts.start(model), errors[p:])
 
 
 def _fit_held_out(
@@ -196,11 +192,11 @@ def _fit_held_out(
     parts: list[Array] = []
     command_errors: list[AtCommand] = []
     squares = at_commands = 0.0
-    stretches, free = prepared.of("fit"), free_parameters(solution.model)
+    stretches = prepared.of("fit")
     for known, held_out in folds(stretches):
         pairs = zip(stretches, known, strict=True)
         rows = np.concatenate([np.isin(s.keep, k.keep, assume_unique=True) for s, k in pairs])
-        model = model_without(solution, free, prepared, known, rows, EFFORTS.held_out)
+        model = model_without(solution, prepared, known, rows, EFFORTS.held_out)
         along = follow_records(model, held_out)
         absolute, relative = both_residuals(model, held_out, along)
         held += held_out

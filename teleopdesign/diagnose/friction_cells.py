@@ -20,10 +20,9 @@ from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from ..realise.along_motion import residual_along
 from ..realise.friction_cells import FrictionCell
-from .fit import free_parameters
 from .record_offsets import as_logged
 from .residual import residuals
-from .solve import BLOCK
+from .solve import BLOCK, free_parameters
 
 #: cells along the travel; fewest independent samples of a cell, and fewest passes. More cells find
 #: narrower zones with fewer samples in each: of 20 s, half of 20 cells have enough. The scatter of

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .fit import Fit, free_parameters
+from .fit import Fit
 from .search_plan import PLAN
 from .solve import Solution, spans_decades
 
@@ -40,7 +40,7 @@ def without_endless(best: Solution, new: Collection[tuple[str, str]]) -> Model:
     """
     model = best.model
     values: dict[str, float] = {}
-    for name, at_bound in zip(free_parameters(model), best.at_bound, strict=True):
+    for name, at_bound in zip(best.free, best.at_bound[: len(best.free)], strict=True):
         at, effect, _ = (*name.split("."), "")[:3]
         if not at_bound or not spans_decades(model, name) or (effect, at) in new:
             continue

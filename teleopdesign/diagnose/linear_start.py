@@ -25,7 +25,7 @@ from ..measurement.prepare import Prepared
 from ..model import Model
 from ..realise.tangent_columns import Probe
 from .bodies_apart import Apart, select_bodies, separate_bodies
-from .fit import Fit, free_parameters
+from .fit import Fit
 from .least_squares import (
     RIDGE,
     add_damping,
@@ -34,6 +34,7 @@ from .least_squares import (
     span,
     sum_of_squares,
 )
+from .solve import free_parameters
 
 #: columns that pass through the friction balance in one call. The number is even, because a phase
 #: takes two columns; with the residual and one more column they fill lanes of eight. With fewer,

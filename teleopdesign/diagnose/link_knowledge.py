@@ -18,13 +18,13 @@ from ..model import Model
 from ..realise.along_motion import residual_along
 from ..realise.tangent_columns import LinkParameter
 from .error import force_error
-from .fit import block_numbers, free_parameters, standard_errors
+from .fit import block_numbers, standard_errors
 from .least_squares import span
 from .parts import PreparedParts, remove_links
 from .record_offsets import apply_record_offsets
 from .record_shift import record_shifts
 from .residual import relative_residuals
-from .solve import BLOCK
+from .solve import BLOCK, free_parameters
 
 #: least residual, as a part of the measured force, that sets the weight of a joint: below it the
 #: weight no longer grows

@@ -17,7 +17,7 @@ from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
 from .error import force_error, refer_to_command
-from .fit import Fit, estimate, free_parameters
+from .fit import Fit, estimate
 from .link_knowledge import common_links, joint_knowledge, with_others
 from .parts import PreparedParts, mean_inertias, remove_links, with_inertias
 from .search_plan import EFFORTS, Effort
@@ -168,8 +168,7 @@ def _estimate_at_common_links(
     there = {}
     for j, records in prepared.parts.items():
         plain = replace(records, stretches=remove_links(records.of("fit")))
-        model, free = models[j].with_links(common), free_parameters(models[j])
-        there[j] = solve(model, free, plain, plain.stretches, EFFORTS.rough).model
+        there[j] = solve(models[j].with_links(common), plain, EFFORTS.rough).model
     return there
 
 

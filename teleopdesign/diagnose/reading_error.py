@@ -83,7 +83,7 @@ def reading_error(
     def missed(stretches: list[Stretch], noise: np.random.Generator) -> Array:
         drawn = [as_read(s, prepared, noise) for s in stretches]
         again = replace(prepared, stretches=tuple(drawn))
-        solution = solve(truth, fit.free, again, drawn, EFFORTS.again)
+        solution = solve(truth, again, EFFORTS.again)
         by = coordinates(solution.model, fit.free) - true
         for i, name in enumerate(fit.free):
             if truth.declared(name).quantity == "angle":

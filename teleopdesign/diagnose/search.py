@@ -17,12 +17,12 @@ from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import make_starts
 from .criteria import CRITERIA
-from .fit import Fit, estimate, fit_of, fit_squares, free_parameters
+from .fit import Fit, estimate, fit_of, fit_squares
 from .further_starts import starts_at_values_of_user, with_what_they_need, without_endless
 from .least_squares import sum_of_squares
 from .linear_start import Promises, linear_starts
 from .search_plan import EFFORTS, PLAN, Effort
-from .solve import Solution, solve
+from .solve import Solution, free_parameters, solve
 
 
 @dataclass(frozen=True)
@@ -52,19 +52,17 @@ def base_of(fit: Fit, prepared: Prepared, stated: Model | None = None) -> Base:
     coarse = prepared.coarse
     if coarse is prepared:
         return Base(fit, fit, stated)
-    there = solve(fit.model, fit.free, coarse, coarse.of("fit"), EFFORTS.rough)
-    return Base(
+    there = solve(fit.model, coarse, EFFORTS.rough)
+    p = len(fit.free)
+    few = replace(
         fit,
-        replace(
-            fit,
-            model=there.model,
-            fit_residual=there.residual,
-            jacobian=there.jacobian,
-            scale=there.scale,
-            by_shift=there.by_shift[:, ~there.shift_at_bound],
-        ),
-        stated,
+        model=there.model,
+        fit_residual=there.residual,
+        jacobian=there.jacobian[:, :p],
+        scale=there.scale[:p],
+        by_shift=there.by_shift,
     )
+    return Base(fit, few, stated)
 
 
 def estimate_from_starts(
@@ -179,7 +177,7 @@ def from_smaller_strengths(
 
 def follow_start(model: Model, prepared: Prepared, effort: Effort) -> Solution:
     """The rough optimum that a search from this start reaches."""
-    return solve(model, free_parameters(model), prepared, prepared.of("fit"), effort)
+    return solve(model, prepared, effort)
 
 
 def squares_of(solution: Solution) -> float:

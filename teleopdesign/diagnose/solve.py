@@ -27,36 +27,49 @@ AT_BOUND = 1e-6
 DECADES = 8.0
 
 
-@dataclass(frozen=True)
-class Solution:
-    """Free parameters at the optimum, with weighted residual and Jacobian by value / scale.
+def free_parameters(model: Model) -> tuple[str, ...]:
+    """Names of the parameters that are not fixed."""
+    return tuple(n for n, v in model.parameters.items() if not v.fixed)
 
-    model: with these values, and the shifts of the records
-    values, scale, at_bound: (p,);  residual: (rows,);  jacobian: (rows, p)
-    by_shift: (rows, k) derivative of the residual by the k `shifts`, in rows of a record
-    shift_at_bound: (k,)
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """A model at the optimum, with weighted residual and Jacobian by value / scale.
+
+    free: its p free parameters;  shifts: the k shifts of the records
+    scale, at_bound: (p + k,), the parameters first;  residual: (rows,);  jacobian: (rows, p + k)
     """
 
     model: Model
-    values: Array
+    free: tuple[str, ...]
+    shifts: RecordShifts
     scale: Array
     at_bound: NDArray[np.bool_]
     residual: Array
     jacobian: Array
-    shifts: RecordShifts
-    by_shift: Array
-    shift_at_bound: NDArray[np.bool_]
+
+    @property
+    def by_shift(self) -> Array:
+        """Derivatives of the residual by the shifts that are at no bound, in rows of a record."""
+        p = len(self.free)
+        return self.jacobian[:, p:][:, ~self.at_bound[p:]]
 
 
 @dataclass(frozen=True, eq=False)
-class _SearchSpace:
-    """Search coordinates x (p,) of the free parameters: value over scale, or its logarithm.
+class SearchProblem:
+    """The residual of a model over search coordinates x (p + k,), with the prior of its shifts.
 
-    scale: (p,) SI value of the unit of each;  decades: (p,) whether x is a logarithm
-    lower, upper, start: (p,) bounds of x, and where the search starts
-    limited: (p,) whether the upper bound is a `FitSearch.limit`, no bound of the parameter
+    A coordinate is the value of one of p free parameters over its scale, or the logarithm of that;
+    the last k are shifts, in rows of a record.
+    scale: (p + k,) SI value of the unit of each;  decades: whether x is a logarithm
+    lower, upper, start: (p + k,) bounds of x, and where the search starts
+    limited: (p + k,) whether the upper bound is a `FitSearch.limit`, no bound of the parameter
     """
 
+    model: Model
+    free: tuple[str, ...]
+    shifts: RecordShifts
+    bodies: BodyByBody
     scale: Array
     decades: NDArray[np.bool_]
     lower: Array
@@ -65,57 +78,22 @@ class _SearchSpace:
     limited: NDArray[np.bool_]
 
     def values(self, x: Array) -> Array:
-        """Values (p,) of the parameters at x, in SI units."""
+        """Values (p + k,) of parameters and shifts at x, in SI units."""
         return self.scale * np.where(self.decades, np.exp(np.where(self.decades, x, 0.0)), x)
 
     def units(self, x: Array) -> Array:
-        """Derivatives (p,) of the values by x, in SI units."""
+        """Derivatives (p + k,) of the values by x, in SI units."""
         return np.where(self.decades, self.values(x), self.scale)
-
-
-def _search_space(model: Model, free: tuple[str, ...], prepared: Prepared) -> _SearchSpace:
-    """Search coordinates of the free parameters, with scales of the fit records."""
-    unit = prepared.scales
-    declared = [model.declared(n) for n in free]
-    scale = np.array([unit[d.scale] for d in declared])
-    decades = np.array([spans_decades(model, n) for n in free], dtype=bool)
-    lower = np.array([d.lower for d in declared]) / scale
-    upper = np.array(
-        [min(d.upper / s, d.search.within) for d, s in zip(declared, scale, strict=True)]
-    )
-    limits = np.array([d.search.limit for d in declared])
-    limited, upper = limits < upper, np.minimum(limits, upper)
-    start = np.array([model.parameters[n].value for n in free]) / scale
-    lower[decades] = -DECADES * np.log(10)
-    upper[decades] = np.log(np.minimum(upper[decades], 10.0**DECADES))
-    start[decades] = np.log(np.maximum(start[decades], 1e-300))
-    # slightly inside the bounds: a law may divide by a parameter whose bound is zero
-    inside = lower + 0.1 * AT_BOUND, upper - 0.1 * AT_BOUND
-    return _SearchSpace(scale, decades, *inside, start, limited)
-
-
-@dataclass(frozen=True, eq=False)
-class SearchResiduals:
-    """Residual and Jacobian at search coordinates x (p + k,): free parameters, then k shifts."""
-
-    model: Model
-    free: tuple[str, ...]
-    space: _SearchSpace
-    shifts: RecordShifts
-    bodies: BodyByBody
 
     def model_at(self, x: Array) -> Model:
         """The model with the parameters and shifts at x."""
-        values = self.space.values(x[: len(self.free)]).tolist()
+        values = self.values(x)[: len(self.free)].tolist()
         moved = self.model.with_values(dict(zip(self.free, values, strict=True)))
         return self.shifts.beside(moved, x[len(self.free) :])
 
-    def _units(self, x: Array) -> Array:
-        return np.append(self.space.units(x[: len(self.free)]), self.shifts.row)
-
     def both(self, x: Array) -> tuple[Array, Array]:
-        """Residual (rows,) and Jacobian (rows, p + k)."""
-        return self.bodies.both(self.model_at(x), x, self._units(x))
+        """Residual (rows,) and Jacobian (rows, p + k), without the prior."""
+        return self.bodies.both(self.model_at(x), x, self.units(x))
 
     def with_prior(self, x: Array) -> tuple[Array, Array]:
         """The same, with the k rows of the prior of the shifts; none changes by a held shift."""
@@ -131,74 +109,90 @@ class SearchResiduals:
 
     def residual_with_prior(self, x: Array) -> Array:
         """The residual of `with_prior` alone."""
-        r = self.bodies.residual(self.model_at(x), x, self._units(x))
+        r = self.bodies.residual(self.model_at(x), x, self.units(x))
         return np.append(r, self.shifts.prior_alone(x[len(self.free) :], r))
 
 
-def solve(
-    model: Model,
-    free: tuple[str, ...],
-    prepared: Prepared,
-    stretches: Sequence[Stretch],
-    effort: Effort,
-) -> Solution:
-    """Bounded least squares on the relative residuals of these stretches, by shifts as well."""
-    left, start, lower, upper = search_problem(model, free, prepared, stretches, effort)
-    space, shifts, p = left.space, left.shifts, len(free)
-    if len(start):
-        minimum = minimise(
-            left.with_prior,
-            start,
-            lower,
-            upper,
-            tolerance=effort.tolerance,
-            evaluations=effort.evaluations,
-            residual_alone=left.residual_with_prior,
-        )
-        best, rows = minimum.values, len(minimum.residual) - len(shifts.logs)
-        residual, jacobian = minimum.residual[:rows], minimum.jacobian[:rows]
-    else:
-        best, (residual, jacobian) = start, left.both(start)
-    if any(s.shared is not None for s in stretches):
-        left = replace(left, model=settle_links(left.model_at(best), stretches))
-        residual, jacobian = left.both(best)
-    at_upper = upper - best < AT_BOUND
-    at_upper[:p] &= ~space.limited
-    at_bound = (best - lower < AT_BOUND) | at_upper
-    return Solution(
-        model=left.model_at(best),
-        values=space.values(best[:p]),
-        scale=space.units(best[:p]),
-        at_bound=at_bound[:p],
-        residual=residual,
-        jacobian=jacobian[:, :p],
-        shifts=shifts,
-        by_shift=jacobian[:, p:],
-        shift_at_bound=at_bound[p:],
+def search_problem(
+    model: Model, prepared: Prepared, effort: Effort, stretches: Sequence[Stretch] | None = None
+) -> SearchProblem:
+    """The search for the free parameters of a model on some stretches; None: the fit records.
+
+    prepared: the records, whose motion gives the scales
+    """
+    stretches = prepared.of("fit") if stretches is None else stretches
+    free, unit = free_parameters(model), prepared.scales
+    declared = [model.declared(n) for n in free]
+    scale = np.array([unit[d.scale] for d in declared])
+    decades = np.array([spans_decades(model, n) for n in free], dtype=bool)
+    lower = np.array([d.lower for d in declared]) / scale
+    upper = np.array(
+        [min(d.upper / s, d.search.within) for d, s in zip(declared, scale, strict=True)]
+    )
+    limits = np.array([d.search.limit for d in declared])
+    limited, upper = limits < upper, np.minimum(limits, upper)
+    start = np.array([model.parameters[n].value for n in free]) / scale
+    lower[decades] = -DECADES * np.log(10)
+    upper[decades] = np.log(np.minimum(upper[decades], 10.0**DECADES))
+    start[decades] = np.log(np.maximum(start[decades], 1e-300))
+    lasts = sum(s.weight * len(s.keep) * s.row for s in stretches)
+    shifts = record_shifts(stretches, round(lasts / BLOCK), model)
+    none = np.zeros(len(shifts.logs), dtype=bool)
+    # slightly inside the bounds: a law may divide by a parameter whose bound is zero
+    return SearchProblem(
+        model,
+        free,
+        shifts,
+        BodyByBody(model, (*free, *shifts.names), stretches, tolerance=effort.tolerance),
+        scale=np.append(scale, shifts.row),
+        decades=np.append(decades, none),
+        lower=np.append(lower + 0.1 * AT_BOUND, np.full(len(none), -CLOCK.early)),
+        upper=np.append(upper - 0.1 * AT_BOUND, shifts.latest),
+        start=np.append(start, shifts.start(model)),
+        limited=np.append(limited, none),
     )
 
 
-def search_problem(
-    model: Model,
-    free: tuple[str, ...],
-    prepared: Prepared,
-    stretches: Sequence[Stretch],
-    effort: Effort,
-) -> tuple[SearchResiduals, Array, Array, Array]:
-    """Residuals of a search on these stretches, its start and its bounds, (p + k,) each."""
-    space = _search_space(model, free, prepared)
-    lasts = sum(s.weight * len(s.keep) * s.row for s in stretches)
-    shifts = record_shifts(stretches, round(lasts / BLOCK), model)
-    lower = np.append(space.lower, np.full(len(shifts.logs), -CLOCK.early))
-    upper = np.append(space.upper, shifts.latest)
-    start = np.append(space.start, shifts.start(model))
-    bodies = BodyByBody(model, (*free, *shifts.names), stretches, tolerance=effort.tolerance)
-    return SearchResiduals(model, free, space, shifts, bodies), start, lower, upper
+def solve(
+    model: Model, prepared: Prepared, effort: Effort, stretches: Sequence[Stretch] | None = None
+) -> Solution:
+    """Bounded least squares on the relative residuals of these stretches, by shifts as well.
+
+    stretches: None: the fit records
+    """
+    stretches = prepared.of("fit") if stretches is None else stretches
+    problem = search_problem(model, prepared, effort, stretches)
+    if len(problem.start):
+        minimum = minimise(
+            problem.with_prior,
+            problem.start,
+            problem.lower,
+            problem.upper,
+            tolerance=effort.tolerance,
+            evaluations=effort.evaluations,
+            residual_alone=problem.residual_with_prior,
+        )
+        best, rows = minimum.values, len(minimum.residual) - len(problem.shifts.logs)
+        residual, jacobian = minimum.residual[:rows], minimum.jacobian[:rows]
+    else:
+        best, (residual, jacobian) = problem.start, problem.both(problem.start)
+    if any(s.shared is not None for s in stretches):
+        problem = replace(problem, model=settle_links(problem.model_at(best), stretches))
+        residual, jacobian = problem.both(best)
+    at_upper = (problem.upper - best < AT_BOUND) & ~problem.limited
+    return Solution(
+        model=problem.model_at(best),
+        free=problem.free,
+        shifts=problem.shifts,
+        scale=problem.units(best),
+        at_bound=(best - problem.lower < AT_BOUND) | at_upper,
+        residual=residual,
+        jacobian=jacobian,
+    )
 
 
 def model_without(
     solution: Solution,
-    free: tuple[str, ...],
     prepared: Prepared,
     known: Sequence[Stretch],
     rows: NDArray[np.bool_],
@@ -211,22 +205,22 @@ def model_without(
 
     known: the stretches with these rows;  rows: which of the solution's rows these are
     """
-    left, start, lower, upper = search_problem(solution.model, free, prepared, known, effort)
-    if any(s.shared is not None for s in known) or not len(start):
-        return solve(solution.model, free, prepared, known, effort).model
-    columns = np.hstack([solution.jacobian, solution.by_shift])[rows]
-    r, j = left.add_prior(start, solution.residual[rows], columns)
-    x = np.clip(start, lower, upper)
+    problem = search_problem(solution.model, prepared, effort, known)
+    lower, upper = problem.lower, problem.upper
+    if any(s.shared is not None for s in known) or not len(lower):
+        return solve(solution.model, prepared, effort, known).model
+    r, j = problem.add_prior(problem.start, solution.residual[rows], solution.jacobian[rows])
+    x = np.clip(problem.start, lower, upper)
     step = gauss_newton_step(j, r, lower - x, upper - x)
     if not np.isfinite(step).all():
         return solution.model
     there = np.clip(x + step, lower, upper)
     promised = sum_of_squares(r + j @ (there - x))
-    reached = sum_of_squares(left.residual_with_prior(there))
-    near = left.model_at(there) if reached < sum_of_squares(r) else solution.model
+    reached = sum_of_squares(problem.residual_with_prior(there))
+    near = problem.model_at(there) if reached < sum_of_squares(r) else solution.model
     if reached <= (1.0 + effort.tolerance) * promised:
         return near
-    return solve(near, free, prepared, known, effort).model
+    return solve(near, prepared, effort, known).model
 
 
 def settle_links(model: Model, stretches: Sequence[Stretch]) -> Model:

@@ -13,10 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..diagnose.fit import block_numbers, free_parameters
+from ..diagnose.fit import block_numbers
 from ..diagnose.folds import folds
 from ..diagnose.record_offsets import as_logged
 from ..diagnose.residual import residuals
+from ..diagnose.solve import free_parameters
 from ..effects import Effect, Parameter
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch, measured_force

@@ -15,9 +15,10 @@ from teleopdesign.diagnose.candidates import (
     candidates,
     make_starts,
 )
-from teleopdesign.diagnose.fit import estimate, free_parameters
+from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.rank import rank_candidates
+from teleopdesign.diagnose.solve import free_parameters
 from teleopdesign.effects import CONTACT_ROLES, EFFECTS, catalogue
 from teleopdesign.measurement.bandwidth import scales
 from teleopdesign.measurement.prepare import prepare

@@ -12,7 +12,8 @@ from ...base.sentences import unit_on_page as unit_text
 from ...base.sentences import with_error_on_page as with_error
 from ...diagnose.criteria import CRITERIA
 from ...diagnose.diagnosis import Diagnosis
-from ...diagnose.fit import Fit, free_parameters
+from ...diagnose.fit import Fit
+from ...diagnose.solve import free_parameters
 from ...diagnose.statements import LadderRow
 from ...effects import CONTACT_ROLES
 
