@@ -19,7 +19,7 @@ from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..model import Model
-from .linked_course import ArmLinks, LedArm, courses, led_arm
+from .linked_course import ArmLinks, courses, led_arm
 from .other_motion import follows_another
 from .parts import PreparedParts, remove_links
 from .record_offsets import apply_record_offsets
@@ -115,14 +115,9 @@ def _drive_arm(
         motions,
         bristles=[_bristle(motion) for motion in motions],
         answers=np.array([gains[joint] for joint in models]),
+        first=ends[0],
     )
-    return Driven(tuple(models), motions, *ends, partial(_courses_of_arm, led))
-
-
-def _courses_of_arm(led: LedArm, spans: Sequence[slice]) -> list[Array]:
-    begins, ends = np.array([(span.start, span.stop) for span in spans]).T
-    both = np.array(courses(led, begins, ends - 1 - begins))
-    return [both[:, :, i, :rows] for i, rows in enumerate((ends - begins).tolist())]
+    return Driven(tuple(models), motions, *ends, partial(courses, led))
 
 
 def _without_coupling(body: Body) -> tuple[Body, float]:

@@ -17,9 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arms.regressor import columns_with_motors
-from ..blocks import Body, matrix_impedance
-from ..controllers import controller
-from ..diagrams import Block, Control, Diagram, Junction, Linked, Moving
+from ..blocks import Body
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..realise.bristle import with_bristle
@@ -28,9 +26,14 @@ from ..realise.program import Program
 from ..realise.simulated import without_absent
 from ..realise.steps import FASTEST
 from ..realise.tips import tip
-from ..simulate import Sampling, Setup, prepare
+from ..simulate import Sampling, prepare
 from .parts import PreparedParts
-from .simulated_course import MOST_STEPS, dead_times
+from .simulated_course import MOST_STEPS, dead_times, wire_led_bodies
+
+#: least number of inner steps in a row; fast oscillations need more
+LEAST_STEPS = 5
+#: speed over the fastest recorded one beyond which a course ends: it grows without bound
+BEYOND = 1e3
 
 
 @dataclass(frozen=True)
@@ -67,97 +70,21 @@ class ArmLinks:
 
 @dataclass(frozen=True, eq=False)
 class LedArm:
-    """The bodies of an arm along one stretch of a record, ready to simulate.
+    """The k bodies of an arm along one stretch of a record, in one compiled loop.
 
-    motions: of the joints, at the same rows
-    answers: (k, 2) stiffness and damping of the joints' controllers
-    late: (k,) s, dead time of each joint's actuator;  wholes: (k,) inertias of the bodies
-    least_steps: least number of inner steps in a row; fast oscillations need more
-    beyond: speed over the fastest recorded one beyond which a course ends
-    """
-
-    links: ArmLinks
-    motions: tuple[Motion, ...]
-    setup: Setup
-    answers: Array
-    late: Array
-    wholes: Array
-    least_steps: int = 5
-    beyond: float = 1e3
-
-    @property
-    def count(self) -> int:
-        """Number of joints."""
-        return len(self.motions)
-
-
-def led_arm(
-    links: ArmLinks,
-    bodies: Sequence[Body],
-    motions: Sequence[Motion],
-    *,
-    bristles: Sequence[float],
-    answers: Array,
-) -> LedArm:
-    """Wire the joints' bodies.
-
-    bristles: length of the bristle of ideal friction at each joint (m or rad)
-    answers: (k, 2) stiffness and damping of the controller that holds each joint on its recorded
-        motion
-    This controller acts in continuous time, because a robot's loop is faster than its log. A dead
-    time of an actuator delays the recorded command, but not the response of this controller.
-    """
-    late = [sum(body.parameters[n].value for n in dead_times(body)) for body in bodies]
-    present = [
-        with_bristle(without_absent(body.with_values(dict.fromkeys(dead_times(body), 0.0))), length)
-        for body, length in zip(bodies, bristles, strict=True)
-    ]
-    zeros = {"F_led": lambda t: 0.0 * t, "F": lambda t: 0.0 * t}
-    k, row = len(bodies), motions[0].sample_time
-    setup = prepare(
-        _wire_led_arm(present, answers),
-        duration=row,
-        inputs={f"{name}{j + 1}": zero for name, zero in zeros.items() for j in range(k)},
-        computer=Sampling(period=row),
-        step=row,
-    )
-    wholes = np.array([body.parameters["inertia"].value for body in bodies])
-    return LedArm(links, tuple(motions), setup, answers, np.array(late), wholes)
-
-
-def _wire_led_arm(bodies: Sequence[Body], answers: Array) -> Diagram:
-    """The bodies on X1, X2 ... with U = F_led - (stiffness + damping s) X, joined by the links."""
-    k = len(bodies)
-    blocks: list[Block] = []
-    for j, (body, (stiffness, damping)) in enumerate(zip(bodies, answers.tolist(), strict=True), 1):
-        holds = controller("spring_damper", {"stiffness": stiffness, "damping": damping})
-        loads = {f"F{j}": 1, f"F_L{j}": 1}
-        blocks += [
-            Moving(f"Z{j}", body, f"X{j}", f"U{j}", loads, f"F{j}"),
-            Control(f"led{j}", holds, f"X{j}", f"F_X{j}", f"X{j}", analog=True),
-        ]
-    names = [f"X{j + 1}" for j in range(k)]
-    # all entries, also those that are zero at one pose: the values change from row to row
-    links = matrix_impedance(mass=np.ones((k, k)))
-    blocks.append(Linked("Z_L", links, tuple(names), tuple(f"F_L{j + 1}" for j in range(k))))
-    sums = [Junction(f"U{j + 1}", {f"F_led{j + 1}": 1, f"F_X{j + 1}": -1}) for j in range(k)]
-    outside = {f"{name}{j + 1}": "force" for name in ("F_led", "F") for j in range(k)}
-    return Diagram("led arm", tuple(blocks), tuple(sums), outside, tuple(names))
-
-
-@dataclass(frozen=True, eq=False)
-class _Loop:
-    """The compiled loop of an arm, and the indices of its states and parameters.
-
+    motions: of the joints, at the same rows;  wholes: (k,) inertias of the bodies
     timing: of one row of the record
     parameters: of the whole loop;  entries: (k, k) indices of the links' inertia matrix in them
-    joints: (2, k) indices of position and velocity of each joint
+    joints: (2, k) indices of position and velocity of each joint among the states
     ends: (2, k) the same of the bodies that carry the links: tips, where a structure divides a
         joint
     commands: (k, n) held from each row to the next
     followed: (k, n) force of the controllers at the measured motion;  interactions: (k, n)
     """
 
+    links: ArmLinks
+    motions: tuple[Motion, ...]
+    wholes: Array
     made: Program
     timing: Timing
     parameters: Array
@@ -169,33 +96,98 @@ class _Loop:
     interactions: Array
 
 
-def courses(
-    led: LedArm, begins: NDArray[np.intp], lengths: NDArray[np.intp]
-) -> tuple[Array, Array]:
-    """Simulated courses of one arm from several rows of its stretch, side by side.
+def led_arm(
+    links: ArmLinks,
+    bodies: Sequence[Body],
+    motions: Sequence[Motion],
+    *,
+    bristles: Sequence[float],
+    answers: Array,
+    first: int,
+) -> LedArm:
+    """Wire the joints' bodies.
 
-    begins, lengths: (m,) first row of each course, and how many rows follow; hidden states start at
-        zero
-    returns: position and velocity of each joint (k, m, rows + 1); NaN after the end of a course,
-        and after it exceeds `LedArm.beyond` or reaches a pose where the inertia matrix is not
+    bristles: length of the bristle of ideal friction at each joint (m or rad)
+    answers: (k, 2) stiffness and damping of the controller that holds each joint on its recorded
+        motion;  first: row at whose pose the fastest oscillation is sought
+    This controller acts in continuous time, because a robot's loop is faster than its log. A dead
+    time of an actuator delays the recorded command, but not the response of this controller.
+    """
+    present = [
+        with_bristle(without_absent(body.with_values(dict.fromkeys(dead_times(body), 0.0))), length)
+        for body, length in zip(bodies, bristles, strict=True)
+    ]
+    k, row = len(bodies), motions[0].sample_time
+    setup = prepare(
+        wire_led_bodies(present, answers, are_linked=True),
+        duration=row,
+        inputs={f"{name}{j + 1}": lambda t: 0.0 * t for name in ("F_led", "F") for j in range(k)},
+        computer=Sampling(period=row),
+        step=row,
+    )
+    made, values, layout = setup.program, dict(setup.diagram.values), setup.program.layout
+    pose = np.array([[m.position[first]] for m in motions])
+    inertia, _ = links.needed(pose, np.zeros_like(pose))
+    names = [[f"Z_L.mass_{i}_{j}" for j in range(1, k + 1)] for i in range(1, k + 1)]
+    values |= dict(zip(np.ravel(names).tolist(), np.ravel(inertia).tolist(), strict=True))
+    # the fastest oscillation at the first pose determines the number of steps in a row
+    rate, _ = fastest_rate(made, values)
+    steps = int(np.ceil(rate * row / FASTEST))
+    commands, followed = [], []
+    for body, motion, (stiffness, damping) in zip(bodies, motions, answers, strict=True):
+        late = sum(body.parameters[n].value for n in dead_times(body))
+        then = motion.time + motion.command_late - late
+        commands.append(np.interp(then, motion.time, motion.command))
+        followed.append(stiffness * motion.position + damping * motion.velocity)
+    x = [f"X{j + 1}" for j in range(k)]
+    tips = [tip(name) if tip(name) in layout.states else name for name in x]
+    joints, ends = (
+        np.array([[layout.states.index(n + end) for n in each] for end in ("", "_velocity")])
+        for each in (x, tips)
+    )
+    return LedArm(
+        links=links,
+        motions=tuple(motions),
+        wholes=np.array([body.parameters["inertia"].value for body in bodies]),
+        made=made,
+        timing=setup.timing(min(max(steps, LEAST_STEPS), MOST_STEPS)),
+        parameters=np.array([values[p] for p in layout.parameters]),
+        entries=np.array([[layout.parameters.index(n) for n in each] for each in names]),
+        joints=joints,
+        ends=ends,
+        commands=np.array(commands),
+        followed=np.array(followed),
+        interactions=np.array([m.interaction for m in motions]),
+    )
+
+
+def courses(led: LedArm, spans: Sequence[slice]) -> list[Array]:
+    """Simulated position and velocity (2, k, rows) of one arm over several spans of rows.
+
+    Each begins on the measured motion, with hidden states at zero. All are simulated side by side.
+    returns: NaN after a course exceeds `BEYOND` or reaches a pose where the inertia matrix is not
         positive
     """
-    loop = _loop_of(led, int(begins[0]))
-    k, m, rows = led.count, len(begins), int(lengths.max())
-    state = _first_states(led, loop, begins)
-    x, v = np.full((2, k, m, rows + 1), np.nan)
+    begins, stops = np.array([(span.start, span.stop) for span in spans]).T
+    lengths = stops - 1 - begins
+    k, m, rows = len(led.motions), len(begins), int(lengths.max())
+    state = np.zeros((m, len(led.made.layout.states)))
+    for j, motion in enumerate(led.motions):
+        for at in (led.joints, led.ends):
+            state[:, at[0, j]] = motion.position[begins]
+            state[:, at[1, j]] = motion.velocity[begins]
+    x, v = both = np.full((2, k, m, rows + 1), np.nan)
     here, last = np.arange(m), np.zeros((k, m))
-    before = state[:, loop.ends[1]].T.copy()
+    before = state[:, led.ends[1]].T.copy()
     row = led.motions[0].sample_time
-    # a course with a speed so far beyond the recorded speeds grows without bound
-    most = led.beyond * np.array([np.abs(m.velocity).max() for m in led.motions])
+    most = BEYOND * np.array([np.abs(m.velocity).max() for m in led.motions])
     for r in range(rows + 1):
-        here = here[(np.abs(state[here][:, loop.ends[1]]) <= most).all(axis=1)]
-        x[:, here, r], v[:, here, r] = (state[here][:, at].T for at in loop.joints)
+        here = here[(np.abs(state[here][:, led.ends[1]]) <= most).all(axis=1)]
+        x[:, here, r], v[:, here, r] = (state[here][:, at].T for at in led.joints)
         here = here[r < lengths[here]]
         if len(here) == 0:
             break
-        place, speed = (state[here][:, at].T for at in loop.ends)
+        place, speed = (state[here][:, at].T for at in led.ends)
         if r > 0:
             last[:, here] = (speed - before[:, here]) / row
         before[:, here] = speed
@@ -204,56 +196,8 @@ def courses(
         is_whole = _are_positive(inertia + np.diag(led.wholes))
         here, inertia, force = here[is_whole], inertia[is_whole], force[:, is_whole]
         for i, lane in enumerate(here.tolist()):
-            _advance(loop, state[lane], int(begins[lane]) + r, inertia[i], force[:, i])
-    return x, v
-
-
-def _loop_of(led: LedArm, first: int) -> _Loop:
-    made, values = led.setup.program, dict(led.setup.diagram.values)
-    pose = np.array([[m.position[first]] for m in led.motions])
-    inertia, _ = led.links.needed(pose, np.zeros_like(pose))
-    names = [
-        [f"Z_L.mass_{i}_{j}" for j in range(1, led.count + 1)] for i in range(1, led.count + 1)
-    ]
-    values |= dict(zip(np.ravel(names).tolist(), np.ravel(inertia).tolist(), strict=True))
-    # the fastest oscillation at the first pose determines the number of steps in a row
-    rate, _ = fastest_rate(made, values)
-    steps = int(np.ceil(rate * led.motions[0].sample_time / FASTEST))
-    layout = made.layout
-    commands, followed = [], []
-    for motion, late, (stiffness, damping) in zip(led.motions, led.late, led.answers, strict=True):
-        then = motion.time + motion.command_late - late
-        commands.append(np.interp(then, motion.time, motion.command))
-        followed.append(stiffness * motion.position + damping * motion.velocity)
-    return _Loop(
-        made=made,
-        timing=led.setup.timing(min(max(steps, led.least_steps), MOST_STEPS)),
-        parameters=np.array([values[p] for p in layout.parameters]),
-        entries=np.array([[layout.parameters.index(n) for n in row] for row in names]),
-        joints=_rows_of(layout.states, led.count, tips=False),
-        ends=_rows_of(layout.states, led.count, tips=True),
-        commands=np.array(commands),
-        followed=np.array(followed),
-        interactions=np.array([m.interaction for m in led.motions]),
-    )
-
-
-def _rows_of(states: Sequence[str], count: int, *, tips: bool) -> NDArray[np.intp]:
-    """Indices of position and velocity (2, k) of each joint, or of its tip where it has one."""
-    motions = [f"X{j + 1}" for j in range(count)]
-    if tips:
-        motions = [tip(m) if tip(m) in states else m for m in motions]
-    return np.array([[states.index(f"{m}{end}") for m in motions] for end in ("", "_velocity")])
-
-
-def _first_states(led: LedArm, loop: _Loop, begins: NDArray[np.intp]) -> Array:
-    """States (m, states): on the measured motion, all hidden states zero."""
-    state = np.zeros((len(begins), len(loop.made.layout.states)))
-    for j, motion in enumerate(led.motions):
-        for at in (loop.joints, loop.ends):
-            state[:, at[0, j]] = motion.position[begins]
-            state[:, at[1, j]] = motion.velocity[begins]
-    return state
+            _advance(led, state[lane], int(begins[lane]) + r, inertia[i], force[:, i])
+    return [both[:, :, i, : n + 1] for i, n in enumerate(lengths.tolist())]
 
 
 def _are_positive(matrices: Array) -> NDArray[np.bool_]:
@@ -263,21 +207,21 @@ def _are_positive(matrices: Array) -> NDArray[np.bool_]:
     return np.asarray(np.linalg.eigvalsh(0.5 * (size + np.swapaxes(size, 1, 2)))[:, 0] > 0.0)
 
 
-def _advance(loop: _Loop, state: Array, row: int, inertia: Array, force: Array) -> None:
+def _advance(led: LedArm, state: Array, row: int, inertia: Array, force: Array) -> None:
     """Advance a state (states,) by one row, in place.
 
     inertia: (k, k) of the links beyond the bodies';  force: (k,) of the links; both constant over
         the row
     """
-    made, timing, layout = loop.made, loop.timing, loop.made.layout
-    parameters = loop.parameters.copy()
-    parameters[loop.entries] = inertia
+    made, timing = led.made, led.timing
+    parameters = led.parameters.copy()
+    parameters[led.entries] = inertia
     part = np.linspace(0.0, 1.0, 2 * timing.inner + 1)
     interaction, followed = (
         x[:, row, None] + part * (x[:, row + 1, None] - x[:, row, None])
-        for x in (loop.interactions, loop.followed)
+        for x in (led.interactions, led.followed)
     )
-    signals = {"F": interaction - force[:, None], "F_led": loop.commands[:, row, None] + followed}
+    signals = {"F": interaction - force[:, None], "F_led": led.commands[:, row, None] + followed}
     memory = first_memory(made, 1, parameters, {})
     memory[: len(state)] = state
     nowhere, nothing = np.zeros(0, dtype=np.int64), np.zeros(0)
@@ -285,7 +229,7 @@ def _advance(loop: _Loop, state: Array, row: int, inertia: Array, force: Array) 
         made.loop.run(
             *grid(made, timing, 1),
             False,
-            _arrange_signals(layout.inputs, signals),
+            _arrange_signals(made.layout.inputs, signals),
             np.zeros((0, timing.samples + 1)),
             memory,
             nowhere,

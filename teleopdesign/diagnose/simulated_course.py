@@ -8,13 +8,14 @@ did.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..blocks import Body
+from ..blocks import Body, matrix_impedance
 from ..controllers import controller
-from ..diagrams import Control, Diagram, Junction, Moving
+from ..diagrams import Block, Control, Diagram, Junction, Linked, Moving
 from ..effects import delayed
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
@@ -22,6 +23,7 @@ from ..realise.bristle import with_bristle, with_least_level
 from ..realise.kernel import fastest_rate
 from ..realise.simulated import without_absent
 from ..realise.steps import FASTEST
+from ..realise.tips import tip
 from ..simulate import Sampling, prepare
 
 #: natural frequency of the spring that leads the model along the measurement, over the bandwidth of
@@ -56,7 +58,7 @@ class Course:
 
 @dataclass(frozen=True)
 class LedBody:
-    """A body on X with its command U = F_led - (stiffness + damping s) X, ready to simulate.
+    """A body on X1 with its command U1 = F_led1 - (stiffness + damping s) X1, ready to simulate.
 
     stiffness, damping: of the spring and damper that lead the body (SI);  has_tip: as its structure
     bristle: length (m or rad) of the bristle of ideal friction, of the body and of its tip
@@ -107,7 +109,7 @@ def led_body(
     body = with_least_level(without_absent(body))
     body = with_bristle(body, bristle, damping_ratio=damping_ratio)
     has_tip = any(e.role == "structure" for e in body.effects)
-    diagram = _wire_led_body(body, stiffness, damping)
+    diagram = wire_led_bodies([body], np.array([[stiffness, damping]]), are_linked=False)
     return LedBody(diagram, stiffness, damping, has_tip, bristle)
 
 
@@ -124,15 +126,15 @@ def course_of(led: LedBody, motion: Motion, rows: slice = slice(None)) -> Course
     position, velocity = motion.position[rows], motion.velocity[rows]
     force = command[rows] + led.stiffness * position + led.damping * velocity
     interaction = motion.interaction[rows]
-    start = {"X": float(position[0]), "X_velocity": float(velocity[0])}
+    start = {"X1": float(position[0]), "X1_velocity": float(velocity[0])}
     if led.has_tip:
-        start |= {"X_tip": start["X"], "X_tip_velocity": start["X_velocity"]}
+        start |= {tip("X1"): start["X1"], tip("X1") + "_velocity": start["X1_velocity"]}
     prepared = prepare(
         led.diagram,
         duration=float(time[-1]),
         inputs={
-            "F_led": lambda t: np.interp(t, time, force),
-            "F": lambda t: np.interp(t, time, interaction),
+            "F_led1": lambda t: np.interp(t, time, force),
+            "F1": lambda t: np.interp(t, time, interaction),
         },
         initial=start,
         computer=Sampling(period=motion.sample_time),
@@ -145,22 +147,32 @@ def course_of(led: LedBody, motion: Motion, rows: slice = slice(None)) -> Course
     kept, _ = prepared.run(prepared.timing(STEPS * min(max(finer, 1), MOST_STEPS // STEPS)))
     columns = list(prepared.program.layout.columns)
     n = len(time)
-    return Course(*(kept[:n, columns.index(name)] for name in ("X", "X_velocity", "U")))
+    return Course(*(kept[:n, columns.index(name)] for name in ("X1", "X1_velocity", "U1")))
 
 
-def _wire_led_body(body: Body, stiffness: float, damping: float) -> Diagram:
-    """The body on X with its command U = F_led - (stiffness + damping s) X."""
-    leads = controller("spring_damper", {"stiffness": stiffness, "damping": damping})
-    return Diagram(
-        "led body",
-        (
-            Moving("Z", body, "X", "U", {"F": 1}, "F"),
-            Control("led", leads, "X", "F_X", "X"),
-        ),
-        (Junction("U", {"F_led": 1, "F_X": -1}),),
-        {"F_led": "force", "F": "force"},
-        ("X",),
-    )
+def wire_led_bodies(bodies: Sequence[Body], answers: Array, *, are_linked: bool) -> Diagram:
+    """The bodies on X1, X2 ... with U = F_led - (stiffness + damping s) X.
+
+    answers: (k, 2) stiffness and damping of what leads each
+    are_linked: whether the links of an arm join them, and what leads them acts in continuous time
+    """
+    blocks: list[Block] = []
+    for j, (body, (stiffness, damping)) in enumerate(zip(bodies, answers.tolist(), strict=True), 1):
+        leads = controller("spring_damper", {"stiffness": stiffness, "damping": damping})
+        loads = {f"F{j}": 1} | ({f"F_L{j}": 1} if are_linked else {})
+        blocks += [
+            Moving(f"Z{j}", body, f"X{j}", f"U{j}", loads, f"F{j}"),
+            Control(f"led{j}", leads, f"X{j}", f"F_X{j}", f"X{j}", analog=are_linked),
+        ]
+    numbers = range(1, len(bodies) + 1)
+    names = tuple(f"X{j}" for j in numbers)
+    if are_linked:
+        # all entries, also those that are zero at one pose: the values change from row to row
+        links = matrix_impedance(mass=np.ones((len(bodies), len(bodies))))
+        blocks.append(Linked("Z_L", links, names, tuple(f"F_L{j}" for j in numbers)))
+    sums = tuple(Junction(f"U{j}", {f"F_led{j}": 1, f"F_X{j}": -1}) for j in numbers)
+    outside = {f"{name}{j}": "force" for name in ("F_led", "F") for j in numbers}
+    return Diagram("led bodies", tuple(blocks), sums, outside, names)
 
 
 def dead_times(body: Body) -> tuple[str, ...]:
