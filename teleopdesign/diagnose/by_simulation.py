@@ -24,8 +24,7 @@ import numpy as np
 from ..base.errors import ModelError, did_you_mean, quote
 from ..base.files import make_plain
 from ..base.frozen import ByValue
-from ..base.sentences import percent
-from ..base.shown import figure_of, html_table
+from ..base.shown import Shown, figure_of
 from ..base.units import unit_of
 from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
@@ -50,7 +49,7 @@ DRAWN = (1.0, float("inf"))
 
 
 @dataclass(frozen=True, eq=False)
-class SimulationComparison(ByValue):
+class SimulationComparison(Shown, ByValue):
     """A model compared with an experiment by simulation, without estimation.
 
     fit_error, check_error: relative force errors, for comparison (NaN where there is no such
@@ -89,40 +88,6 @@ class SimulationComparison(ByValue):
         """A title in words: whether a loop held the model."""
         how = "freely" if self.loop is None else "in its loop"
         return f"Simulation, driven {how} by the recorded command"
-
-    def _rows(self) -> list[tuple[str, ...]]:
-        rows: list[tuple[str, ...]] = []
-        for e in self.errors:
-            axis = self.model.body(e.at).axis
-            rows.append(
-                (
-                    e.use,
-                    e.at,
-                    "whole record" if np.isinf(e.horizon) else f"{e.horizon:g} s",
-                    f"{e.position:.3g} {unit_of('position', axis)}",
-                    percent(e.of_travel, ".3g"),
-                    f"{e.velocity:.3g} {unit_of('velocity', axis)}",
-                    percent(e.of_speed, ".3g"),
-                )
-            )
-        return rows
-
-    def _repr_html_(self) -> str:
-        head = ("records", "at", "horizon", "position", "of travel", "velocity", "of speed")
-        return html_table(self.title, head, self._rows(), note=self._forces())
-
-    def _forces(self) -> str:
-        shown = [("fit", self.fit_error), ("check", self.check_error)]
-        return "force error: " + ", ".join(f"{n} {100 * e:.2f} %" for n, e in shown if e == e)
-
-    def __repr__(self) -> str:
-        lines = [self.title, f"  {'':<22}{'horizon':>13}{'position rms':>24}{'velocity rms':>26}"]
-        for use, at, horizon, position, of_travel, velocity, of_speed in self._rows():
-            lines.append(
-                f"  {f'{use}, {at}':<22}{horizon:>13}{f'{position} ({of_travel})':>24}"
-                f"{f'{velocity} ({of_speed})':>26}"
-            )
-        return "\n".join([*lines, f"  {self._forces()}"])
 
 
 def compare_by_simulation(

@@ -12,7 +12,7 @@ import numpy as np
 from ..base.errors import ExperimentError, ModelError
 from ..base.files import write_netcdf
 from ..base.frozen import ByValue
-from ..base.shown import figure_of, html_table
+from ..base.shown import Shown, figure_of
 from ..base.units import unit_of
 from ..frequency import FrequencyResponse, recorded_response
 from ..measurement.experiment import Experiment
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison(ByValue):
+class Comparison(Shown, ByValue):
     """A model compared with an experiment, without estimation.
 
     fit_error, check_error: relative force errors (NaN where there is no such record)
@@ -78,27 +78,6 @@ class Comparison(ByValue):
     def to_netcdf(self, path: str | Path) -> None:
         """Write the data with units to a NetCDF file."""
         write_netcdf(path, self.data)
-
-    def _repr_html_(self) -> str:
-        rows = [("fit error", self.fit_error), ("check error", self.check_error)]
-        rows += [("noise floor", self.floor.value)]
-        shown = [(name, f"{100 * error:.2f} %") for name, error in rows if error == error]
-        title = self._title
-        return html_table(title, ("", "relative force error"), shown, note=self.floor.source)
-
-    @property
-    def _title(self) -> str:
-        if self.prepared.is_curve:
-            return "Comparison on a friction curve"
-        return f"Comparison below {self.prepared.bandwidth:.3g} Hz"
-
-    def __repr__(self) -> str:
-        lines = [self._title]
-        for use, error in (("fit", self.fit_error), ("check", self.check_error)):
-            if error == error:
-                lines.append(f"  {use + ' error':<12} {100 * error:.2f} %")
-        lines.append(f"  {'noise floor':<12} {100 * self.floor.value:.2f} %  ({self.floor.source})")
-        return "\n".join(lines)
 
 
 @overload

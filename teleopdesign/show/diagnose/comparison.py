@@ -1,9 +1,14 @@
-"""A comparison along the measured motion: forces, and where the residual is; before and after."""
+"""Comparisons along the measured motion and by simulation: errors in words, and figures."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from ...base.sentences import percent
+from ...base.shown import html_table
+from ...base.units import unit_of
 from ...diagnose.by_simulation import SimulationComparison
 from ...diagnose.comparison import Comparison
 from ...diagnose.covariance import ResidualCorrelations, residual_correlations
@@ -25,6 +30,77 @@ from ..report.motion import simulated_motions
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+def _errors(comparison: Comparison) -> list[tuple[str, str]]:
+    """Error of each use that has records, and the noise floor, in %."""
+    rows = [("fit error", comparison.fit_error), ("check error", comparison.check_error)]
+    rows += [("noise floor", comparison.floor.value)]
+    return [(name, f"{100 * error:.2f} %") for name, error in rows if error == error]
+
+
+def _title(comparison: Comparison) -> str:
+    if comparison.prepared.is_curve:
+        return "Comparison on a friction curve"
+    return f"Comparison below {comparison.prepared.bandwidth:.3g} Hz"
+
+
+@shows("table")
+def comparison_table(comparison: Comparison) -> str:
+    """The errors, and below them where the noise floor comes from."""
+    head, source = ("", "relative force error"), comparison.floor.source
+    return html_table(_title(comparison), head, _errors(comparison), note=source)
+
+
+@shows("text")
+def comparison_text(comparison: Comparison) -> str:
+    """A line for each error."""
+    lines = [f"  {name:<12} {error}" for name, error in _errors(comparison)]
+    return "\n".join([_title(comparison), *lines]) + f"  ({comparison.floor.source})"
+
+
+def _horizon_rows(comparison: SimulationComparison) -> list[tuple[str, ...]]:
+    """Use, body and horizon; then deviation of position and velocity, absolute and in %."""
+    rows: list[tuple[str, ...]] = []
+    for e in comparison.errors:
+        axis = comparison.model.body(e.at).axis
+        rows.append(
+            (
+                e.use,
+                e.at,
+                "whole record" if np.isinf(e.horizon) else f"{e.horizon:g} s",
+                f"{e.position:.3g} {unit_of('position', axis)}",
+                percent(e.of_travel, ".3g"),
+                f"{e.velocity:.3g} {unit_of('velocity', axis)}",
+                percent(e.of_speed, ".3g"),
+            )
+        )
+    return rows
+
+
+def _forces(comparison: SimulationComparison) -> str:
+    shown = [("fit", comparison.fit_error), ("check", comparison.check_error)]
+    return "force error: " + ", ".join(f"{n} {100 * e:.2f} %" for n, e in shown if e == e)
+
+
+@shows("table")
+def simulation_table(comparison: SimulationComparison) -> str:
+    """A row for each horizon, with the force errors below."""
+    head = ("records", "at", "horizon", "position", "of travel", "velocity", "of speed")
+    rows = _horizon_rows(comparison)
+    return html_table(comparison.title, head, rows, note=_forces(comparison))
+
+
+@shows("text")
+def simulation_text(comparison: SimulationComparison) -> str:
+    """A line for each horizon, and the force errors."""
+    lines = [comparison.title, f"  {'':<22}{'horizon':>13}{'position rms':>24}{'velocity rms':>26}"]
+    for use, at, horizon, position, of_travel, velocity, of_speed in _horizon_rows(comparison):
+        lines.append(
+            f"  {f'{use}, {at}':<22}{horizon:>13}{f'{position} ({of_travel})':>24}"
+            f"{f'{velocity} ({of_speed})':>26}"
+        )
+    return "\n".join([*lines, f"  {_forces(comparison)}"])
 
 
 @shows("figure")
