@@ -1,4 +1,4 @@
-"""Adequacy: whether the remaining error is noise; and the verdict, by what the effects explain.
+"""Adequacy: whether the remaining error is noise; and what effects explain, against what is left.
 
 The error is compared with the noise floor. A hum may hold all the rest.
 Every threshold is a field of `Criteria`.
@@ -13,7 +13,6 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from .candidates import Candidate
 from .criteria import CRITERIA
 from .evidence import check_squares
 from .fit import Fit
@@ -102,17 +101,6 @@ def records_differ(errors: Errors) -> bool:
 VerdictName = Literal["effects_missing", "model_adequate", "undecided"]
 
 
-class Step(Protocol):
-    """A step of a ladder: the added effect, its look-alikes on the records, and the errors."""
-
-    @property
-    def added(self) -> Candidate | None: ...
-    @property
-    def alternatives(self) -> Collection[object]: ...
-    @property
-    def errors(self) -> Errors: ...
-
-
 def explained_share(before: Errors, after: Errors, floor: NoiseFloor) -> float:
     """G / (G + L), 0 to 1: what the effects added between two fits explain, against what is left.
 
@@ -133,12 +121,3 @@ def removed_share(errors: Sequence[float], floor: float) -> float:
     gain = min(before**2 - after**2, 1.0 - after**2)
     left = max(after**2 - floor**2, 0.0)  # NaN where all is blind: nothing is explained
     return gain / (gain + left) if gain > 0.0 and np.isfinite(left) else 0.0
-
-
-def verdict(rungs: Sequence[Step], floor: NoiseFloor) -> VerdictName:
-    """The verdict by the rungs alone, whatever the probabilities of their effects."""
-    added = [r for r in rungs if r.added is not None]
-    if not added:
-        adequate = is_adequate(rungs[-1].errors, floor)
-        return "model_adequate" if adequate else "undecided"
-    return "undecided" if all(r.alternatives for r in added) else "effects_missing"

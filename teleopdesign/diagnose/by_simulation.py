@@ -30,9 +30,8 @@ from ..measurement.experiment import Experiment
 from ..measurement.filtering import Array
 from ..model import Model
 from .cores import map_in_threads
-from .driven import Driven, driven_stretches
+from .driven import Driven, RecordedLoop, driven_stretches
 from .error import force_error
-from .horizon_errors import HorizonError, RecordedLoop
 from .model_data import model_of_body
 from .parts import PreparedParts, prepare_parts, remove_links, with_bodies_of
 from .parts_fit import error_over_joints
@@ -46,6 +45,29 @@ if TYPE_CHECKING:
 HORIZONS = (0.1, 0.3, 1.0, 3.0, 10.0)
 #: horizons whose courses are kept, to be drawn
 DRAWN = (1.0, float("inf"))
+
+
+@dataclass(frozen=True)
+class HorizonError:
+    """Errors of one body that restarts on the measured motion after each horizon.
+
+    horizon: s; inf: each whole stretch of a record
+    position, velocity: rms difference from the measured motion (SI); inf: the motion is not finite
+    of_travel, of_speed: the same over the standard deviation of the position, the rms velocity
+    """
+
+    use: str
+    at: str
+    horizon: float
+    position: float
+    velocity: float
+    of_travel: float
+    of_speed: float
+
+    @property
+    def fit(self) -> float:
+        """Fit of the position in %: 100 for the measured motion, 0 for its mean (NRMSE)."""
+        return 100.0 * (1.0 - self.of_travel)
 
 
 @dataclass(frozen=True, eq=False)

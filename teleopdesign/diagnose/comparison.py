@@ -22,8 +22,8 @@ from ..realise.along_motion import residual_along
 from .by_simulation import SimulationComparison, compare_by_simulation
 from .candidates import restrict_to_curve
 from .covariance import covariance_in_blocks
+from .driven import RecordedLoop
 from .error import force_error
-from .horizon_errors import RecordedLoop
 from .noise_floor import NoiseFloor, noise_floor
 from .record_offsets import as_logged
 

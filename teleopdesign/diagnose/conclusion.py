@@ -16,7 +16,7 @@ from ..check import why_silent
 from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .adequacy import records_differ, verdict
+from .adequacy import VerdictName, is_adequate, records_differ
 from .candidates import Candidate
 from .decision import select_other_helpers
 from .error import force_error, refer_to_command
@@ -24,10 +24,10 @@ from .estimates import correct_fit
 from .fit import Fit, estimate
 from .free_functions import Belief, belief
 from .identifiability import doubt, explains_most
-from .ladder_end import LadderEnd
-from .ladder_state import LadderSearch, LadderState
+from .ladder_state import LadderEnd, LadderSearch, LadderState
 from .learnable import error_near_reversals, learnable
 from .no_named_law import free_form
+from .noise_floor import NoiseFloor
 from .plausibility import implausible_effects
 from .probability import probable
 from .repeats import repeatability
@@ -90,6 +90,15 @@ def conclude(
     if end.verdict == "effects_missing" and not named:
         return replace(end, verdict="undecided")
     return replace(end, named=named)
+
+
+def verdict(rungs: Sequence[Rung], floor: NoiseFloor) -> VerdictName:
+    """The verdict by the rungs alone, whatever the probabilities of their effects."""
+    added = [r for r in rungs if r.added is not None]
+    if not added:
+        adequate = is_adequate(rungs[-1].fit, floor)
+        return "model_adequate" if adequate else "undecided"
+    return "undecided" if all(r.alternatives for r in added) else "effects_missing"
 
 
 def _beliefs(rungs: Sequence[Rung], prepared: Prepared) -> dict[tuple[str, str], Belief]:

@@ -20,7 +20,7 @@ from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared
 from ..model import Model
 from ..realise.friction_cells import FrictionCell
-from .adequacy import VerdictName, floors_left, is_adequate, verdict
+from .adequacy import VerdictName, floors_left, is_adequate
 from .candidates import Candidate
 from .covariance import covariance_in_blocks
 from .criteria import CRITERIA
@@ -209,8 +209,8 @@ class Diagnosis(Shown, ByValue):
     @property
     def unlikely(self) -> bool:
         """Whether the verdict is undecided only because no effect is probable enough."""
-        of_rungs = verdict(self.rungs, self.floor)
-        return self.verdict == "undecided" and of_rungs == "effects_missing"
+        alone = any(r.added is not None and not r.alternatives for r in self.rungs)
+        return self.verdict == "undecided" and alone
 
     @property
     def groups(self) -> tuple[tuple[Candidate, ...], ...]:

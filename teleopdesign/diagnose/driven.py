@@ -13,6 +13,7 @@ import numpy as np
 import sympy as sp
 
 from ..arms import base_parameters
+from ..base.arguments import check_types
 from ..base.errors import ModelError
 from ..blocks import Body
 from ..effects import SIGNALS
@@ -28,6 +29,25 @@ from .simulated_course import LedBody, course_of, led_body, with_whole_dead_time
 #: deflection of ideal friction before it slides, as a part of the travel: far below any error of a
 #: free motion. A smaller part needs shorter steps
 BRISTLE_SHARE = 2e-5
+
+
+@check_types
+@dataclass(frozen=True)
+class RecordedLoop:
+    """The controller of the device during the recording, as a spring and a damper.
+
+    stiffness: N/m or N m/rad;  damping: N s/m or N m s/rad;  both finite and not negative
+    """
+
+    stiffness: float
+    damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (0.0 <= self.stiffness < np.inf and 0.0 <= self.damping < np.inf):
+            raise ModelError(
+                "RecordedLoop: expected stiffness and damping of zero or more, found "
+                f"{self.stiffness:g}, {self.damping:g}"
+            )
 
 
 @dataclass(frozen=True, eq=False)

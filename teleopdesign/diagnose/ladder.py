@@ -20,8 +20,7 @@ from .conclusion import conclude
 from .cores import one_thread_of_algebra
 from .diagnosis import Diagnosis
 from .fit import Fit
-from .ladder_end import LadderEnd
-from .ladder_state import LadderSearch, begin, restrict_candidates, search_for
+from .ladder_state import LadderEnd, LadderSearch, begin, restrict_candidates, search_for
 from .narrower_band import choose_band, narrower_to_search
 from .other_motion import undetermined_coupling, with_other_motions
 from .part_search import (

@@ -1,31 +1,36 @@
-"""The state of a ladder during the search, and the tools that its moves share."""
+"""The state of a ladder during the search and at its end, and the tools that its moves share."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..base.frozen import ByValue
 from ..check import why_silent
 from ..effects import depends_on_time, find_effect
 from ..measurement.experiment import Experiment
 from ..measurement.friction_curve import count_speeds
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
-from .adequacy import is_noise, limit_noise_floor
+from .adequacy import VerdictName, is_adequate, is_noise, limit_noise_floor
 from .candidates import Candidate, restrict_to_curve
 from .clock import with_late_hand, with_late_starts, with_paying_shift
 from .decision import is_supported, worth_pursuing
 from .fit import Fit
+from .free_functions import Belief
+from .learnable import Learnable, NearReversals
+from .no_named_law import FreeForm
 from .noise_floor import NoiseFloor, noise_floor
 from .outside_tone import Tone, best_tone
 from .rank import rank_candidates
 from .ranking import Ranked, Ranking
+from .repeats import Repeatability
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan, cut_to_windows
 from .stated_fit import estimate_values
-from .statements import SetAside
+from .statements import SetAside, Undetermined
 
 
 @dataclass(frozen=True)
@@ -147,6 +152,56 @@ class LadderState:
     def with_rungs(self, rungs: Collection[Rung]) -> LadderState:
         """The state with other rungs, and the results of the same `look`."""
         return replace(self, rungs=tuple(rungs))
+
+
+@dataclass(frozen=True, eq=False)
+class LadderEnd(ByValue):
+    """What a search ends with; `result.diagnosis_of` states it as a `Diagnosis`.
+
+    last: ranking after the last rung, none of which was accepted
+    estimated: the last rung's fit, parameters not yet corrected for errors of the readings
+    beliefs: accepted effect (name, place) -> what it explains beside free functions
+    named: accepted effects that are probable enough to be called missing
+    free_form: a curve without a named law that leaves less than the final model
+    silence: why the records tell no effect; "": they may tell one
+    The other fields are those of `Diagnosis`.
+    """
+
+    search: LadderSearch
+    verdict: VerdictName
+    rungs: tuple[Rung, ...]
+    last: Ranking
+    estimated: Fit
+    floor: NoiseFloor
+    learnable: Learnable | None = None
+    near_reversals: NearReversals | None = None
+    repeats: Repeatability | None = None
+    undetermined: tuple[Undetermined, ...] = ()
+    set_aside: tuple[SetAside, ...] = ()
+    on_all_records: float | None = None
+    named: tuple[Candidate, ...] = ()
+    beliefs: Mapping[tuple[str, str], Belief] = field(default_factory=dict)
+    silence: str = ""
+    free_form: FreeForm | None = None
+
+    @property
+    def before(self) -> Fit:
+        """The fit of the user's model, re-estimated."""
+        return self.rungs[0].fit
+
+    @property
+    def after(self) -> Fit:
+        """The fit of the model with every accepted effect."""
+        return self.rungs[-1].fit
+
+    def reason_set_aside(self, key: tuple[str, str]) -> str:
+        """Why an effect (name, place) was accepted and removed again; "" for all other effects."""
+        return next((one.reason for one in self.set_aside if one.candidate.key == key), "")
+
+    @property
+    def more_is_missing(self) -> bool:
+        """Whether the final model leaves more than noise."""
+        return not is_adequate(self.after, self.floor)
 
 
 def search_for(

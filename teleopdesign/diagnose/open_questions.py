@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from .criteria import CRITERIA
 from .decision import helps_but_is_barred, is_supported, lowers_check_squares, objection
-from .ladder_end import LadderEnd
+from .ladder_state import LadderEnd
 from .ranking import Ranked
 from .rung import Rung
 from .search_plan import PLAN

@@ -10,7 +10,7 @@ from ..model import Model
 from .adequacy import VerdictName
 from .answer import with_recording
 from .diagnosis import Diagnosis
-from .ladder_end import LadderEnd
+from .ladder_state import LadderEnd
 from .learnable import Learnable
 from .link_knowledge import link_errors
 from .noise_floor import NoiseFloor

@@ -22,7 +22,7 @@ from .criteria import CRITERIA
 from .decision import helps_but_is_barred
 from .evidence import chance
 from .free_functions import Belief
-from .ladder_end import LadderEnd
+from .ladder_state import LadderEnd
 from .ranking import Ranked, Ranking
 from .rung import Rung
 

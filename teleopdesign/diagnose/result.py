@@ -17,7 +17,7 @@ from .diagnosis import Diagnosis
 from .evidence import whole_score
 from .fit import Fit
 from .friction_cells import all_friction_cells
-from .ladder_end import LadderEnd
+from .ladder_state import LadderEnd
 from .open_questions import nearest, not_accepted, open_questions
 from .parts import PreparedParts
 from .probability import CandidateEvidence, evidence_of

@@ -69,11 +69,6 @@ class Rung(ByValue):
     could_be: tuple[Candidate, ...] | None = None
 
     @property
-    def errors(self) -> Fit:
-        """The errors of the model; see `adequacy.Errors`."""
-        return self.fit
-
-    @property
     def instead_of(self) -> Candidate | None:
         """The effect of the user's model that the added effect replaced."""
         return None if self.replaced is None else self.replaced.effect

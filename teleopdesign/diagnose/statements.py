@@ -93,11 +93,6 @@ class LadderRow(ByValue):
         return self.fitted
 
     @property
-    def errors(self) -> LadderRow:
-        """The errors of the model; see `adequacy.Errors`."""
-        return self
-
-    @property
     def title(self) -> str:
         """The added effect in words, with the effect that it replaced."""
         if self.added is None:

@@ -67,4 +67,4 @@ def ranked(error, effect="stribeck", **more):
 
 def rung(error, added=None, alternatives=()):
     left = fit(error)
-    return SimpleNamespace(added=added, fit=left, errors=left, alternatives=alternatives)
+    return SimpleNamespace(added=added, fit=left, alternatives=alternatives)
