@@ -11,7 +11,6 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from ..base.errors import ModelError
 from ..check import why_silent
 from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared
@@ -31,7 +30,7 @@ from .noise_floor import NoiseFloor
 from .plausibility import implausible_effects
 from .probability import probable
 from .repeats import repeatability
-from .rung import Rung, estimate_without, first_rise, reorder_and_refit, without_rise
+from .rung import Rung, estimate_without, first_rise, reorder_and_refit, undo, without_rise
 from .search_plan import EFFORTS
 from .stand_in import check_error_on_all
 from .statements import SetAside
@@ -121,7 +120,7 @@ def _without_effect_of(rung: Rung, rungs: Sequence[Rung]) -> Model | None:
     model = rungs[-1].fit.model
     later = rungs[rungs.index(rung) + 1 :]
     for gone in ([], *([other] for other in reversed(later)), [*reversed(later)]):
-        without = _undo([*gone, rung], model)
+        without = undo([*gone, rung], model)
         if without is not None:
             return without
     return None
@@ -175,21 +174,11 @@ def _find_dependent(rungs: Sequence[Rung], rung: Rung, why: str) -> tuple[Rung, 
     why: the doubt about the other rung
     """
     model = rungs[-1].fit.model
-    if _undo([rung], model) is not None:
+    if undo([rung], model) is not None:
         return None
     others = (r for r in reversed(rungs) if r.added not in (None, rung.added))
-    other = next((r for r in others if _undo([r, rung], model) is not None), None)
+    other = next((r for r in others if undo([r, rung], model) is not None), None)
     return None if other is None else (other, f"it needs {rung.added}: {why}")
-
-
-def _undo(rungs: Sequence[Rung], model: Model) -> Model | None:
-    """A model without the effects of rungs, taken one after the other; None: one is needed."""
-    try:
-        for rung in rungs:
-            model = rung.undo_addition(model)
-    except ModelError:
-        return None
-    return model
 
 
 def remove_doubtful_rung(
@@ -207,10 +196,9 @@ def remove_doubtful_rung(
         return None
     rung, why = _find_dependent(state.rungs, *doubted) or doubted
     assert rung.added is not None
-    gone = {one.candidate.key for one in state.set_aside}
     fewer = [r for r in state.rungs if r.added != rung.added]
     without = estimate_without(state.fit.model, rung, search.prepared)
-    if rung.added.key in gone or without is None:
+    if rung.added.key in state.gone or without is None:
         return None
     order = reorder_and_refit(fewer, without, search.prepared)
     if order is None:

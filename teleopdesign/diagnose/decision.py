@@ -65,12 +65,6 @@ def is_better(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
     )
 
 
-def _makes_adequate(base: Fit, other: Fit, floor: NoiseFloor) -> bool:
-    """Whether `other` is an adequate model and the base is not."""
-    adequate = is_adequate(other, floor)
-    return adequate and not is_adequate(base, floor)
-
-
 def is_supported(base: Fit, ranked: Ranked, floor: NoiseFloor) -> bool:
     """Whether a candidate is identifiable, lowers the check error enough, and no rule bars it."""
     return (
@@ -90,7 +84,8 @@ def objection(base: Fit, ranked: Ranked, floor: NoiseFloor) -> str:
     driven = sorted(set(ranked.fit.at_bound) - set(base.at_bound))
     added = [n for n in driven if n not in base.model.parameters]
     needed = [n for n in added if not ranked.fit.model.declared(n).optional]
-    if needed and not _makes_adequate(base, ranked.fit, floor):
+    makes_adequate = is_adequate(ranked.fit, floor) and not is_adequate(base, floor)
+    if needed and not makes_adequate:
         return f"fits only with {', '.join(needed)} at a bound, where it is another effect"
     return ""
 

@@ -157,23 +157,14 @@ def _with_held_shifts(solution: Solution, stretches: Sequence[Stretch]) -> Solut
     return replace(solution, jacobian=jacobian)
 
 
-def rough_fit(model: Model, prepared: Prepared) -> Fit:
-    """A fit precise enough for a ranking: estimated on few samples first, then on all of them."""
-    coarse = prepared.coarse
-    if coarse is prepared:
-        return estimate(model, prepared, effort=EFFORTS.rough)
-    there = solve(model, coarse, EFFORTS.rough)
-    return estimate(there.model, prepared, effort=EFFORTS.continued)
-
-
 def with_errors(solution: Solution, blocks: NDArray[np.intp]) -> Model:
     """The model of a solution, with standard errors of all that was estimated.
 
     A shift at its bound counts as certain: it adds nothing to the other standard errors.
     """
     shifts, model, p = solution.shifts, solution.model, len(solution.free)
-    jacobian = solution.jacobian.copy()
-    jacobian[:, p:][:, solution.at_bound[p:]] = 0.0
+    by_shift = np.where(solution.at_bound[p:], 0.0, solution.jacobian[:, p:])
+    jacobian = np.hstack([solution.jacobian[:, :p], by_shift])
     errors = standard_errors(*shifts.observed(solution.residual, jacobian, blocks))
     parameter_errors = errors[:p] * solution.scale[:p]
     values = {

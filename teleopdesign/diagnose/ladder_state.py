@@ -16,7 +16,6 @@ from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .adequacy import VerdictName, is_adequate, is_noise, limit_noise_floor
 from .candidates import Candidate, restrict_to_curve
-from .clock import with_late_hand, with_late_starts, with_paying_shift
 from .decision import is_supported, worth_pursuing
 from .fit import Fit
 from .free_functions import Belief
@@ -29,7 +28,7 @@ from .ranking import Ranked, Ranking
 from .repeats import Repeatability
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan, cut_to_windows
-from .stated_fit import estimate_values
+from .stated_fit import estimate_values, with_late_hand, with_late_starts, with_paying_shift
 from .statements import SetAside, Undetermined
 
 

@@ -7,13 +7,14 @@ can be fitted.
 
 For any other effect: the squares that one linear step by all parameters promises from each start.
 Many starts differ at one body only: the other bodies are computed once for all of them.
+
+And further starts, where a missing effect has led the model before it astray.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Hashable, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -34,7 +35,8 @@ from .least_squares import (
     span,
     sum_of_squares,
 )
-from .solve import free_parameters
+from .search_plan import PLAN
+from .solve import Solution, free_parameters, spans_decades
 
 #: columns that pass through the friction balance in one call. The number is even, because a phase
 #: takes two columns; with the residual and one more column they fill lanes of eight. With fewer,
@@ -43,32 +45,14 @@ from .solve import free_parameters
 AT_ONCE = 30
 
 
-@dataclass(frozen=True)
-class LinearStart:
-    """A start with the best strength of the new effect, and the squares left after one step.
-
-    form: the model with the effect's other parameters
-    best: full name -> value of the strength, and of the phase where there is one
-    promised: sum of squares that the linear step leaves, relative as in `Fit`
-    """
-
-    form: Model
-    best: Mapping[str, float]
-    promised: float
-
-    @property
-    def model(self) -> Model:
-        """The model with the new effect at its best strength."""
-        return self.form.with_values(self.best)
-
-
 def linear_starts(
     models: list[Model], effect: Effect, at: str, prepared: Prepared, base: Fit
-) -> list[LinearStart]:
-    """Each model with its best strength (and phase) to first order; smallest error first.
+) -> list[tuple[float, Model]]:
+    """Each model with its best strength (and phase) to first order, after the squares it promises.
 
     models: the same model with different values of the effect's other parameters
     base: the fit without the effect; its parameters and shifts of records change in the step too
+    returns: smallest squares first, which the linear step leaves, relative as in `Fit`
     raises ValueError: the law of the effect is linear in no strength
     """
     if effect.strength is None:
@@ -95,7 +79,7 @@ def linear_starts(
         for i in range(0, last - first, len(phases)):
             start = models[(first + i) // len(phases)]
             starts.append(_start(start, effect, at, left, slopes[i : i + len(phases)]))
-    return sorted(starts, key=lambda s: s.promised)
+    return sorted(starts, key=lambda start: start[0])
 
 
 def span_of(base: Fit) -> Array:
@@ -123,15 +107,17 @@ def _slopes(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
     return whole
 
 
-def _start(model: Model, effect: Effect, at: str, left: Array, slopes: Array) -> LinearStart:
-    """The start with the strength, and phase, that removes most of the residual.
+def _start(
+    model: Model, effect: Effect, at: str, left: Array, slopes: Array
+) -> tuple[float, Model]:
+    """The squares that are left with the strength, and phase, that removes most; the model so.
 
     left: (rows,) residual after the base's parameters
     slopes: (1 or 2, rows) derivatives of the residual by the strength at each phase
     """
     assert effect.strength is not None
     if not np.isfinite(slopes).all():  # no finite motion with these values
-        return LinearStart(model, {}, math.inf)
+        return math.inf, model
     size = column_sizes(slopes.T)
     size[size == 0.0] = 1.0
     # of one or two rows: their multiples whose sum is nearest to what is left
@@ -148,7 +134,7 @@ def _start(model: Model, effect: Effect, at: str, left: Array, slopes: Array) ->
     values[effect.strength] = inside
     rest = left + part * (by @ slopes)
     full = {f"{at}.{effect.name}.{n}": v for n, v in values.items()}
-    return LinearStart(model, full, float(rest @ rest))
+    return float(rest @ rest), model.with_values(full)
 
 
 class Promises:
@@ -223,3 +209,65 @@ def _remaining_squares(columns: Array, residual: Array, unit: Array) -> float:
     step = np.linalg.lstsq(rows, right, rcond=None)[0]
     # least squares: the step is at right angles to what it leaves
     return sum_of_squares(residual) - float(right @ (rows @ step))
+
+
+def starts_at_values_of_user(
+    models: Sequence[Model], base: Fit, stated: Model | None
+) -> list[Model]:
+    """The starts at the user's values; none where the base lies within users' usual errors.
+
+    While an effect is missing, other parameters move to values from which no search returns: a
+    heavy tip behind a gap ends at 38 % of the force, from the user's values at 6 %.
+    """
+    if stated is None:
+        return []
+    here, there = base.model.parameters, stated.parameters
+    pairs = [(here[n].value, there[n].value) for n in base.free if n in there]
+    if all(abs(value - before) <= PLAN.moved * abs(before) for value, before in pairs):
+        return []
+    values = {n: v.value for n, v in there.items() if n in models[0].parameters}
+    return [m.with_values(values) for m in models]
+
+
+def without_endless(best: Solution, new: Collection[tuple[str, str]]) -> Model:
+    """The model of a solution, with the effects absent whose search ran to the end of its range.
+
+    There an effect is another one, or none: the Stribeck law at an endless speed is one more
+    Coulomb level. No search returns from there, because no residual depends on the parameter.
+
+    new: (effect, place) that have begun at all of their starting values
+    returns: the model itself where there is no such effect
+    """
+    model = best.model
+    values: dict[str, float] = {}
+    for name, at_bound in zip(best.free, best.at_bound[: len(best.free)], strict=True):
+        at, effect, _ = (*name.split("."), "")[:3]
+        if not at_bound or not spans_decades(model, name) or (effect, at) in new:
+            continue
+        law = model.body(at).effect(effect)
+        absent = {f"{at}.{effect}.{n}": law.default(n) for n in law.parameters}
+        if not any(model.parameters[n].fixed for n in absent):
+            values |= absent
+    return model.with_values(values) if values else model
+
+
+def with_what_they_need(model: Model, models: Sequence[Model], prepared: Prepared) -> list[Model]:
+    """The same starts with strengths of the size of the force, where the new effects need others.
+
+    Without the new effect, a fit may have taken the effect that it needs away: rigid friction does
+    not describe a bristle in which most of the motion takes place, and its level falls to zero.
+    """
+    values: dict[str, float] = {}
+    for name, at in model.absent:
+        body = model.body(at)
+        for needed in body.effect(name).needs:
+            strength = body.effect(needed).strength if body.has(needed) else None
+            full = f"{at}.{needed}.{strength}"
+            # another effect of its role may stand in for it; a contact's needs no start
+            value = model.parameters.get(full)
+            if value is None or value.fixed:
+                continue
+            size = prepared.scales[model.declared(full).quantity]
+            if value.value < PLAN.taken_away * size:
+                values[full] = size
+    return [m.with_values(values) for m in models] if values else []

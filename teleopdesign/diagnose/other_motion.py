@@ -74,8 +74,8 @@ def most_coupled(joint: str, records: Prepared, fit: Fit, prepared: PreparedPart
         beside = with_other_motion(records, other)
         for effect in effects:
             model = fit.model.with_effect(effect, at=joint)
-            (start, *_) = linear_starts([model], effect, joint, beside, fit)
-            promised[name] = min(start.promised, promised.get(name, start.promised))
+            ((left, _),) = linear_starts([model], effect, joint, beside, fit)
+            promised[name] = min(left, promised.get(name, left))
     return min(promised, key=lambda name: promised[name], default=None)
 
 

@@ -5,9 +5,9 @@ to one row, either way, belongs to the record. It is no physics, but if it is ig
 a physical effect: a delay, a lag, the lead of a compliant transmission. So it is estimated with
 every model, one shift for each body, common to all its records.
 
-A shift that raises the error on the check records is held (`clock.py`): with a model that lacks
-much it may describe a part of a missing effect. It is held at zero, or at the shift of the arm's
-other joints: one logger writes all of them.
+A shift that raises the error on the check records is held (`stated_fit.py`): with a model that
+lacks much it may describe a part of a missing effect. It is held at zero, or at the shift of the
+arm's other joints: one logger writes all of them.
 
 Records may hardly determine the shift: a delay has the same effect, and with a spring and damper of
 the controller viscous friction has. Then prior knowledge decides: most loggers are right, and none
@@ -23,7 +23,7 @@ the shift.
 The log of a force may be late by more: buffers and batches hold commands back, sensors filter the
 measured force. No motion precedes its force, so this is no missing effect, but structures would
 imitate it. The log of a hand's force may also be late against the command, by the filter of its
-sensor. This is estimated only where `clock.py` says that it explains the residual.
+sensor. This is estimated only where `stated_fit.py` says that it explains the residual.
 """
 
 from __future__ import annotations

@@ -78,11 +78,6 @@ class Rung(ByValue):
         """The added effect in words, with the effect that it replaced."""
         return "" if self.added is None else named_instead(self.added, name_of(self.instead_of))
 
-    def undo_addition(self, model: Model) -> Model:
-        """A model without the effect that this rung added; see `undo_addition`."""
-        assert self.added is not None
-        return undo_addition(model, self.added, self.replaced)
-
     def __repr__(self) -> str:
         return f"Rung {self.title or 'of the model'}: {self.fit!r}"
 
@@ -101,6 +96,17 @@ def undo_addition(model: Model, added: Candidate, replaced: Replaced | None) -> 
     return whole
 
 
+def undo(rungs: Sequence[Rung], model: Model) -> Model | None:
+    """A model without the effects of rungs, taken one after the other; None: one is needed."""
+    try:
+        for rung in rungs:
+            assert rung.added is not None
+            model = undo_addition(model, rung.added, rung.replaced)
+    except ModelError:
+        return None
+    return model
+
+
 def first_rise(rungs: Sequence[Rung]) -> int | None:
     """Index of the first rung with a larger check error than the rung before it; None: none has."""
     rises = (later.fit.check_error > rung.fit.check_error for rung, later in pairwise(rungs))
@@ -114,10 +120,8 @@ def without_rise(rungs: Sequence[Rung]) -> tuple[Rung, ...]:
 
 def estimate_without(model: Model, rung: Rung, prepared: Prepared) -> Fit | None:
     """The fit of a model without a rung's effect; None: another effect needs this effect."""
-    try:
-        return estimate(rung.undo_addition(model), prepared)
-    except ModelError:
-        return None
+    without = undo([rung], model)
+    return None if without is None else estimate(without, prepared)
 
 
 def order_by_falling_error(rungs: Sequence[Rung], prepared: Prepared) -> tuple[Rung, ...] | None:
@@ -192,11 +196,10 @@ def reorder_and_refit(
     if len(rungs) == 1:
         return tuple(rungs)
     backwards = [replace(rungs[-1], fit=last)]
-    model = last.model
+    model: Model | None = last.model
     for later, rung in zip(rungs[:0:-1], rungs[-2:0:-1], strict=False):
-        try:
-            model = later.undo_addition(model)
-        except ModelError:
+        assert model is not None
+        if (model := undo([later], model)) is None:
             return None
         backwards.append(replace(rung, fit=estimate(model, prepared)))
     return order_by_falling_error((rungs[0], *reversed(backwards)), prepared)

@@ -18,9 +18,14 @@ from ..model import Model
 from .candidates import make_starts
 from .criteria import CRITERIA
 from .fit import Fit, estimate, fit_of, fit_squares
-from .further_starts import starts_at_values_of_user, with_what_they_need, without_endless
 from .least_squares import sum_of_squares
-from .linear_start import Promises, linear_starts
+from .linear_start import (
+    Promises,
+    linear_starts,
+    starts_at_values_of_user,
+    with_what_they_need,
+    without_endless,
+)
 from .search_plan import EFFORTS, PLAN, Effort
 from .solve import Solution, free_parameters, solve
 
@@ -253,9 +258,9 @@ def _start_by_strength(
         others = {n: v.value for n, v in model.parameters.items() if n != strength}
         distinct.setdefault(tuple(others.values()), model)
     starts = linear_starts(list(distinct.values()), effect, at, prepared, base.coarse)
-    if starts[0].promised > base.least(worth):
+    if starts[0][0] > base.least(worth):
         return []
-    return [s.model for s in starts[: PLAN.followed]]
+    return [start for _, start in starts[: PLAN.followed]]
 
 
 def _best_stepped(

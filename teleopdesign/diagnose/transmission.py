@@ -15,7 +15,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from ..base.errors import ModelError
 from ..effects import Effect
 from ..model import Model
 from .adequacy import explained_share, is_adequate
@@ -30,7 +29,7 @@ from .ladder_state import LadderSearch, LadderState
 from .outside_tone import best_tone
 from .rank import make_ranked
 from .ranking import Ranking
-from .rung import Rung, estimate_without, order_by_falling_error, reorder_and_refit
+from .rung import Rung, estimate_without, order_by_falling_error, reorder_and_refit, undo
 from .search import base_of, estimate_best_start
 
 
@@ -66,12 +65,8 @@ def _rungs_to_stay(search: LadderSearch, state: LadderState) -> tuple[Rung, ...]
     staying = [r for r in state.rungs if r.added is None or r.added.effect.name in imitated]
     if len(staying) == 1:
         return state.rungs[:1]
-    model = state.fit.model
-    try:
-        for rung in reversed(state.rungs):
-            if all(rung is not one for one in staying):
-                model = rung.undo_addition(model)
-    except ModelError:
+    others = [r for r in reversed(state.rungs) if all(r is not one for one in staying)]
+    if (model := undo(others, state.fit.model)) is None:
         return state.rungs
     last = estimate(model, search.prepared)
     return reorder_and_refit(staying, last, search.prepared) or state.rungs
@@ -197,7 +192,7 @@ def _is_supported(
     """
     floor, both = state.floor, pair[-1].fit
     added = {rung.added.key for rung in pair if rung.added is not None}
-    if added & {one.candidate.key for one in state.set_aside}:
+    if added & state.gone:
         return False
     first, second = (rung.ranking.ranked[0] for rung in pair if rung.ranking is not None)
     return (

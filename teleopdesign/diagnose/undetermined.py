@@ -17,8 +17,8 @@ from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA
 from .evidence import whole_score
 from .fit import Fit, estimate
+from .identifiability import product_of
 from .plausibility import implausible_effects, undetermined_of
-from .products import product_of
 from .rung import Rung
 from .statements import Undetermined
 

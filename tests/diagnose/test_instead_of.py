@@ -13,7 +13,7 @@ from diagnose.made_records import dahl, write_made
 from teleopdesign import Body, Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import load_answer, write_answer
 from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.rung import Rung, restore_replaced
+from teleopdesign.diagnose.rung import Rung, restore_replaced, undo
 from teleopdesign.effects import EFFECTS
 
 pytestmark = pytest.mark.slow  # diagnoses of whole cases
@@ -114,6 +114,6 @@ def test_what_rests_on_either_stays_while_one_gives_way_to_the_other(new, old, o
     gave_way = restore_replaced(Candidate(EFFECTS[old], "device"), before)
     model = Model({"device": Body(axis, {"inertia": 1.0}, ())}).with_effect(new).with_effect(other)
     rung = Rung(Candidate(EFFECTS[new], "device"), None, replaced=gave_way)
-    back = rung.undo_addition(model)
+    back = undo([rung], model)
     assert {n for n, _ in back.effects} == {old, other}
     assert back.parameters[f"device.{old}.{STRENGTH[old]}"].value == 2.0

@@ -9,11 +9,11 @@ from diagnose.simulated_cases import FEW, truth_of, write_simulated
 from scipy.signal import lfilter
 
 import teleopdesign as td
-from teleopdesign.diagnose.clock import with_late_starts, with_paying_shift
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.model_data import model_data, model_from
 from teleopdesign.diagnose.record_shift import shifts_of
 from teleopdesign.diagnose.search import estimate_from_starts
+from teleopdesign.diagnose.stated_fit import with_late_starts, with_paying_shift
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
 
