@@ -6,13 +6,12 @@ A body that nothing joins to another moves alone. The joints of an arm move toge
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 import sympy as sp
 
-from ..arms import base_parameters
 from ..base.arguments import check_types
 from ..base.errors import ModelError
 from ..blocks import Body
@@ -20,9 +19,9 @@ from ..effects import SIGNALS
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..model import Model
-from .linked_course import ArmLinks, courses, led_arm
+from .linked_course import courses, led_arm
 from .other_motion import follows_another
-from .parts import PreparedParts, remove_links
+from .parts import ArmLinks, PreparedParts, links_of, remove_links
 from .record_offsets import apply_record_offsets
 from .simulated_course import LedBody, course_of, led_body, with_whole_dead_times
 
@@ -166,16 +165,12 @@ def _links(
 
     coupled: of each joint, the force on it per acceleration of the other joint
     """
-    description, joints = prepared.experiment.arm, list(prepared.parts)
-    assert description is not None
-    values, chosen = description.arm.inertial, np.arange(len(description.arm.inertial))
-    if prepared.base is not None:
-        values = np.array(next(iter(models.values())).links)
-        chosen = base_parameters(description.arm).chosen
+    joints = list(prepared.parts)
     carried = np.zeros((len(joints), len(joints)))
     for j, (joint, motion) in enumerate(zip(joints, motions, strict=True)):
         assert motion.links is not None
         carried[j, j] = motion.links.inertia
         if coupled[j]:
             carried[j, joints.index(prepared.others[joint])] -= coupled[j]
-    return ArmLinks(prepared, values, chosen, carried)
+    links = links_of(prepared.experiment, next(iter(models.values())).links)
+    return replace(links, carried=carried)

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import replace
+from functools import reduce
+from operator import add
 
 import numpy as np
 
@@ -17,13 +19,13 @@ from ..measurement.shared_links import Knowledge, share, weighted_columns
 from ..model import Model
 from ..realise.along_motion import residual_along
 from ..realise.tangent_columns import LinkParameter
+from .bodies_apart import select_bodies
 from .error import force_error
 from .fit import block_numbers, standard_errors
 from .least_squares import span
 from .parts import PreparedParts, remove_links
 from .record_offsets import apply_record_offsets
 from .record_shift import record_shifts
-from .residual import relative_residuals
 from .solve import BLOCK, free_parameters
 
 #: least residual, as a part of the measured force, that sets the weight of a joint: below it the
@@ -45,7 +47,7 @@ def joint_knowledge(
 
 def common_links(known: Collection[Knowledge]) -> tuple[float, ...]:
     """The base parameters (b,) by the information of all joints."""
-    return tuple(float(x) for x in _sum(list(known)).best())
+    return tuple(float(x) for x in reduce(add, known).best())
 
 
 def with_others(
@@ -59,7 +61,7 @@ def with_others(
     (joint,) = model.bodies
     mine = known[joint]
     nothing = Knowledge(np.zeros_like(mine.matrix), np.zeros_like(mine.vector))
-    others = _sum([nothing, *(k for j, k in known.items() if j != joint)])
+    others = reduce(add, (k for j, k in known.items() if j != joint), nothing)
     fit = iter(share(add_links(model, prepared.of("fit")), others, size))
     stretches = tuple(next(fit) if s.use == "fit" else s for s in prepared.stretches)
     return replace(prepared, stretches=stretches)
@@ -124,10 +126,8 @@ def _linear(
     plain, free = remove_links(add_links(model, stretches)), _list_inner_parameters(model)
     lasts = sum(s.counted_time for s in plain)
     shifts = record_shifts(plain, round(lasts / BLOCK), model)
-    parts = relative_residuals(model, plain, (*free, *shifts.names))
-    roots = [np.sqrt(s.weight) for s in plain]
-    residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
-    slopes = np.concatenate([w * d.T for w, (_, d) in zip(roots, parts, strict=True)])
+    here = select_bodies(plain, model.bodies)
+    residual, slopes = here.relative(model, (*free, *shifts.names))
     slopes = slopes * np.append(np.ones(len(free)), shifts.row)
     samples = shifts.start(model)
     known, slope = shifts.prior(samples, residual, slopes)
@@ -166,10 +166,3 @@ def add_links(model: Model, stretches: tuple[Stretch, ...]) -> tuple[Stretch, ..
         links = replace(s.motion.links, smooth=-s.motion.lowpassed(slopes))
         made.append(replace(s, motion=replace(s.motion, links=links)))
     return tuple(made)
-
-
-def _sum(known: list[Knowledge]) -> Knowledge:
-    whole = known[0]
-    for one in known[1:]:
-        whole = whole + one
-    return whole

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arms.regressor import columns_with_motors
 from ..blocks import Body
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
@@ -27,45 +26,13 @@ from ..realise.simulated import without_absent
 from ..realise.steps import FASTEST
 from ..realise.tips import tip
 from ..simulate import Sampling, prepare
-from .parts import PreparedParts
+from .parts import ArmLinks
 from .simulated_course import MOST_STEPS, dead_times, wire_led_bodies
 
 #: least number of inner steps in a row; fast oscillations need more
 LEAST_STEPS = 5
 #: speed over the fastest recorded one beyond which a course ends: it grows without bound
 BEYOND = 1e3
-
-
-@dataclass(frozen=True)
-class ArmLinks:
-    """The links of an arm: values of their inertial parameters, and the columns of these.
-
-    values: (b,);  chosen: (b,) columns of the regressor
-    carried: (k, k) inertia of the links that the joints' bodies have already, less the inertia of
-        couplings
-    """
-
-    prepared: PreparedParts
-    values: Array
-    chosen: NDArray[np.intp]
-    carried: Array
-
-    def needed(self, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """Inertia matrix (n, k, k) and force at zero acceleration (k, n), less that of the bodies.
-
-        position, velocity: (k, n)
-        """
-        arm = self.prepared.experiment.arm
-        assert arm is not None
-        k, n = position.shape
-        rates = np.zeros((2, k, k + 2, n))
-        rates[0, :, 0] = velocity
-        rates[1, :, 2:] = np.eye(k)[:, :, None]
-        poses = np.repeat(position[:, None], k + 2, axis=1).reshape(k, -1)
-        columns = columns_with_motors(arm.arm, poses, *rates.reshape(2, k, -1))
-        force = np.einsum("p,kpn->kn", self.values, columns[:, self.chosen]).reshape(k, k + 2, n)
-        inertia = np.moveaxis(force[:, 2:] - force[:, 1:2], 2, 0)
-        return inertia - self.carried, force[:, 0]
 
 
 @dataclass(frozen=True, eq=False)

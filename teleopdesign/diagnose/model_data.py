@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ..base.codec import Error, from_data
 from ..base.errors import ExperimentError, did_you_mean, quote
 from ..base.toml import Table, describe_toml_value
 from ..blocks import Body, Value, with_block_effects
@@ -99,8 +100,9 @@ def model_from(
     if not isinstance(content, dict):
         raise ExperimentError(f"{where}: found {describe_toml_value(content)}, expected a table")
     bodies, effects = {}, with_block_effects(known)
-    shifts = Table(content, where).table(RECORD_SHIFT) if RECORD_SHIFT in content else None
-    links = _links_from(content.get(LINKS, []), f"{where}.{LINKS}")
+    at = f"{where}.{RECORD_SHIFT}"
+    shifts = from_data(Mapping[str, _Shift], content.get(RECORD_SHIFT, {}), at, {})
+    links = from_data(tuple[float, ...], content.get(LINKS, []), f"{where}.{LINKS}", {})
     content = {n: body for n, body in content.items() if n not in (RECORD_SHIFT, LINKS)}
     of_arm = bool(content) and not content.keys() & {*ONE_BODY, *TWO_BODIES}
     read = joints_from if of_arm else bodies_from
@@ -108,33 +110,17 @@ def model_from(
         for name in described.effects:
             known_effect(name, effects, where=f"{described.where}.effects")
         bodies[place] = body_of(described, effects)
-    late = {} if shifts is None else _shifts_from(shifts)
+    late = {log: Value(one.value, one.fixed, one.stderr) for log, one in shifts.items()}
     return Model(bodies, known if may_take is None else may_take, late, links)
 
 
-def _links_from(entry: object, where: str) -> tuple[float, ...]:
-    """The base parameters of an arm, in SI.
+@dataclass(frozen=True)
+class _Shift:
+    """The shift of a record, s."""
 
-    raises ExperimentError: the entry is no list of finite numbers
-    """
-    if isinstance(entry, list) and all(
-        isinstance(x, int | float) and not isinstance(x, bool) and math.isfinite(x) for x in entry
-    ):
-        return tuple(map(float, entry))
-    raise ExperimentError(f"{where}: expected a list of finite numbers")
-
-
-def _shifts_from(shifts: Table) -> dict[str, Value]:
-    """The shifts of the records (s) by log."""
-    tables = {place: shifts.table(place) for place in shifts.content}
-    return {
-        place: Value(
-            table.number("value"),
-            table.flag("fixed", False),
-            math.nan if (error := table.number_or_none("stderr")) is None else error,
-        )
-        for place, table in tables.items()
-    }
+    value: float
+    fixed: bool = False
+    stderr: Error = math.nan
 
 
 def known_effect(name: str, known: Mapping[str, Effect], *, where: str) -> Effect:

@@ -117,14 +117,11 @@ def with_clock_of_others(
         if j != joint and shift.at == j and not (shift.held or shift.at_bound)
         if shift.stderr > 0.0
     ]
-    late = _weighted_median(shifts) if shifts else None
-    return replace(records[joint], late_beside=late)
-
-
-def _weighted_median(pairs: Sequence[tuple[float, float]]) -> float:
-    """The value up to which half of the weight lies; pairs: value and weight."""
-    values, weights = np.array(sorted(pairs)).T
-    return float(values[np.searchsorted(np.cumsum(weights), 0.5 * weights.sum())])
+    if not shifts:
+        return replace(records[joint], late_beside=None)
+    late, weights = np.array(shifts).T
+    middle = np.quantile(late, 0.5, weights=weights, method="inverted_cdf")
+    return replace(records[joint], late_beside=float(middle))
 
 
 def with_known(

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arms import BaseParameters, Chain, base_parameters
 from ..arms.regressor import columns_with_motors
@@ -142,8 +143,17 @@ def with_inertias(prepared: PreparedParts, inertias: Mapping[str, float]) -> Pre
     inertias: joint -> this part (SI); the model's body has it too, and it is subtracted from the
         force of the links
     """
-    joints = {j: with_inertia(one, inertias[j]) for j, one in prepared.joints.items()}
-    return replace(prepared, parts={**prepared.parts, **joints})
+    parts = dict(prepared.parts)
+    for joint, records in prepared.joints.items():
+        stretches = []
+        for stretch in records.stretches:
+            links = stretch.motion.links
+            assert links is not None
+            drawn = tuple(replace(d, inertia=inertias[joint]) for d in links.drawn)
+            links = replace(links, inertia=inertias[joint], drawn=drawn)
+            stretches.append(replace(stretch, motion=replace(stretch.motion, links=links)))
+        parts[joint] = replace(records, stretches=tuple(stretches))
+    return replace(prepared, parts=parts)
 
 
 def with_bodies_of(model: Model, prepared: PreparedParts) -> PreparedParts:
@@ -166,21 +176,6 @@ def motor_inertias(experiment: Experiment, model: Model) -> dict[str, float]:
     return {joint: stated[f"{joint}.inertia"].value for joint in experiment.bodies}
 
 
-def with_inertia(records: Prepared, inertia: float) -> Prepared:
-    """A joint's records, with this part of its links' inertia as that of its body."""
-    stretches = []
-    for stretch in records.stretches:
-        links = stretch.motion.links
-        assert links is not None
-        links = replace(
-            links,
-            inertia=inertia,
-            drawn=tuple(replace(d, inertia=inertia) for d in links.drawn),
-        )
-        stretches.append(replace(stretch, motion=replace(stretch.motion, links=links)))
-    return replace(records, stretches=tuple(stretches))
-
-
 def remove_links(stretches: tuple[Stretch, ...]) -> tuple[Stretch, ...]:
     """Stretches as they were measured, without reduced weight in the directions of the links."""
     return tuple(replace(s, shared=None) for s in stretches)
@@ -195,15 +190,49 @@ def mean_inertias(prepared: PreparedParts, links: tuple[float, ...]) -> dict[str
     motions = [p.stretches[0].motion for p in prepared.parts.values()]
     places = np.linspace(0, len(motions[0].time) - 1, POSES).astype(int)
     position = np.array([m.position[places] for m in motions])
-    inertias = dict(
-        zip(
-            prepared.parts,
-            np.mean(inertias_at(prepared.experiment, links, position), axis=1).tolist(),
-            strict=True,
-        )
-    )
-    least = 1e-3 * max(*inertias.values(), 1e-9)
-    return {j: max(x, least) for j, x in inertias.items()}
+    inertias = np.mean(inertias_at(prepared.experiment, links, position), axis=1).tolist()
+    least = 1e-3 * max(*inertias, 1e-9)
+    return {j: max(x, least) for j, x in zip(prepared.parts, inertias, strict=True)}
+
+
+@dataclass(frozen=True, eq=False)
+class ArmLinks:
+    """The links of an arm: values of their inertial parameters, and the columns of these.
+
+    values: (b,);  chosen: (b,) columns of the regressor
+    carried: (k, k) inertia of the links that the joints' bodies have already, less the inertia of
+        couplings
+    """
+
+    arm: Chain
+    values: Array
+    chosen: NDArray[np.intp]
+    carried: Array
+
+    def needed(self, position: Array, velocity: Array) -> tuple[Array, Array]:
+        """Inertia matrix (n, k, k) and force at zero acceleration (k, n), less that of the bodies.
+
+        position, velocity: (k, n)
+        """
+        k, n = position.shape
+        rates = np.zeros((2, k, k + 2, n))
+        rates[0, :, 0] = velocity
+        rates[1, :, 2:] = np.eye(k)[:, :, None]
+        poses = np.repeat(position[:, None], k + 2, axis=1).reshape(k, -1)
+        columns = columns_with_motors(self.arm, poses, *rates.reshape(2, k, -1))
+        force = np.einsum("p,kpn->kn", self.values, columns[:, self.chosen]).reshape(k, k + 2, n)
+        inertia = np.moveaxis(force[:, 2:] - force[:, 1:2], 2, 0)
+        return inertia - self.carried, force[:, 0]
+
+
+def links_of(experiment: Experiment, links: tuple[float, ...]) -> ArmLinks:
+    """The links of an arm with these base parameters; (): those of the description."""
+    assert experiment.arm is not None
+    arm, count = experiment.arm.arm, len(experiment.bodies)
+    values, chosen = arm.inertial, np.arange(len(arm.inertial))
+    if links:
+        values, chosen = np.array(links), base_parameters(arm).chosen
+    return ArmLinks(arm, values, chosen, np.zeros((count, count)))
 
 
 def inertias_at(experiment: Experiment, links: tuple[float, ...], position: Array) -> Array:
@@ -212,15 +241,5 @@ def inertias_at(experiment: Experiment, links: tuple[float, ...], position: Arra
     links: base parameters, () where the links are those of the description;  position: (k, n)
     Least-squares base parameters may belong to no real links, so an inertia may be negative.
     """
-    assert experiment.arm is not None
-    arm = experiment.arm.arm.with_gravity((0.0, 0.0, 0.0))
-    values, chosen = arm.inertial, np.arange(len(arm.inertial))
-    if links:
-        values, chosen = np.asarray(links), base_parameters(experiment.arm.arm).chosen
-    rest = np.zeros_like(position)
-    inertias = np.empty_like(position)
-    for k in range(len(position)):
-        push = rest.copy()
-        push[k] = 1.0
-        inertias[k] = values @ columns_with_motors(arm, position, rest, push)[k, chosen]
-    return inertias
+    inertia, _ = links_of(experiment, links).needed(position, np.zeros_like(position))
+    return np.einsum("njj->jn", inertia)

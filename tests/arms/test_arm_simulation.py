@@ -13,8 +13,7 @@ import teleopdesign as td
 from teleopdesign.base.errors import ModelError
 from teleopdesign.diagnose import RecordedLoop
 from teleopdesign.diagnose.by_simulation import compare_by_simulation, simulation_data
-from teleopdesign.diagnose.linked_course import ArmLinks
-from teleopdesign.diagnose.parts import PreparedParts, prepare_parts
+from teleopdesign.diagnose.parts import PreparedParts, links_of
 
 SECONDS = 6.0
 LOOP = RecordedLoop(200.0, 20.0)
@@ -43,12 +42,10 @@ def two(tmp_path_factory):
 
 def test_the_links_need_what_an_independent_simulator_says(two):
     arm, experiment, _ = two
-    chain = experiment.arm.arm
-    everything = np.arange(len(chain.inertial))
     generator = np.random.default_rng(0)
     q, v, a = generator.normal(size=(3, 2, 5))
     bodies = np.diag([0.3, 0.1])
-    links = ArmLinks(prepare_parts(experiment), chain.inertial, everything, bodies)
+    links = replace(links_of(experiment, ()), carried=bodies)
     inertia, force = links.needed(q, v)
     assert np.allclose(inertia, np.swapaxes(inertia, 1, 2))
     needed = np.einsum("nij,jn->in", inertia + bodies, a) + force
@@ -92,7 +89,7 @@ def test_an_arm_of_one_joint_about_the_vertical_is_one_body(tmp_path):
     alone = compare_by_simulation(model, experiment, loop=LOOP)
     # about the vertical no gravity acts and the inertia is the same at every pose
     rest = np.zeros((1, 1))
-    links = ArmLinks(alone.prepared, experiment.arm.arm.inertial, np.arange(10), np.zeros((1, 1)))
+    links = links_of(experiment, ())
     inertia, force = links.needed(rest, rest)
     assert force == pytest.approx(0.0, abs=1e-12)
     records = alone.prepared.parts["joint1"]
