@@ -137,8 +137,12 @@ def compare_by_simulation(
             longest = max((one.length for one in driven), default=0.0)
             horizons = [h for h in HORIZONS if h < longest] + [np.inf] * bool(driven)
             parts = map_in_threads(lambda one, h=horizons: _deviations(one, h), driven)
-            errors += _horizon_errors(driven, parts, horizons, use)
-            courses |= _courses(driven, parts, horizons, use)
+            for body, at in enumerate(driven[0].places if driven else ()):
+                for h, horizon in enumerate(horizons):
+                    off = [part[h][:, body] for part in parts]
+                    errors.append(_horizon_error(driven, off, use, body, horizon))
+                    if horizon in DRAWN:
+                        courses[use, at, horizon] = _courses(driven, off, body, horizon)
         by_force[use] = error_over_joints(
             {j: force_error(models[j], remove_links(p.of(use))) for j, p in prepared.parts.items()}
         )
@@ -207,41 +211,17 @@ def _loop_data(loop: RecordedLoop | None) -> dict[str, float] | None:
     return None if loop is None else {"stiffness": loop.stiffness, "damping": loop.damping}
 
 
-def _horizon_errors(
-    driven: Sequence[Driven],
-    parts: Sequence[Sequence[Array]],
-    horizons: Sequence[float],
-    use: str,
-) -> list[HorizonError]:
-    """Errors of bodies that move together, body by body, the shortest horizon first.
-
-    driven: the bodies along all stretches of one use;  parts: of each, `_deviations`
-    """
-    return [
-        _horizon_error(driven, parts, use, body, (h, horizon))
-        for body in range(len(driven[0].places) if driven else 0)
-        for h, horizon in enumerate(horizons)
-    ]
-
-
 def _courses(
-    driven: Sequence[Driven],
-    parts: Sequence[Sequence[Array]],
-    horizons: Sequence[float],
-    use: str,
-) -> dict[tuple[str, str, float], tuple[Array, ...]]:
-    """(use, body, horizon) -> of each stretch: time, measured and simulated position, (3, n)."""
-    made = {}
-    for body, at in enumerate(driven[0].places if driven else ()):
-        for h, horizon in [(h, one) for h, one in enumerate(horizons) if one in DRAWN]:
-            rows = []
-            for one, part in zip(driven, parts, strict=True):
-                motion, off = one.motions[body], part[h][0, body]
-                at_rows = np.concatenate([np.r_[span] for span in _spans(one, horizon)])
-                measured = motion.position[at_rows]
-                rows.append(np.array([motion.time[at_rows], measured, measured + off]))
-            made[use, at, horizon] = tuple(rows)
-    return made
+    driven: Sequence[Driven], deviations: Sequence[Array], body: int, horizon: float
+) -> tuple[Array, ...]:
+    """Of each stretch: time, measured and simulated position of a body, (3, n)."""
+    rows = []
+    for one, off in zip(driven, deviations, strict=True):
+        motion = one.motions[body]
+        at_rows = np.concatenate([np.r_[span] for span in _spans(one, horizon)])
+        measured = motion.position[at_rows]
+        rows.append(np.array([motion.time[at_rows], measured, measured + off[0]]))
+    return tuple(rows)
 
 
 def _deviations(driven: Driven, horizons: Sequence[float]) -> list[Array]:
@@ -264,18 +244,13 @@ def _spans(driven: Driven, horizon: float) -> list[slice]:
 
 
 def _horizon_error(
-    driven: Sequence[Driven],
-    parts: Sequence[Sequence[Array]],
-    use: str,
-    body: int,
-    horizon: tuple[int, float],
+    driven: Sequence[Driven], deviations: Sequence[Array], use: str, body: int, horizon: float
 ) -> HorizonError:
-    """The errors of one body over one horizon, from its deviations along all stretches together.
+    """The errors of one body over one horizon (s), of all stretches together.
 
-    parts: of each stretch, the deviations of each horizon;  horizon: its index and its time (s)
+    deviations: of position and velocity (2, rows) on each stretch
     """
-    h, seconds = horizon
-    position, velocity = np.concatenate([part[h][:, body] for part in parts], axis=1)
+    position, velocity = np.concatenate(deviations, axis=1)
     measured = {
         name: np.concatenate([getattr(d.motions[body], name)[d.first : d.end] for d in driven])
         for name in ("position", "velocity")
@@ -284,7 +259,7 @@ def _horizon_error(
     return HorizonError(
         use,
         driven[0].places[body],
-        seconds,
+        horizon,
         by_position,
         by_velocity,
         by_position / max(float(np.std(measured["position"])), 1e-300),

@@ -117,10 +117,7 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
     fitted = with_errors(_with_held_shifts(solution, stretches), blocks).canonical()
     check = prepared.of("check")
     if check:
-        along = follow_records(fitted, check)
-        absolute, parts = both_residuals(fitted, check, along)
-        check_error = error_of(check, absolute)
-        command_error = refer_to_command(fitted, check, along)
+        check_error, parts, command_error = _errors_on(fitted, check)
     else:
         check, parts, check_error, command_error = _fit_held_out(solution, prepared)
     return Fit(
@@ -138,6 +135,13 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
         scale=solution.scale[:p],
         by_shift=solution.by_shift,
     )
+
+
+def _errors_on(model: Model, stretches: Sequence[Stretch]) -> tuple[float, list[Array], AtCommand]:
+    """Force error, relative residuals and the error at the command of a model, from one run."""
+    along = follow_records(model, stretches)
+    absolute, relative = both_residuals(model, stretches, along)
+    return error_of(stretches, absolute), relative, refer_to_command(model, stretches, along)
 
 
 def _with_held_shifts(solution: Solution, stretches: Sequence[Stretch]) -> Solution:
@@ -184,17 +188,14 @@ def _fit_held_out(
     command_errors: list[AtCommand] = []
     squares = at_commands = 0.0
     stretches = prepared.of("fit")
-    for known, held_out in folds(stretches):
-        pairs = zip(stretches, known, strict=True)
-        rows = np.concatenate([np.isin(s.keep, k.keep, assume_unique=True) for s, k in pairs])
-        model = model_without(solution, prepared, known, rows, EFFORTS.held_out)
-        along = follow_records(model, held_out)
-        absolute, relative = both_residuals(model, held_out, along)
-        held += held_out
+    for fold in folds(stretches):
+        model = model_without(solution, prepared, fold.known, ~fold.rows, EFFORTS.held_out)
+        error, relative, at_command = _errors_on(model, fold.held_out)
+        held += fold.held_out
         parts += relative
-        command_errors.append(refer_to_command(model, held_out, along))
-        measured = sum(s.measured for s in held_out)
-        squares += error_of(held_out, absolute) ** 2 * measured
+        command_errors.append(at_command)
+        measured = sum(s.measured for s in fold.held_out)
+        squares += error**2 * measured
         at_commands += command_errors[-1].error ** 2 * measured
     whole = sum(s.measured for s in held)
     together = AtCommand(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +13,20 @@ from ..measurement.prepare import Stretch, measured_force
 from ..measurement.shared_links import share_again
 
 
-def folds(
-    stretches: Sequence[Stretch],
-) -> list[tuple[tuple[Stretch, ...], tuple[Stretch, ...]]]:
-    """The stretches with `FOLDS` parts of each held out in turn: (kept, held out).
+@dataclass(frozen=True, eq=False)
+class Fold:
+    """Stretches without some of their rows, and with these alone.
+
+    rows: whether each row that counts is held out, of all stretches one after the other
+    """
+
+    known: tuple[Stretch, ...]
+    held_out: tuple[Stretch, ...]
+    rows: NDArray[np.bool_]
+
+
+def folds(stretches: Sequence[Stretch]) -> list[Fold]:
+    """The stretches with `FOLDS` parts of each held out in turn.
 
     The parts are blocks of successive rows. A block may hold most of the motion in one direction,
     such as the only stroke forward. Then the rest of the records would not tell friction from a
@@ -26,14 +36,16 @@ def folds(
     parts = [_blocks(len(s.keep)) for s in stretches]
     if _holds_most_of_a_direction(stretches, parts):
         parts = [_blocks_of_each(s.motion.direction[s.keep]) for s in stretches]
-    pairs = []
+    every = []
     for i in range(FOLDS):
-        kept, held_out = [], []
-        for s, part in zip(stretches, parts, strict=True):
-            kept.append(replace(_cut(s, s.keep[part != i]), shared=s.shared))
-            held_out.append(_cut(s, s.keep[part == i]))
-        pairs.append((share_again(kept), tuple(held_out)))
-    return pairs
+        held = [part == i for part in parts]
+        known = [
+            replace(with_rows(s, ~out), shared=s.shared)
+            for s, out in zip(stretches, held, strict=True)
+        ]
+        held_out = tuple(with_rows(s, out) for s, out in zip(stretches, held, strict=True))
+        every.append(Fold(share_again(known), held_out, np.concatenate(held)))
+    return every
 
 
 def _blocks(rows: int) -> NDArray[np.intp]:
@@ -60,6 +72,11 @@ def _holds_most_of_a_direction(
     return all(c.sum() >= FOLDS for c in counts) and any(2 * c.max() > c.sum() for c in counts)
 
 
-def _cut(stretch: Stretch, keep: NDArray[np.intp]) -> Stretch:
+def with_rows(stretch: Stretch, rows: NDArray[np.bool_]) -> Stretch:
+    """The stretch with some of its rows that count, regardless of links.
+
+    rows: mask of `keep`
+    """
+    keep = stretch.keep[rows]
     force = measured_force(replace(stretch, keep=keep))
     return replace(stretch, keep=keep, measured=stretch.weight * float(force @ force), shared=None)

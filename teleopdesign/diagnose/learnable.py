@@ -32,7 +32,7 @@ from ..measurement.reversals import mark_reversals
 from ..model import Model
 from .error import error_of
 from .fit import estimate
-from .folds import folds
+from .folds import folds, with_rows
 from .record_offsets import apply_record_offsets
 from .residual import residuals
 from .search_plan import EFFORTS
@@ -155,7 +155,7 @@ def _measure_learnable(
         left = [r for r, _ in residuals(there, stretches)]
         of_rest = _predict_held_out(stretches, inputs, left, held, seed)
         of_force = _predict_held_out(stretches, inputs, measured, held, seed)
-        held_out += [_select_rows(s, rows) for s, rows in zip(stretches, held, strict=True)]
+        held_out += [with_rows(s, rows) for s, rows in zip(stretches, held, strict=True)]
         before += [r[rows] for r, rows in zip(left, held, strict=True)]
         after += [r[rows] - p for r, rows, p in zip(left, held, of_rest, strict=True)]
         alone += [f[rows] - p for f, rows, p in zip(measured, held, of_force, strict=True)]
@@ -180,19 +180,12 @@ def _turns(
         yield [np.full(len(s.keep), s.motion.file in group) for s in stretches], model
     if files:
         return
-    for known, held_out in folds(stretches):
-        as_check = tuple(replace(s, use="check") for s in held_out)
-        turn = replace(prepared, stretches=(*known, *as_check))
+    ends = np.cumsum([len(s.keep) for s in stretches])[:-1]
+    for fold in folds(stretches):
+        as_check = tuple(replace(s, use="check") for s in fold.held_out)
+        turn = replace(prepared, stretches=(*fold.known, *as_check))
         there = estimate(model, turn, effort=EFFORTS.held_out).model
-        held = [np.isin(s.keep, u.keep) for s, u in zip(stretches, held_out, strict=True)]
-        yield held, there
-
-
-def _select_rows(stretch: Stretch, rows: NDArray[np.bool_]) -> Stretch:
-    """The stretch with some of its rows; rows: mask of `keep`."""
-    force = measured_force(stretch)[rows]
-    squares = stretch.weight * float(force @ force)
-    return replace(stretch, keep=stretch.keep[rows], measured=squares)
+        yield np.split(fold.rows, ends), there
 
 
 def _predict_held_out(

@@ -242,4 +242,4 @@ def inertias_at(experiment: Experiment, links: tuple[float, ...], position: Arra
     Least-squares base parameters may belong to no real links, so an inertia may be negative.
     """
     inertia, _ = links_of(experiment, links).needed(position, np.zeros_like(position))
-    return np.einsum("njj->jn", inertia)
+    return np.asarray(np.einsum("njj->jn", inertia))

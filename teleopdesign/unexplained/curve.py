@@ -109,7 +109,7 @@ def _weight(rows: Rows, shape: Shape, x: Array) -> Array:
     value = rows.at(shape.variable.name)
     known = np.isfinite(value)
     near = np.searchsorted(0.5 * (x[1:] + x[:-1]), value[known])
-    squares = (shape.carrier.at(rows) * rows.root)[known] ** 2
+    squares = (shape.carrier.along(rows.at) * rows.root)[known] ** 2
     return np.asarray(np.bincount(near, squares, minlength=len(x)))
 
 
@@ -117,7 +117,7 @@ def _means(rows: Rows, shape: Shape, left: Array, x: Array) -> Array:
     """Means over bins of the checked rows with their bands: rows x, mean, low, high (4, b)."""
     if shape.variable is None:
         return np.zeros((4, 0))
-    carrier = shape.carrier.at(rows) * rows.root
+    carrier = shape.carrier.along(rows.at) * rows.root
     value = rows.at(shape.variable.name)
     visible = rows.checked & (np.abs(carrier) > TELLS * np.abs(carrier).max()) & np.isfinite(value)
     edges = x[np.linspace(0, len(x) - 1, BINS + 1).astype(int)]

@@ -99,7 +99,7 @@ def wave_number(rows: Rows, left: Array, shape: Shape) -> float:
     """
     assert shape.variable is not None
     values = rows.at(shape.variable.name)
-    carrier = shape.carrier.at(rows) * rows.root
+    carrier = shape.carrier.along(rows.at) * rows.root
     used = rows.learnt & np.isfinite(values)
     if not used.any() or np.ptp(values[used]) == 0.0 or not carrier[used].any():
         return 0.0

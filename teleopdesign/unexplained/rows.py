@@ -41,15 +41,13 @@ PUSH, GRIP = _PUSH.named("unexplained_force", ""), _GRIP.named("unexplained_leve
 class StretchSignals:
     """One stretch at full rate: n samples, SI.
 
-    signals: name -> (n,), signals that a residual may depend on
-    push: residual per missing force: 1 while the body slides, 0 where it sticks
-    grip: residual per missing friction level: the direction of sliding, 0 where it sticks
+    signals: name -> (n,), signals that a residual may depend on; and "push", the residual per
+        missing force, 1 while the body slides, and "grip", per missing friction level, the
+        direction of sliding: both 0 where it sticks
     """
 
     stretch: Stretch
     signals: Mapping[str, Array]
-    push: Array
-    grip: Array
 
 
 @dataclass(frozen=True)
@@ -102,16 +100,6 @@ class Rows:
         """A signal at the rows (n,)."""
         return np.concatenate([a.signals[name][a.stretch.keep] for a in self.alongs])
 
-    @property
-    def push(self) -> Array:
-        """`StretchSignals.push` at the rows."""
-        return np.concatenate([a.push[a.stretch.keep] for a in self.alongs])
-
-    @property
-    def grip(self) -> Array:
-        """`StretchSignals.grip` at the rows."""
-        return np.concatenate([a.grip[a.stretch.keep] for a in self.alongs])
-
 
 def rows_of(model: Model, prepared: Prepared, body: str) -> Rows:
     """The residual rows of one body of a fitted model."""
@@ -143,12 +131,7 @@ def _splits(
     check = np.repeat([s.use == "check" for s in stretches], [len(s.keep) for s in stretches])
     if check.any():
         return ((~check, check),)
-    splits = []
-    for _, held_out in folds(stretches):
-        held = [np.isin(s.keep, u.keep) for s, u in zip(stretches, held_out, strict=True)]
-        out = np.concatenate(held)
-        splits.append((~out, out))
-    return tuple(splits)
+    return tuple((~fold.rows, fold.rows) for fold in folds(stretches))
 
 
 def _signals_along(model: Model, stretch: Stretch) -> StretchSignals:
@@ -159,11 +142,14 @@ def _signals_along(model: Model, stretch: Stretch) -> StretchSignals:
     since = look_back_to_reversal(
         motion.direction, motion.position, sample_time=motion.sample_time, rest=RESTED
     )
-    spectrum = motion.spectrum
+    spectrum, moves = motion.spectrum, motion.direction != 0
+    push, grip = -along.residual.tangent
+    # with a zero of its own, a position cannot be compared with that of other records
+    position = np.full_like(acting, np.nan) if stretch.has_zero_offset else motion.position
     expected = acting - motion.lowpassed(along.residual.value)
     signals = {
         "time": motion.time,
-        "position": motion.position,
+        "position": position,
         "velocity": motion.velocity,
         "speed": np.abs(motion.velocity),
         "acceleration": motion.acceleration,
@@ -177,12 +163,7 @@ def _signals_along(model: Model, stretch: Stretch) -> StretchSignals:
         "since_reversal": since.time,
         "travel": since.travel,
         "rested": since.rested,
+        "push": push,
+        "grip": grip * moves,
     }
-    push, grip = -along.residual.tangent
-    grip = grip * (motion.direction != 0)
-    if not stretch.has_zero_offset:
-        return StretchSignals(stretch, signals, push, grip)
-    # its position cannot be compared with that of other records: nothing is said of it
-    return StretchSignals(
-        stretch, {**signals, "position": np.full_like(acting, np.nan)}, push, grip
-    )
+    return StretchSignals(stretch, signals)

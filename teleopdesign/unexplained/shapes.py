@@ -30,15 +30,10 @@ class Carrier:
     signal: str = ""
     friction: bool = False
 
-    def along(self, along: StretchSignals) -> Array:
-        """The residual per f, before the low-pass (samples,)."""
-        shown = along.grip if self.friction else along.push
-        return shown * along.signals[self.signal] if self.signal else shown
-
-    def at(self, rows: Rows) -> Array:
-        """The residual per f at the rows, before the low-pass (n,)."""
-        shown = rows.grip if self.friction else rows.push
-        return shown * rows.at(self.signal) if self.signal else shown
+    def along(self, signals: Callable[[str], Array]) -> Array:
+        """The residual per f, before the low-pass, from signals by their names (n,)."""
+        shown = signals("grip" if self.friction else "push")
+        return shown * signals(self.signal) if self.signal else shown
 
 
 FORCE = Carrier("force", "force")
@@ -206,7 +201,7 @@ def columns_of(shape: Shape, knots: Array, rows: Rows) -> Array:
 
 def columns_from(shape: Shape, rows: Rows, functions: Callable[[StretchSignals], Array]) -> Array:
     """The residual (n, k) by functions (k, samples) times the shape's carrier, low-passed."""
-    columns = rows.lowpassed(lambda along: shape.carrier.along(along) * functions(along))
+    columns = rows.lowpassed(lambda a: shape.carrier.along(a.signals.__getitem__) * functions(a))
     return _relative_to_force(columns, rows) if shape.of_command else columns
 
 

@@ -43,7 +43,8 @@ def test_no_part_holds_most_of_the_motion_in_one_direction(one_stroke_each_way):
     pairs = folds(stretches)
     (whole,) = (s.motion.direction[s.keep] for s in stretches)
     assert len(pairs) == FOLDS
-    for (kept,), (held,) in pairs:
+    for fold in pairs:
+        (kept,), (held,) = fold.known, fold.held_out
         np.testing.assert_array_equal(
             np.sort(np.concatenate([kept.keep, held.keep])), stretches[0].keep
         )

@@ -228,8 +228,8 @@ def test_records_with_too_few_samples_for_blocks_are_refused_and_left_out_beside
     with pytest.raises(ExperimentError, match="fewer than 4 samples count at a bandwidth of 0.05"):
         prepare(replace(experiment, records=(record,)), bandwidth=0.05)
     prepared = prepare(replace(experiment, records=(record,)), bandwidth=1.0)
-    for kept, held_out in folds(prepared.stretches):
-        assert all(len(s.keep) for s in (*kept, *held_out))
+    for fold in folds(prepared.stretches):
+        assert all(len(s.keep) for s in (*fold.known, *fold.held_out))
 
 
 @pytest.mark.parametrize("channel", ["position", "actuator_force"])

@@ -19,16 +19,26 @@ def position(a):
 
 
 PLANTED = {
-    "force over position": (lambda a: a.push * 4.0 * position(a), "at positions above", 4.0),
+    "force over position": (
+        lambda a: a.signals["push"] * 4.0 * position(a),
+        "at positions above",
+        4.0,
+    ),
     "friction over position": (
-        lambda a: a.grip * np.where(position(a) > 0.005, 12.0 * (position(a) - 0.005), 0.0),
+        lambda a: (
+            a.signals["grip"] * np.where(position(a) > 0.005, 12.0 * (position(a) - 0.005), 0.0)
+        ),
         "at positions above",
         12.0,
     ),
-    "force over speed": (lambda a: a.push * 0.5 * a.signals["speed"], "above", 0.5),
-    "friction over load": (lambda a: a.grip * 0.08 * a.signals["load"], "command's size", 0.08),
+    "force over speed": (lambda a: a.signals["push"] * 0.5 * a.signals["speed"], "above", 0.5),
+    "friction over load": (
+        lambda a: a.signals["grip"] * 0.08 * a.signals["load"],
+        "command's size",
+        0.08,
+    ),
     "damping over position": (
-        lambda a: a.push * 3e3 * position(a) ** 2 * a.signals["velocity"],
+        lambda a: a.signals["push"] * 3e3 * position(a) ** 2 * a.signals["velocity"],
         "more damping",
         3e3,
     ),
@@ -52,17 +62,17 @@ def test_a_planted_dependence_is_reported_with_variable_range_and_size(rows, flo
 @pytest.mark.parametrize(
     ("name", "missing", "size"),
     [
-        pytest.param("force", lambda a: a.push * -0.06, -0.06, marks=pytest.mark.slow),
+        pytest.param("force", lambda a: a.signals["push"] * -0.06, -0.06, marks=pytest.mark.slow),
         pytest.param(
             "friction over time",
-            lambda a: a.grip * 0.2 * np.exp(-a.signals["time"] / 3.0),
+            lambda a: a.signals["grip"] * 0.2 * np.exp(-a.signals["time"] / 3.0),
             None,
             marks=pytest.mark.slow,
         ),
-        ("lateness", lambda a: a.push * 1.5e-3 * a.signals["force_rate"], 1.5e-3),
+        ("lateness", lambda a: a.signals["push"] * 1.5e-3 * a.signals["force_rate"], 1.5e-3),
         pytest.param(
             "mass",
-            lambda a: a.push * 0.02 * a.signals["acceleration"],
+            lambda a: a.signals["push"] * 0.02 * a.signals["acceleration"],
             0.02,
             marks=pytest.mark.slow,
         ),
@@ -84,7 +94,10 @@ def test_a_planted_constant_has_its_sign_and_size(
 @pytest.mark.parametrize("frequency", [0.3, 17.0, 50.0])
 def test_a_hum_is_detected_at_its_frequency(rows, floor_squares, frequency):
     here = planted(
-        rows, lambda a: a.push * 0.15 * np.sin(2 * np.pi * frequency * a.signals["time"] + 1.0)
+        rows,
+        lambda a: (
+            a.signals["push"] * 0.15 * np.sin(2 * np.pi * frequency * a.signals["time"] + 1.0)
+        ),
     )
     shapes, _ = dependences(here, floor_squares)
     assert shapes[0].shape.carrier is FORCE and shapes[0].shape.variable.name == "time"
@@ -98,7 +111,10 @@ def test_a_hum_is_detected_at_its_frequency(rows, floor_squares, frequency):
 @pytest.mark.slow
 def test_only_one_direction_is_reported(rows, floor_squares):
     here = planted(
-        rows, lambda a: a.push * np.where(a.signals["velocity"] > 0, a.signals["velocity"], 0.0)
+        rows,
+        lambda a: (
+            a.signals["push"] * np.where(a.signals["velocity"] > 0, a.signals["velocity"], 0.0)
+        ),
     )
     shapes, _ = dependences(here, floor_squares)
     assert shapes[0].shape.name in (
@@ -129,7 +145,9 @@ def test_what_another_value_of_a_parameter_explains_is_not_missing(rows, floor_s
 @pytest.mark.slow
 def test_nothing_is_learnt_from_the_checked_rows(rows, floor_squares):
     """A force on the check record alone is no dependence that the fit record tells of."""
-    here = planted(rows, lambda a: a.push * 4.0 * position(a) * (a.stretch.use == "check"))
+    here = planted(
+        rows, lambda a: a.signals["push"] * 4.0 * position(a) * (a.stretch.use == "check")
+    )
     assert "force over position" not in [d.shape.name for d in dependences(here, floor_squares)[0]]
 
 
@@ -139,7 +157,7 @@ def test_noise_alone_is_called_a_dependence_in_none_of_sixteen_records(rows, flo
     rng, alarms, draws = np.random.default_rng(8), 0, 16
     size = np.sqrt(np.mean(rows.residual**2))
     for _ in range(draws):
-        noise = rows.lowpassed(lambda a: rng.standard_normal((1, len(a.push))))[:, 0]
+        noise = rows.lowpassed(lambda a: rng.standard_normal((1, len(a.signals["push"]))))[:, 0]
         here = replace(rows, residual=size * noise / np.std(noise))
         alarms += bool(dependences(here, floor_squares)[0])
     assert alarms == 0
