@@ -3,8 +3,8 @@
 Values that the fit records do not determine (for example friction and damping, at one speed): if a
 check record moves as no fit record does, a complete model has an error there too. An effect that
 changes these values may seem to explain the error. So the model is estimated on all records
-together, with the effect and without it. The effect must still leave surely less of the check
-records.
+together, with the effect and without it. The effect must still leave less of the check records, and
+surely less of all records, for all were fitted.
 
 Errors of the readings: a structure transmits less of the noise in an acceleration. The error may
     then be smaller, and yet be more noise floors of the new model. In a record with few events (a
@@ -19,6 +19,7 @@ from ..base.sentences import percent
 from ..measurement.prepare import Prepared
 from .criteria import CRITERIA
 from .decision import is_better
+from .error import force_error
 from .fit import Fit, estimate
 from .noise_floor import NoiseFloor, say_floors
 from .rung import Rung
@@ -26,21 +27,23 @@ from .statements import SetAside
 
 
 def estimable_on_all(prepared: Prepared) -> Prepared | None:
-    """All records as fit records, with the check records for comparison; None: no check records.
+    """All records, each as a fit record and for comparison; None: no check records.
 
     None for an arm's joints too: their shared link parameters belong to the fit records.
     """
-    fit, check = prepared.of("fit"), prepared.of("check")
-    if not check or prepared.is_linked:
+    if not prepared.of("check") or prepared.is_linked:
         return None
-    both = tuple(replace(s, use="fit") for s in (*fit, *check))
-    return Prepared(prepared.experiment, prepared.bandwidth, (*both, *check))
+    records = (*prepared.of("fit"), *prepared.of("check"))
+    both = (replace(s, use=use) for use in ("fit", "check") for s in records)
+    return Prepared(prepared.experiment, prepared.bandwidth, tuple(both))
 
 
 def check_error_on_all(fit: Fit, prepared: Prepared) -> float | None:
     """Check error of a model estimated on all records; None as in `estimable_on_all`."""
     together = estimable_on_all(prepared)
-    return None if together is None else estimate(fit.model, together).check_error
+    if together is None:
+        return None
+    return force_error(estimate(fit.model, together).model, prepared.of("check"))
 
 
 def stands_in_for_values(
@@ -54,13 +57,13 @@ def stands_in_for_values(
     if together is None or rung.added is None:
         return None
     without, with_it = (estimate(fit.model, together) for fit in (base, rung.fit))
-    if is_better(without, with_it, floor):
+    before, after = (force_error(f.model, prepared.of("check")) for f in (without, with_it))
+    falls = after**2 < (1.0 - CRITERIA.relative_improvement) * before**2
+    if falls and is_better(without, with_it, floor):
         return None
     reason = (
-        "a fit to all records leaves "
-        f"{percent(without.check_error, '.3g')} of the check records without it, "
-        f"{percent(with_it.check_error, '.3g')} with it: the fit records do not determine its "
-        "values"
+        f"a fit to all records leaves {percent(before, '.3g')} of the check records without it, "
+        f"{percent(after, '.3g')} with it: the fit records do not determine its values"
     )
     return SetAside(rung.added, rung.fit.check_error, reason)
 
