@@ -103,9 +103,11 @@ class Table:
     def numbers(self, key: str, count: int, default: Sequence[float] = ()) -> list[float]:
         """The list of so many finite numbers under `key`; `default` if the key is absent."""
         value = self.content.get(key, [*default])
-        if not isinstance(value, list) or len(value) != count:
+        listed = value if isinstance(value, list) else []
+        numbers = [v for v in listed if isinstance(v, int | float) and not isinstance(v, bool)]
+        if len(listed) != count or len(numbers) != count or not all(map(math.isfinite, numbers)):
             raise self.error(key, f"{count} finite numbers")
-        return [self._check_number(one, key, -math.inf) for one in value]
+        return [float(number) for number in numbers]
 
     def _require(self, key: str, kind: str) -> Any:
         if key not in self.content:

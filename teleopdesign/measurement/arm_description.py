@@ -144,7 +144,7 @@ def _link(table: Table) -> Link:
     kind = table.choice("kind", ("revolute", "prismatic"), "revolute")
     axis = np.array(table.numbers("axis", 3, (0.0, 0.0, 1.0)))
     if not (size := float(np.linalg.norm(axis))) > 0:
-        raise table.error("axis", "a direction")
+        raise ExperimentError(f"{table.where('axis')}: found 0, 0, 0, expected a direction")
     zero = (0.0,) * 3
     mass = table.number("mass") if "mass" in table.content else 0.0
     if mass < 0:

@@ -153,19 +153,22 @@ def _columns(table: Table) -> tuple[str, ...]:
 
 
 def _scales(table: Table, count: int) -> tuple[float, ...]:
-    if isinstance(table.content.get("scale"), list):
-        scales = table.numbers("scale", count)
-    else:
-        scales = [table.number("scale") if "scale" in table.content else 1.0] * count
-    if 0.0 in scales:
-        raise table.error("scale", "numbers other than 0")
-    return tuple(scales)
+    value = table.content.get("scale", 1.0)
+    listed = value if isinstance(value, list) else [value] * count
+    numbers = [v for v in listed if isinstance(v, int | float) and not isinstance(v, bool)]
+    if len(numbers) != len(listed) or not all(math.isfinite(v) and v != 0 for v in numbers):
+        raise table.error("scale", "a number other than 0" + ", or a list of them" * (count > 1))
+    if len(listed) != count:
+        raise ExperimentError(
+            f"{table.where('scale')}: found {len(listed)} numbers, expected {count}, one a column"
+        )
+    return tuple(float(v) for v in numbers)
 
 
 def _sign(table: Table) -> float:
     sign = table.number_or_none("sign")
     if sign not in (None, 1.0, -1.0):
-        raise table.error("sign", "1 or -1")
+        raise ExperimentError(f"{table.where('sign')}: found {sign:g}, expected 1 or -1")
     return 1.0 if sign is None else sign
 
 

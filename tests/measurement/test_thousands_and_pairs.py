@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.base.errors import ExperimentError
+from teleopdesign.measurement.doors._cells import numbers_of
 from teleopdesign.measurement.doors.text import open_text
 
 ROWS = 800
@@ -24,7 +25,8 @@ def open_lines(path, lines, encoding="utf-8"):
 
 
 def read_all(log):
-    return log.read(dict.fromkeys(log.names, ""))
+    read = log.read(dict.fromkeys(log.names, ""))
+    return {name: numbers_of(cells, name, "log") for name, cells in read.items()}
 
 
 @given(value=st.floats(-1e9, 1e9), digits=st.integers(1, 6))

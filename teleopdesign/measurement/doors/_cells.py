@@ -97,7 +97,8 @@ def seconds_of(cell: str) -> float | None:
 
 def stamps_in_texts(cells: Sequence[object]) -> Array | None:
     """Dates or times of day of a column in s, NaN in empty cells; None: another content."""
-    filled = [k for k, cell in enumerate(cells) if cell is not None and not is_empty(str(cell))]
+    known = ((k, cell) for k, cell in enumerate(cells) if cell is not None and cell == cell)
+    filled = [k for k, cell in known if not is_empty(str(cell))]
     texts = [cell for k in filled if isinstance(cell := cells[k], str)]
     if not texts or len(texts) < len(filled) or seconds_of(texts[0]) is None:
         return None
@@ -107,16 +108,6 @@ def stamps_in_texts(cells: Sequence[object]) -> Array | None:
     out = np.full(len(cells), np.nan)
     out[filled] = stamps
     return out
-
-
-def column_of(parts: Sequence[NDArray[Any]], *, comma: bool = False) -> NDArray[Any]:
-    """A column from its parts (`part_of_column`): numbers (n,), dates in s, or cells with texts."""
-    column = np.concatenate(parts) if parts else np.empty(0)
-    if column.dtype.kind == "f" or is_column_of_texts(column, comma=comma):
-        return column
-    texts = [cell.replace(",", ".") if comma and isinstance(cell, str) else cell for cell in column]
-    stamps = stamps_in_texts([None if cell != cell else cell for cell in texts])
-    return column if stamps is None else stamps
 
 
 def part_of_column(cells: Sequence[str], *, comma: bool = False) -> NDArray[Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
+from typing import Literal
 
 from ...base.errors import ExperimentError, quote
 from ..limits import SEVERAL
@@ -47,19 +48,20 @@ def rows_of_numbers(
             if k < dialect.first or not bare or bare.startswith(COMMENTS):
                 continue
             line = without_end(line, separator)
-            if is_another_header(line, dialect):
+            kind = _kind_of(line, dialect)
+            if kind == "other header":
                 raise ExperimentError(
                     f"{file}: after row {count}: found other names or units of columns, "
                     f"{quote(line.strip())}: give each table a file of its own"
                 )
-            if dialect.labels and is_header_again(line, dialect):
+            if kind == "header again":
                 strays.append(count + 1)
                 again += 1
                 continue
             count += 1
             cells = len(line.split()) if separator == " " else line.count(separator) + 1
             quoted_cells = '"' in line and separator != " "
-            if cells < width and not quoted_cells or is_text(line, dialect):
+            if cells < width and not quoted_cells or kind == "text":
                 strays.append(count)
                 count -= 1
                 if len(strays) - again > max(FEW_STRAYS, MOST_STRAYS * count):
@@ -82,35 +84,24 @@ def _are_plain_rows(lines: Sequence[str], dialect: Dialect) -> bool:
     return cells == {len(dialect.header)} and not any(x in text for x in odd)
 
 
-def is_text(line: str, dialect: Dialect) -> bool:
-    """Whether a line holds no number at all: a repeated header or a message of the logger."""
-    if line.lstrip()[:1] in _BEGINS_A_NUMBER:
-        return False
-    cells = [c for c in cells_of(line, dialect.separator) if c]
-    return not any(is_value(c, dialect.comma) or is_empty(c) for c in cells)
+def _kind_of(line: str, dialect: Dialect) -> Literal["row", "text", "header again", "other header"]:
+    """What a line of a table is: a row of numbers, or none.
 
-
-def is_header_again(line: str, dialect: Dialect) -> bool:
-    """Whether a line is one of a header that repeats: before each block of rows, as of LabVIEW."""
-    if line.lstrip()[:1] in _BEGINS_A_NUMBER:
-        return False
-    return cells_of(line, dialect.separator)[0] in dialect.labels
-
-
-def is_another_header(line: str, dialect: Dialect) -> bool:
-    """Whether a line gives each column a word, and is none of the lines above the table.
-
-    Of two columns, a message of the logger may do that too.
+    A text holds no number, as a message of the logger. A header repeats before each block of rows,
+    as of LabVIEW. Another one gives each column a word and is none of the lines above the table: of
+    two columns, a message may do that too.
     """
-    width = len(dialect.header)
-    if not dialect.named or dialect.separator == " " or width < SEVERAL:
-        return False
     if line.lstrip()[:1] in _BEGINS_A_NUMBER:
-        return False
+        return "row"
     cells = cells_of(line, dialect.separator)
-    if len(cells) != width or any(is_empty(c) or is_value(c, dialect.comma) for c in cells):
-        return False
-    return not any(cells == cells_of(above, dialect.separator) for above in dialect.remarks)
+    texts = [c for c in cells if not (is_empty(c) or is_value(c, dialect.comma))]
+    named = dialect.named and dialect.separator != " " and len(cells) >= SEVERAL
+    if named and len(texts) == len(cells) == len(dialect.header):
+        if all(cells != cells_of(above, dialect.separator) for above in dialect.remarks):
+            return "other header"
+    if cells[0] in dialect.labels:
+        return "header again"
+    return "text" if len(texts) == sum(map(bool, cells)) else "row"
 
 
 def ragged_row_error(file: str, row: int, cells: int, width: int) -> ExperimentError:

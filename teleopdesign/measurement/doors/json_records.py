@@ -161,15 +161,12 @@ def fields_of(
     entries = _entries(value)
     if entries is not None and depth < DEPTH:
         named = entries.get("name")
-        is_named = isinstance(named, list | tuple) and all(isinstance(n, str) for n in named)
-        if is_named:
+        if isinstance(named, list | tuple) and all(isinstance(n, str) for n in named):
             joints, begin = named, len(name) + bool(name)
+            entries = {key: inner for key, inner in entries.items() if key != "name"}
         for key, inner in entries.items():
-            if not (is_named and key == "name"):
-                whole = f"{name}.{key}" if name else key
-                yield from fields_of(
-                    inner, number, whole, joints=joints, begin=begin, depth=depth + 1
-                )
+            whole = f"{name}.{key}" if name else key
+            yield from fields_of(inner, number, whole, joints=joints, begin=begin, depth=depth + 1)
     elif isinstance(value, list | tuple | np.ndarray):
         if len(value) > MOST_FIELDS or depth >= DEPTH:
             return

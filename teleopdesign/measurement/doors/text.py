@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from ...base.errors import ExperimentError, quote
 from ._cell_shapes import LineShape
-from ._cells import column_of, part_of_column, parts_thousands
+from ._cells import part_of_column, parts_thousands
 from ._dialect import (
     LOOKED_AT,
     SEPARATORS,
@@ -163,9 +163,7 @@ def _sample(lines: Sequence[str], dialect: Dialect) -> dict[str, NDArray[Any]]:
     cut = (cells_of(line, dialect.separator) for line in some if line.strip())
     rows = [row for row in cut if len(row) == len(dialect.header)]
     cells = zip(*rows, strict=True) if rows else ([] for _ in dialect.header)
-    columns = (
-        column_of([part_of_column(c, comma=dialect.comma)], comma=dialect.comma) for c in cells
-    )
+    columns = (part_of_column(c, comma=dialect.comma) for c in cells)
     return dict(zip(dialect.header, columns, strict=True))
 
 
@@ -184,9 +182,9 @@ def _without_blank_columns(
 
 
 def _read(text: _Text, names: Sequence[str], strays: list[int]) -> dict[str, Any]:
-    """Columns of a table: empty cells are NaN, dates become seconds.
+    """Columns of a table: empty cells are NaN.
 
-    A column with any other text keeps it: its reader names the cell.
+    A column with any text keeps it: `numbers_of` makes seconds of dates, or names the cell.
     raises ExperimentError: points in numbers of which others have a decimal comma
     """
     dialect = text.dialect
@@ -199,7 +197,7 @@ def _read(text: _Text, names: Sequence[str], strays: list[int]) -> dict[str, Any
                 column.append(part)
     columns = {}
     for name, column in zip(names, blocks, strict=True):
-        columns[name] = column_of(column, comma=dialect.comma)
+        columns[name] = np.concatenate(column) if column else np.empty(0)
         if dialect.comma and (where := parts_thousands(columns[name])):
             row, cell = where
             raise ExperimentError(
