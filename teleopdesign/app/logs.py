@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
 from ..check import look_at, stopping_findings
+from ..measurement.description import lever_arm, motor_constant, plain_number
 from ..measurement.experiment import load_experiment
 from ..measurement.new_folder import FitAndCheck, check_spans, make_folder
 from ..measurement.survey import Choices, Survey, spans_of, survey_log
 from ..measurement.tables import open_log
-from ..measurement.value_text import lever_arm, motor_constant, plain_number
 from .files import resolve_inside
 
 if TYPE_CHECKING:

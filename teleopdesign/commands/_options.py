@@ -172,7 +172,7 @@ def value_from(text: str, *, quantity: str, axis: str, where: str) -> float:
     where: beginning of an error message
     raises ExperimentError: no number, or a unit of another quantity
     """
-    from ..measurement.value_text import split_value  # heavy: not for --help
+    from ..measurement.description import split_value  # heavy: not for --help
 
     parts = split_value(text)
     if parts is None:

@@ -248,8 +248,8 @@ def _shorten(value: object) -> str:
 
 
 def _choices(options: argparse.Namespace) -> Choices:
+    from ..measurement.description import lever_arm, motor_constant
     from ..measurement.survey import Choices
-    from ..measurement.value_text import lever_arm, motor_constant
 
     units = {}
     for text in options.unit:
@@ -280,7 +280,7 @@ def _choices(options: argparse.Namespace) -> Choices:
 
 def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> Choices:
     """The choices, with the user's answers on the guesses; an empty answer accepts a guess."""
-    from ..measurement.value_text import lever_arm, motor_constant, plain_number
+    from ..measurement.description import lever_arm, motor_constant, plain_number
 
     numbers: dict[str, Callable[..., Any]] = {
         "torque_constant": motor_constant,

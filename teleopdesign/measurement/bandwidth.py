@@ -184,7 +184,9 @@ def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Arr
     """
     from scipy.signal import detrend
 
-    n = min(_usual_length(record), 4096)
+    # windows as long as half of all rows have their segments at least
+    lengths = np.sort([s.stop - s.start for s in record.segments])[::-1]
+    n = min(int(lengths[np.searchsorted(np.cumsum(lengths), HALF * lengths.sum())]), 4096)
     # no window crosses the seam of two segments: the jump there is no motion
     parts = [record.signals[name][s] for s in record.segments if s.stop - s.start >= n]
     views = (np.lib.stride_tricks.sliding_window_view(x, n)[:: max(1, n // 2)] for x in parts)
@@ -196,12 +198,6 @@ def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Arr
     rate = record.rate_of(name)
     noise = density[(frequency > PROPOSED * rate) & (2 * frequency <= rate)]
     return frequency, density, float(np.median(noise))
-
-
-def _usual_length(record: Record) -> int:
-    """The length (rows) that the segments with half of all rows have at least."""
-    lengths = np.sort([s.stop - s.start for s in record.segments])[::-1]
-    return int(lengths[np.searchsorted(np.cumsum(lengths), HALF * lengths.sum())])
 
 
 def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 import unicodedata
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from functools import lru_cache
 
 from ..base.units import is_unit, measures, noun_of
@@ -146,27 +146,27 @@ def unit_in_name(name: str, quantity: str | None = None, axis: str = "prismatic"
     quantity: what the column is, if known: an ending that is no unit of this quantity belongs to
         the name
     """
-    name = bare_column(name).rstrip(_QUOTES)
-    match = _BRACKETS.search(name)
-    of_two = _OF_TWO.search(name)
-    if match is None and of_two is not None:
-        length, force, arm = of_two["length"], of_two["force"], of_two["arm"]
-        both = unit_of_text(f"{length} per s" if length else f"{force}*{arm}")
-        if both and (quantity is None or _suits(both, quantity, axis)):
-            return both
-    tail = _TAIL.search(name)
-    for text, sure in ((match, True), (_SLASH.search(name), True), (tail, False)):
-        if text is None:
-            continue
-        unit = unit_of_text(text.group(1))
-        if unit is None or not sure and len(text.group(1)) < 2 and quantity is None:
-            continue
-        if not sure and text.group(1).lower() in _ONLY_IN_BRACKETS:
-            continue
-        if quantity is None or _suits(unit, quantity, axis):
-            return unit
-    whole = unit_of_text(name) if len(name) >= _WHOLE_NAME else None  # "counts", "volts"
-    return whole if whole and (quantity is None or _suits(whole, quantity, axis)) else None
+    units = _units_at_end(bare_column(name).rstrip(_QUOTES), is_known=quantity is not None)
+    suits = (u for u in units if u and (quantity is None or _suits(u, quantity, axis)))
+    return next(suits, None)
+
+
+def _units_at_end(name: str, *, is_known: bool) -> Iterator[str | None]:
+    """What may be the unit at the end of a name, the surest first.
+
+    is_known: whether the quantity is known: then one letter may be a unit
+    """
+    brackets, slash, of_two, tail = (
+        pattern.search(name) for pattern in (_BRACKETS, _SLASH, _OF_TWO, _TAIL)
+    )
+    if of_two and not brackets:
+        length = of_two["length"]
+        yield unit_of_text(f"{length} per s" if length else f"{of_two['force']}*{of_two['arm']}")
+    yield from (unit_of_text(match[1]) for match in (brackets, slash) if match)
+    if tail and tail[1].lower() not in _ONLY_IN_BRACKETS and (is_known or len(tail[1]) > 1):
+        yield unit_of_text(tail[1])
+    if len(name) >= _WHOLE_NAME:  # "counts", "volts"
+        yield unit_of_text(name)
 
 
 def unfit_unit(name: str) -> str | None:

@@ -134,30 +134,22 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     (acceleration, direction, velocity, _), (target, place) = stretch
     place = place - place.mean()
     force = target - target.mean()
-    parts: list[tuple[float, float, float]] = []  # size of the force, value, remaining error
-    one_way = goes_one_way(direction)
-    inertia: list[tuple[float, float]] = []
+    fits = []
     for braked in (direction, velocity):
-        apart = braked - braked.mean()  # without the part that a constant force explains
-        if np.std(braked) <= _ONE_WAY * np.sqrt(np.mean(braked**2)):
-            continue
-        columns = np.stack([acceleration - acceleration.mean(), apart])
-        solution, errors, left = _fit_with_place(columns, place, force, sample_time)
-        if not one_way and np.abs(solution[1]) > SURELY * errors[1]:
-            parts.append((float(np.abs(solution[1]) * np.std(braked)), float(solution[1]), left))
-        if np.abs(solution[0]) > SURELY * errors[0]:
-            size = float(np.abs(solution[0]) * np.std(acceleration))
-            inertia.append((size, float(solution[0])))
-        brakes = solution[1] > SURELY * errors[1]
-        if (
-            inertia
-            and inertia[-1][1] < 0.0
-            and brakes
-            and _may_be_spring(columns, place, force, sample_time)
-        ):
-            inertia.pop()
-    sizes = [*(p[:2] for p in sorted(parts, key=lambda p: p[2])[:1]), *inertia[:1]]
-    return bool(sizes) and max(sizes)[1] < 0.0
+        if np.std(braked) > _ONE_WAY * np.sqrt(np.mean(braked**2)):
+            # without the part that a constant force explains
+            columns = np.stack([acceleration - acceleration.mean(), braked - braked.mean()])
+            fits.append((columns, *_fit_with_place(columns, place, force, sample_time)))
+    if not fits:
+        return False
+    columns, solution, errors, _ = min(fits, key=lambda fit: fit[3])
+    values, is_sure = solution[:2], np.abs(solution[:2]) > SURELY * errors[:2]
+    if is_sure.all() and values[0] < 0.0 < values[1]:  # the sign may be open beside a spring
+        factors, least, _ = least_squares(np.vstack([columns, place]), force, sample_time)
+        is_sure[0] = np.abs(factors[0]) > SURELY * least[0]
+    is_sure[1] &= not goes_one_way(direction)
+    sizes = np.where(is_sure, np.abs(values) * np.std(columns, axis=1), 0.0)
+    return bool(is_sure.any() and values[np.argmax(sizes)] < 0.0)
 
 
 def goes_one_way(direction: Array) -> bool:
@@ -172,12 +164,6 @@ def rows_each_way(direction: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_
     direction: low-passed, so that it rings about zero where a body is at rest before it moves
     """
     return direction > HALF, direction < -HALF
-
-
-def _may_be_spring(columns: Array, place: Array, force: Array, sample_time: float) -> bool:
-    """Whether the sign of the first column's factor is open beside a force of the position."""
-    factors, errors, _ = least_squares(np.vstack([columns, place]), force, sample_time)
-    return bool(np.abs(factors[0]) <= SURELY * errors[0])
 
 
 def is_size(force: Array, position: Array, sample_time: float) -> bool:

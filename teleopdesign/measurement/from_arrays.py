@@ -98,7 +98,8 @@ def experiment(
     if inertia is not None:
         body["inertia"] = inertia
     content["model"] = {"device": body}
-    _refuse_unknown_units(units or {}, log)
+    if strange := [column for column in units or {} if column not in log.names]:
+        raise ExperimentError(f"{_WHERE}: units: {unknown('column', strange[0], log.names)}")
     spans: list[tuple[str, Sequence[float] | None]] = [("fit", None)]
     if fit is not None:
         spans = [("fit", span) for span in _spans(fit, "fit")]
@@ -131,12 +132,6 @@ def _refuse_overlap(spans: Sequence[tuple[str, Sequence[float] | None]]) -> None
                     f"{_WHERE}: {use}: found {tuple(span)}, which overlaps {other_use} "
                     f"{tuple(other)}, expected spans that do not"
                 )
-
-
-def _refuse_unknown_units(units: Mapping[str, str], log: Log) -> None:
-    for column in units:
-        if column not in log.names:
-            raise ExperimentError(f"{_WHERE}: units: {unknown('column', column, log.names)}")
 
 
 def build_experiment(

@@ -59,7 +59,11 @@ def clock_of_log(
         clock = counted_clock(len(rows), sample_rate, segments, where)
     else:
         values = [columns.values[c][rows] for c in _on_this_clock(columns, channels, ("time",))]
-        clock = clock_of(stamps[rows], segments, ~_changes(values, len(rows)), where)
+        same = np.ones(len(rows), dtype=bool)
+        same[:1] = False
+        for x in values:
+            same[1:] &= np.diff(x) == 0
+        clock = clock_of(stamps[rows], segments, same, where)
         clock = replace(clock, rows=rows[clock.rows])
     positions = [
         columns.values[c][clock.rows]
@@ -100,15 +104,6 @@ def _on_this_clock(
     """Columns of channels on the clock of the log, but for those of some channels."""
     every = dict.fromkeys(c for k, ch in channels.items() if k not in apart for c in ch.columns)
     return [c for c in every if c not in columns.stamps]
-
-
-def _changes(values: Sequence[Array], count: int) -> NDArray[np.bool_]:
-    """Rows (count,) that differ from the row before in some column; the first one does."""
-    changes = np.zeros(count, dtype=bool)
-    changes[:1] = True
-    for x in values:
-        changes[1:] |= np.diff(x) != 0
-    return changes
 
 
 def _filled_rows(

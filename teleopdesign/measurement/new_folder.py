@@ -210,7 +210,8 @@ def _usual_cut(
             records = [read_record(folder, entry, layout) for entry in entries]
         except ExperimentError:  # too few rows in a part
             continue
-        if min(map(_counted_time, records)) < SHORTEST:
+        lengths = ([(s.stop - s.start) * r.sample_time for s in r.segments] for r in records)
+        if min(sum(t for t in times if t >= SEGMENT) for times in lengths) < SHORTEST:
             continue
         whys = (_why_untold(r, p, survey.duration) for r, p in zip(records, parts, strict=True))
         why = next(filter(None, whys), "")
@@ -222,12 +223,6 @@ def _usual_cut(
         "fit in turn"
     )
     return None
-
-
-def _counted_time(record: Record) -> float:
-    """Time (s) of the segments of a record that are long enough to count."""
-    lengths = [(s.stop - s.start) * record.sample_time for s in record.segments]
-    return float(sum(length for length in lengths if length >= SEGMENT))
 
 
 def _why_untold(record: Record, part: tuple[float, float], duration: float) -> str:

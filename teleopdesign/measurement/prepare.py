@@ -270,14 +270,10 @@ def _thin_motion(motion: Motion, count: int) -> Motion:
     unheld = np.where(below, 1.0 / np.where(below, coarse.hold(), 1.0), 0.0)
     edge = min(SMOOTHING * motion.bandwidth, 0.45 / coarse.sample_time)
     # copied: kernels of hidden states are compiled, and loaded, for signals without gaps in memory
+    signals = ("time", "position", "velocity", "acceleration", "interaction", "direction")
     return replace(
         motion,
-        time=motion.time[at].copy(),
-        position=motion.position[at].copy(),
-        velocity=motion.velocity[at].copy(),
-        acceleration=motion.acceleration[at].copy(),
-        interaction=motion.interaction[at].copy(),
-        direction=motion.direction[at].copy(),
+        **{name: getattr(motion, name)[at].copy() for name in signals},
         command=coarse.multiply(force, unheld),
         spectrum=coarse,
         smoothing=coarse.lowpass(edge, order=8),

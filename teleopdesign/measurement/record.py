@@ -15,7 +15,7 @@ from ..base.shown import html_table
 from ..base.toml import Table
 from .channel import LogLayout
 from .doors._log import join_names
-from .doors.bag import is_bag
+from .doors.topics import is_bag
 from .log_clock import clock_of_log
 from .reading import ReadingStep
 from .signals_of_log import signals_of_log

@@ -38,7 +38,11 @@ def write_experiment(experiment: Experiment, folder: str | Path) -> Path:
         raise ExperimentError(f"{folder.name}/experiment.toml: is there already")
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        names = _file_names(experiment)
+        uses = [record.use for record in experiment.records]
+        names = [
+            f"{use}.csv.gz" if uses.count(use) == 1 else f"{use}_{k}.csv.gz"
+            for k, use in enumerate(uses, start=1)
+        ]
         for record, name in zip(experiment.records, names, strict=True):
             columns = dict(record.signals)
             if not experiment.is_curve:
@@ -59,14 +63,6 @@ def write_experiment(experiment: Experiment, folder: str | Path) -> Path:
     except OSError as problem:
         raise ExperimentError(f"{folder.name}: cannot be written: {problem.strerror}") from None
     return folder
-
-
-def _file_names(experiment: Experiment) -> list[str]:
-    names: list[str] = []
-    for k, record in enumerate(experiment.records, start=1):
-        alone = sum(r.use == record.use for r in experiment.records) == 1
-        names.append(f"{record.use}.csv.gz" if alone else f"{record.use}_{k}.csv.gz")
-    return names
 
 
 def experiment_text(experiment: Experiment, names: list[str]) -> str:

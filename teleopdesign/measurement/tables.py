@@ -14,12 +14,11 @@ from ..base.errors import ExperimentError, did_you_mean, quote
 from .doors._cells import numbers_of
 from .doors._dialect import LOOKED_AT
 from .doors._log import Log, bare_column, join_names, refuse_odd_names
-from .doors.bag import is_bag, open_bag
-from .doors.folder import open_folder
 from .doors.json_records import open_json
 from .doors.matlab import open_matlab
 from .doors.shapes import with_best_shape
 from .doors.text import open_text, open_workbook
+from .doors.topics import is_bag, open_bag, open_folder
 from .doors.typed_arrays import open_arrays, open_hdf5, open_parquet
 from .encoder import Array
 from .reading import ReadingStep

@@ -9,7 +9,7 @@ T = np.arange(2000) / 500.0
 Q = 40 * np.sin(2 * np.pi * 0.7 * T)
 REFUSED = {
     ("--unit", "pos=degre"): 'found \'degre\', expected a unit such as "deg"',
-    ("--unit", "pso=deg"): "unit of 'pso': no such column, found time, pos, current; did you mean",
+    ("--unit", "pso=deg"): "unit: no column 'pso', found time, pos, current; did you mean",
     ("--unit", "pos=A"): "unit of 'pos': found 'A', expected one of a position",
     ("--torque-constant", "0.045"): 'found \'0.045\', expected a number and a unit such as "0.037',
     ("--torque-constant", "0.045 Nm"): "expected a force or torque for each ampere",

@@ -6,9 +6,9 @@ import pytest
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.base.units import is_unit, to_si
+from teleopdesign.measurement.description import motor_constant
 from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import Choices, survey_log
-from teleopdesign.measurement.value_text import motor_constant
 
 T = np.arange(1500) / 500.0
 Q = 0.5 * np.sin(2 * np.pi * 0.7 * T) + 0.1 * np.sin(2 * np.pi * 2.3 * T)

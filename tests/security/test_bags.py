@@ -3,7 +3,7 @@
 import pytest
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.measurement.doors.bag import open_bag
+from teleopdesign.measurement.doors.topics import open_bag
 
 rosbag2 = pytest.importorskip("rosbags.rosbag2", reason="needs the extra ros")
 

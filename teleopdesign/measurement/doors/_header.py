@@ -60,7 +60,10 @@ def names_and_units(rows: Sequence[Sequence[str]]) -> tuple[tuple[str, ...], tup
         names = [name or upper for name, upper in zip(names, row, strict=False)]
     filled = [name for name in names if name]
     if above and len(set(filled)) < len(filled) and sum(map(bool, above[-1])) > 1:
-        titles = _carried_on(above[-1])
+        # only the first of merged cells holds the title of a group
+        titles: list[str] = []
+        for title in above[-1]:
+            titles.append(title or (titles[-1] if titles else ""))
         twice = {name for name in filled if filled.count(name) > 1}
         names = [
             f"{title} {name}" if name in twice and title else name
@@ -113,14 +116,6 @@ def names_of_labelled_rows(
         if row[0].casefold() in UNIT_LABELS:
             units = [u or bare_unit(c) * is_unit_cell(c) for u, c in zip(units, row, strict=True)]
     return names, tuple(units)
-
-
-def _carried_on(titles: Sequence[str]) -> list[str]:
-    """The title of each column's group; only the first of merged cells holds the title."""
-    out: list[str] = []
-    for title in titles:
-        out.append(title or (out[-1] if out else ""))
-    return out
 
 
 def numbers_channels(header: Sequence[str]) -> bool:

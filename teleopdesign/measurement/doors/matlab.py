@@ -38,7 +38,9 @@ def open_matlab(path: Path, file: str) -> Log:
     """Open a MAT file of any version."""
     from scipy.io import loadmat, whosmat
 
-    if _is_hdf5(path):
+    with path.open("rb") as stream:
+        head = stream.read(_USER_BLOCK + len(_HDF5))
+    if head.startswith(_HDF5) or head[_USER_BLOCK:] == _HDF5:  # with the head of MATLAB 7.3
         return open_hdf5(path, file)
     with refuse_damage(_KIND, file):
         check_elements(path)
@@ -69,13 +71,6 @@ def open_matlab(path: Path, file: str) -> Log:
             return arrays | (loadmat(path, variable_names=plain) if plain else {})
 
     return log_of_arrays(columns, load, file, units=units, objects=objects)
-
-
-def _is_hdf5(path: Path) -> bool:
-    """Whether a file is HDF5, with the header of MATLAB 7.3 or without it."""
-    with path.open("rb") as stream:
-        head = stream.read(_USER_BLOCK + len(_HDF5))
-    return head.startswith(_HDF5) or head[_USER_BLOCK:] == _HDF5
 
 
 def _fields(name: str, value: Any, depth: int, units: dict[str, str]) -> dict[str, Any]:

@@ -244,7 +244,10 @@ def open_workbook(path: Path, file: str) -> Log:
                 f"{file}: found {size:.3g} bytes unpacked, expected a smaller table"
             )
         book = openpyxl.load_workbook(path, read_only=True, data_only=True)
-        sheets = {s.title: [*map(_line, s.iter_rows(values_only=True))] for s in book.worksheets}
+        sheets = {
+            s.title: ["\t".join(map(_text, row)) for row in s.iter_rows(values_only=True)]
+            for s in book.worksheets
+        }
         book.close()
     tables: dict[str, Log] = {}
     for title, lines in sheets.items():
@@ -263,10 +266,6 @@ def open_workbook(path: Path, file: str) -> Log:
         others = [repr(other) for other in others]
         notes.append(f"{sheet} {join_names(others, 4)}: left out; save each as a file of its own")
     return replace(log, notes=(*notes, *log.notes))
-
-
-def _line(row: tuple[Any, ...]) -> str:
-    return "\t".join(map(_text, row))
 
 
 def _text(cell: Any) -> str:

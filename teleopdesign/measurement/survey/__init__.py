@@ -20,7 +20,7 @@ from ..channel import BODY_QUANTITIES
 from ..column_names import WORDS, as_unit, unit_in_name, words_of
 from ..doors._cells import numbers_of
 from ..doors._log import Log, join_names
-from ..doors.folder import are_quantities
+from ..doors.topics import are_quantities
 from ..encoder import Array
 from ..limits import FEWEST
 from ..record_clock import segments_of
@@ -62,16 +62,8 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     raises ExperimentError: no position, no force among the columns, or a column that is not there
     """
     raw, unread, log = numeric_columns(log, file)
-    for key in ("time", "position", "actuator_force", "interaction_force"):
-        name = getattr(choices, key)
-        if name is not None and name != NONE and name not in raw:
-            why = f"column {name!r}: {unread[name]}" if name in unread else f"no column {name!r}"
-            raise ExperimentError(
-                f"{file}: {key}: {why}, found {join_names(raw)}{did_you_mean(name, raw)}"
-            )
     choices = replace(choices, units={n: as_unit(u) for n, u in choices.units.items()})
-    _check_units(choices, raw, file)
-    _check_numbers(choices, file)
+    _check_choices(choices, raw, unread, file)
     guesses: dict[str, str] = {}
     time_name, unit = time_column(raw, log, choices, guesses, file)
     if time_name is not None:
@@ -147,24 +139,26 @@ def _how_clock_was_read(
     return f"; {time_name!r} is read in {unit}: --unit {time_name + '=UNIT'!r} states another unit"
 
 
-def _check_units(choices: Choices, raw: Mapping[str, Array], file: str) -> None:
-    """Refuse a unit for a column that the log does not have, and a text that is no unit."""
-    for column, unit in choices.units.items():
-        if column not in raw:
+def _check_choices(
+    choices: Choices, raw: Mapping[str, Array], unread: Mapping[str, str], file: str
+) -> None:
+    """Refuse columns that the log does not have, texts that are no units, impossible numbers."""
+    keys = ("time", "position", "actuator_force", "interaction_force")
+    stated = {key: getattr(choices, key) for key in keys}
+    columns = [(key, name) for key, name in stated.items() if name not in (None, NONE)]
+    for key, name in (*columns, *(("unit", name) for name in choices.units)):
+        if name not in raw:
+            why = f"column {name!r}: {unread[name]}" if name in unread else f"no column {name!r}"
             raise ExperimentError(
-                f"{file}: unit of {column!r}: no such column, found {join_names(raw)}"
-                f"{did_you_mean(column, raw)}"
+                f"{file}: {key}: {why}, found {join_names(raw)}{did_you_mean(name, raw)}"
             )
+    for column, unit in choices.units.items():
         if unit != "counts" and not is_unit(unit) and not is_several_times(unit):
             raise ExperimentError(
                 f"{file}: unit of {column!r}: found {unit!r}, expected a unit such as "
                 f'"deg", "mm", "N*m" or "A", or "125 us" for the ticks of a clock'
                 f"{did_you_mean(unit, UNITS)}"
             )
-
-
-def _check_numbers(choices: Choices, file: str) -> None:
-    """Refuse numbers that no device has: a sample rate of 0 Hz, a gear ratio of 0."""
     for key, expected in (
         ("sample_rate", "more than 0 Hz"),
         ("counts_per_turn", "more than 0"),
@@ -173,6 +167,7 @@ def _check_numbers(choices: Choices, file: str) -> None:
         value = getattr(choices, key)
         if value is None:
             continue
+        # a device with a sample rate of 0 Hz or a gear ratio of 0 has no motion
         if not math.isfinite(value) or value == 0 or (value < 0 and key != "gear_ratio"):
             raise ExperimentError(f"{file}: {key}: found {value:g}, expected {expected}")
 

@@ -55,7 +55,8 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
             cells = together[name] if name in together else log.read({name: ""})[name]
             values = numbers_of(cells, name, file)
         except ExperimentError as problem:
-            unread[name] = _without_name(str(problem), name, file)
+            why = str(problem).removeprefix(f"{file}: ").removeprefix("column ")
+            unread[name] = why.removeprefix(quote(name)).lstrip(":, ")
             continue
         filled = np.isfinite(values)
         if len(values) > 1 and is_most(filled):
@@ -77,12 +78,6 @@ def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, st
         )
     units = {**log.units, **dict.fromkeys(dated, "s")}
     return raw, unread, replace(log, units=units, remarks=(*log.remarks, *remarks))
-
-
-def _without_name(message: str, column: str, file: str) -> str:
-    """A message about a column, without the names of the file and of the column."""
-    short = message.removeprefix(f"{file}: ").removeprefix("column ").removeprefix(quote(column))
-    return short.lstrip(":, ")
 
 
 def time_column(

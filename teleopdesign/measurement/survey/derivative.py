@@ -110,22 +110,16 @@ def may_be_position(name: str, columns: Mapping[str, SurveyedColumn], sample_tim
     steps = np.diff(column.readings[np.isfinite(column.readings)])
     if column.unit is not None or likeness(name, "time") > 0 or np.all(steps == steps[0]):
         return False
-    speeds = (c for n, c in columns.items() if n != name and not rises(c.readings))
     x = column.values
-    return any(
-        is_mean_rate(x, c.values, sample_time)
-        or not is_force(c)
-        and _is_rate(*derivative_factor(x, c.values, sample_time))
-        for c in speeds
-    )
-
-
-def _is_rate(factor: float, agree: float) -> bool:
-    """Whether a column that is the derivative of another one but for a factor is in a usual unit.
-
-    What rises with a ramp agrees with the motion that the ramp causes, too.
-    """
-    return agree > DERIVATIVE and any(abs(factor * u - 1.0) < SMALL for u in RATES)
+    for other in (c for n, c in columns.items() if n != name and not rises(c.readings)):
+        if is_mean_rate(x, other.values, sample_time):
+            return True
+        factor, agree = derivative_factor(x, other.values, sample_time)
+        # in a usual unit: what rises with a ramp agrees with the motion that the ramp causes, too
+        usual = any(abs(factor * u - 1.0) < SMALL for u in RATES)
+        if not is_force(other) and agree > DERIVATIVE and usual:
+            return True
+    return False
 
 
 def may_be_ramp(column: SurveyedColumn) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -49,46 +50,42 @@ def axis_of(survey: Survey, position: str, choices: Choices) -> str:
         for axis in ("prismatic", "revolute"):
             if measures(unit, "position", axis):
                 return axis
-    if (turn := turn_of(survey.columns[position].values)) is not None:
-        survey.guesses["model.device.axis"] = (
-            f"the axis is revolute: {position!r} wraps at a turn in {turn}"
-        )
-        return "revolute"
-    if choices.torque_constant is not None:
+    if choices.torque_constant is not None and turn_of(survey.columns[position].values) is None:
         force = choices.torque_constant[1].rpartition("/")[0]
         return "revolute" if measures(force, "force", "revolute") else "prismatic"
-    units = [c.unit for c in survey.columns.values() if c.unit and is_unit(c.unit)]
-    rates = {a for a in AXES for u in units if measures(u, "velocity", a)}
-    forces = [u for u in units if measures(u, "force")]
-    turned = [u for u in units if measures(u, "force", "revolute")]
-    if len(rates) == 1:
-        axis = next(iter(rates))
-        unit = next(u for u in units if measures(u, "velocity", axis))
-        why = f"a velocity is in {unit}"
-    elif forces and not turned or any(measures(u, "position") for u in units):
-        lengths = [u for u in units if measures(u, "position")]
-        why = f"forces are in {forces[0]}" if forces else f"a column is in {lengths[0]}"
-        axis = "prismatic"
-    elif turned and not forces:
-        why, axis = f"forces are in {turned[0]}", "revolute"
-    else:
-        sliding = says(position, "sliding") and not says(position, "limb", "angle")
-        turning = says(position, "turning", "limb", "angle") or drives_in_turns(position)
-        torques = [name for name in survey.columns if says(name, "turning torque")]
-        counts = unit is None and is_counter(survey.columns[position])
-        revolute = turning or torques or counts or unit == "counts" or "A" in units
-        axis = "revolute" if revolute and not sliding else "prismatic"
-        why = "no unit and no name of a column determines the axis"
-        if sliding:
-            why = f"the name {position!r} is that of a part that slides"
-        elif turning:
-            why = f"the name {position!r} is that of an angle"
-        elif torques:
-            why = f"the name {torques[0]!r} is that of a torque"
-        elif counts:
-            why = f"{position!r} holds whole numbers, as the counter of an encoder does"
+    axis, why = next(_signs_of_axis(survey, position))
     survey.guesses["model.device.axis"] = f"the axis is {axis}: {why}"
     return axis
+
+
+def _signs_of_axis(survey: Survey, position: str) -> Iterator[tuple[str, str]]:
+    """Axes and what tells them, the surest first."""
+    column = survey.columns[position]
+    if (turn := turn_of(column.values)) is not None:
+        yield "revolute", f"{position!r} wraps at a turn in {turn}"
+    units = [c.unit for c in survey.columns.values() if c.unit and is_unit(c.unit)]
+    rates = {a: u for a in AXES for u in reversed(units) if measures(u, "velocity", a)}
+    if len(rates) == 1:
+        yield from ((axis, f"a velocity is in {unit}") for axis, unit in rates.items())
+    forces, lengths = ([u for u in units if measures(u, q)] for q in ("force", "position"))
+    turned = [u for u in units if measures(u, "force", "revolute")]
+    if forces and not turned:
+        yield "prismatic", f"forces are in {forces[0]}"
+    if lengths:
+        yield "prismatic", f"a column is in {lengths[0]}"
+    if turned and not forces:
+        yield "revolute", f"forces are in {turned[0]}"
+    if says(position, "sliding") and not says(position, "limb", "angle"):
+        yield "prismatic", f"the name {position!r} is that of a part that slides"
+    if says(position, "turning", "limb", "angle") or drives_in_turns(position):
+        yield "revolute", f"the name {position!r} is that of an angle"
+    for name in (name for name in survey.columns if says(name, "turning torque")):
+        yield "revolute", f"the name {name!r} is that of a torque"
+    if column.unit is None and is_counter(column):
+        yield "revolute", f"{position!r} holds whole numbers, as the counter of an encoder does"
+    turns = column.unit == "counts" or "A" in units
+    why = "no unit and no name of a column determines the axis"
+    yield "revolute" if turns else "prismatic", why
 
 
 def is_counter(column: SurveyedColumn) -> bool:

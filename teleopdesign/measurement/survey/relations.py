@@ -213,7 +213,9 @@ def _rests_at(ends: Indices, position: Array) -> bool:
 
 def has_numbers_of(column: Array, position: Array) -> bool:
     """Whether a column has the numbers of the position, at the same time, earlier or later."""
-    if not _are_alike(column, position):
+    spread = float(np.std(position))  # of the same numbers, mean and spread are alike: a first look
+    within = abs(float(np.mean(column) - np.mean(position))) < spread
+    if not (within and HALF * spread < float(np.std(column)) < 2.0 * spread):
         return False
     delays = _delays(len(column))
     least = (min(_apart(column, position, k), _apart(position, column, k)) for k in delays)
@@ -230,13 +232,6 @@ def may_be_set_point(column: SurveyedColumn) -> bool:
         return False
     plain = " ".join(word for word in words_of(column.name) if word not in WANTED)
     return max(likeness(plain, f"{k}_force") for k in ("actuator", "interaction")) < SURE_NAME
-
-
-def _are_alike(column: Array, other: Array) -> bool:
-    """Whether mean and spread let two columns have the same numbers: a quick first look."""
-    spread = float(np.std(other))
-    within = abs(float(np.mean(column) - np.mean(other))) < spread
-    return within and HALF * spread < float(np.std(column)) < 2.0 * spread
 
 
 def _delays(rows: int) -> Iterator[int]:

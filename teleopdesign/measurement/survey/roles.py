@@ -277,10 +277,9 @@ def of_another_axis(one: str, other: str, names: Collection[str] = ()) -> bool:
 @lru_cache(maxsize=4096)
 def _split(words: Words) -> tuple[Words, Words]:
     """The words that may call a joint, "hip", or a side, "m", and those of a quantity."""
-    called = [w in _LETTERS if len(w) == 1 else not _tells_quantity(w) for w in words]
+    tells = {
+        w for w in words if w in WANTED or any(likeness(w, q) >= SURE_NAME for q in _QUANTITIES)
+    }
+    called = [w in _LETTERS if len(w) == 1 else w not in tells for w in words]
     pairs = list(zip(words, called, strict=True))
     return tuple(w for w, is_label in pairs if is_label), tuple(w for w, is_l in pairs if not is_l)
-
-
-def _tells_quantity(word: str) -> bool:
-    return word in WANTED or any(likeness(word, q) >= SURE_NAME for q in _QUANTITIES)

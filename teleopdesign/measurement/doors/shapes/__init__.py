@@ -64,7 +64,9 @@ def score(long: LongTable, table: CellTable) -> float:
         numbers += count
         empty += len(signal.values) - count
         if signal.times is not None and signal.clock not in clocks:
-            clocks[signal.clock] = _regularity(signal.times)
+            # steps that go forward, by less than twice the usual one
+            off = step_deviations(signal.times[np.isfinite(signal.times)])
+            clocks[signal.clock] = float(np.mean(off < 1.0)) if len(off) else 0.0
             numbers += len(signal.times)
     regular = float(np.mean([*clocks.values()])) if clocks else HALF
     return numbers * regular * numbers / max(numbers + empty, 1.0)
@@ -153,9 +155,3 @@ def _seconds_of(signals: Iterable[LongSignal]) -> dict[str, Array]:
     out = {c: t * si_factor(unit or usual, quantity="time") for c, (t, unit) in clocks.items()}
     begin = min(float(t[0]) for t in out.values())
     return {c: t - begin for c, t in out.items()} if abs(begin) > DATE else out
-
-
-def _regularity(times: Array) -> float:
-    """Part of the steps of a clock that go forward, by less than twice its usual step."""
-    off = step_deviations(times[np.isfinite(times)])
-    return float(np.mean(off < 1.0)) if len(off) else 0.0
