@@ -20,8 +20,8 @@ from ..measurement.from_arrays import log_of
 from ..measurement.new_folder import FitAndCheck, check_spans, copy_logs, records_of
 from ..measurement.saving import records_text
 from ..measurement.survey import spans_of
-from ..measurement.survey.clock import duration_of, numeric_columns, time_column
-from ..measurement.survey.content import NONE, Choices
+from ..measurement.survey.clock import duration_of, time_column
+from ..measurement.survey.content import NONE, Choices, numeric_columns
 from ..measurement.survey.roles import unit_in_log
 from .channel_search import ChannelSearch, ColumnChoice
 
@@ -87,7 +87,7 @@ def propose_channels(
     _require(stated, diagram.signals, "signal", file)
     _require([choices.time or NONE, *choices.units, *stated.values()], tuple(raw), "column", file)
     guesses: dict[str, str] = {}
-    time, unit = time_column(raw, log, choices, guesses, file)
+    time, unit = time_column(raw, log, choices, guesses)
     clock: dict[str, Any] = {"time": {"column": time, "unit": unit}}
     if time is None:
         if choices.sample_rate is None:
@@ -96,11 +96,7 @@ def propose_channels(
     rows = max(map(len, raw.values())) if time is None else len(raw[time])
     idle |= {n: "has other rows than the time" for n, x in raw.items() if len(x) != rows}
     idle |= {n: "is constant" for n, x in raw.items() if np.nanmax(x) == np.nanmin(x)}
-    units = {
-        n: choices.units.get(n) or log.units.get(n) or unit_in_log(n, log.names)
-        for n in raw
-        if n != time and n not in idle
-    }
+    units = {n: unit_in_log(n, log, choices) for n in raw if n != time and n not in idle}
     data = {n: x for n, x in raw.items() if n == time or n in units}
     search = ChannelSearch(diagram, data, units, clock, stated)
     best = search.best()

@@ -27,7 +27,7 @@ import numpy as np
 from corpus.reading import entries, read, unpacked
 from scipy.optimize import minimize
 
-from teleopdesign.measurement.survey import balance, forces, position, roles
+from teleopdesign.measurement.survey import forces, position, roles
 
 ODDS = Path(roles.__file__).with_name("roles.toml")
 #: roles of which the corpus holds enough choices; standard deviation of the prior of ln odds, with
@@ -91,7 +91,7 @@ def _kept_scores() -> Iterator[list[tuple[str, str, dict[str, float], float]]]:
 
     beside = position.score_beside
     with contextlib.ExitStack() as stack:
-        for module in (position, forces, balance):
+        for module in (position, forces):
             stack.enter_context(patch.object(module, "score_of", score_of))
         stack.enter_context(patch.object(position, "score_beside", score_beside))
         yield kept

@@ -25,14 +25,20 @@ from ..encoder import Array
 from ..limits import FEWEST
 from ..record_clock import segments_of
 from ..stamps import unwrap_stamps
-from .clock import WEIGHTS, duration_of, interpolate_columns, numeric_columns, time_column
-from .content import ASSUMED, NONE, Choices, Survey, SurveyedColumn
+from .clock import (
+    WEIGHTS,
+    counts_rows,
+    duration_of,
+    interpolate_columns,
+    rate_without_time,
+    time_column,
+)
+from .content import ASSUMED, NONE, Choices, Survey, SurveyedColumn, numeric_columns
 from .derivative import wrap_of
 from .forces import describe_forces
 from .position import find_position
 from .position_entry import axis_of, describe_position
 from .refusals import unused_columns
-from .time_role import counts_rows, rate_without_time
 
 __all__ = [
     "Choices",
@@ -65,7 +71,7 @@ def survey_log(log: Log, file: str, choices: Choices) -> Survey:
     choices = replace(choices, units={n: as_unit(u) for n, u in choices.units.items()})
     _check_choices(choices, raw, unread, file)
     guesses: dict[str, str] = {}
-    time_name, unit = time_column(raw, log, choices, guesses, file)
+    time_name, unit = time_column(raw, log, choices, guesses)
     if time_name is not None:
         raw[time_name], _ = unwrap_stamps(raw[time_name])
     elif choices.sample_rate is None and (rate := rate_without_time(raw, log, choices)):

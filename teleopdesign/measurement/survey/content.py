@@ -8,16 +8,19 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
+from ...base.errors import ExperimentError, quote
 from ...base.units import is_unit, measures, si_factor
 from ..column_names import unit_of_text
-from ..doors._cells import number_of
+from ..doors._cells import holds_dates, number_of, numbers_of
+from ..doors._log import Log, bare_column, join_names
 from ..encoder import Array, SignCode, is_most
 from ..first_guess import FirstGuess
+from ..log_clock import OF_ANOTHER_CLOCK
 
 _TURN = r"(?:turn|rev|revolution|umdrehung|tour|u\b)"
 _COUNTS = r"(?:counts?|cnts?|ticks?|increments?|inkremente|ink|inc|pulses|impulse|cpr)"
@@ -221,3 +224,55 @@ def gear_ratio_in(remarks: Sequence[str]) -> tuple[float, str] | None:
 
 #: what a log may state of its clock and of the machine: its lines -> values, then the line
 STATEMENTS = (sample_rate_in, counts_per_turn_in, torque_constant_in, gear_ratio_in)
+
+
+def numeric_columns(log: Log, file: str) -> tuple[dict[str, Array], dict[str, str], Log]:
+    """Columns of numbers or dates, by name; and the reason why each other column has none.
+
+    returns: also the log with the unit of dates, and with single values ("gear = 30") as remarks
+    """
+    dated: list[str] = []
+    remarks: list[str] = []
+    raw: dict[str, Array] = {}
+    unread: dict[str, str] = {}
+    single = [name for name in log.names if log.names.count(name) == 1]
+    try:
+        # a text file is then read once, not once for each column
+        together = log.read(dict.fromkeys(single, ""))
+    except ExperimentError:
+        together = {}
+    for name in single:
+        try:
+            cells = together[name] if name in together else log.read({name: ""})[name]
+            values = numbers_of(cells, name, file)
+        except ExperimentError as problem:
+            why = str(problem).removeprefix(f"{file}: ").removeprefix("column ")
+            unread[name] = why.removeprefix(quote(name)).lstrip(":, ")
+            continue
+        filled = np.isfinite(values)
+        if len(values) > 1 and is_most(filled):
+            raw[name] = values
+            dated += [name] if holds_dates(cells) else []
+        elif len(values) == 1:
+            unread[name] = f"one value: {values[0]:g}"
+            remarks.append(f"{bare_column(name)} = {values[0]:g}")
+        else:
+            finite = float(filled.mean()) if len(values) else 0.0
+            more = f": {OF_ANOTHER_CLOCK}" if finite > 0 else ""
+            unread[name] = f"numbers in {finite:.0%} of its rows{more}"
+    if not raw or log.clocks and not log.clocks.keys() & raw.keys():  # or clocks alone
+        whys = set(unread.values())
+        if len(whys) == 1 and "found" in (why := whys.pop()):  # the same row of all columns
+            raise ExperimentError(f"{file}: {why}")
+        raise ExperimentError(
+            f"{file}: found no column of numbers among {join_names(log.names)}{reasons(unread)}"
+        )
+    units = {**log.units, **dict.fromkeys(dated, "s")}
+    return raw, unread, replace(log, units=units, remarks=(*log.remarks, *remarks))
+
+
+def reasons(unread: Mapping[str, str], most: int = 3) -> str:
+    """Why columns of a log hold no numbers, as the end of a message; "" if all hold numbers."""
+    shown = [f"{name!r}: {why}" for name, why in list(unread.items())[:most]]
+    more = ["..."] if len(unread) > most else []
+    return f"; not read as numbers: {'; '.join(shown + more)}" if unread else ""

@@ -38,8 +38,9 @@ UNLIKE = 5.0
 TURNS, FEWEST_COUNTS = (360.0, 2 * math.pi, 1.0, 400.0, 180.0, math.pi), 500.0
 
 
-def unwrap_column(x: Array, jump: float | None) -> Array:
-    """A column without its wraps; jump: period of the wraps, None for none."""
+def unwrap_column(x: Array) -> Array:
+    """A column without its wraps."""
+    jump = wrap_of(x)
     return x if jump is None else np.asarray(np.unwrap(x, period=jump))
 
 

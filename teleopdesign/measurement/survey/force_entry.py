@@ -7,19 +7,33 @@ effect. A command scatters, too, but its scatter acts on the body.
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Any
 
 import numpy as np
 
 from ...base.errors import ExperimentError
+from ...base.sentences import with_standard_error
 from ...base.toml import Table
-from ...base.units import is_unit, measures, unit_of
+from ...base.units import is_unit, measures, si_factor, unit_of
+from ..channel import BODY_QUANTITIES
 from ..column_names import is_wanted, unit_in_name, why_no_unit
 from ..conversion import conversion_of
-from ..encoder import SIGN_BIT, reading_noise
-from .content import Choices, Survey, torque_constant_in
+from ..encoder import SIGN_BIT, Array, reading_noise
+from ..first_guess import balance_factor
+from .content import (
+    Choices,
+    Survey,
+    gear_ratio_in,
+    torque_constant_in,
+)
 from .roles import says
+
+FACTOR_OF_ONE = 1.25
+#: relative standard error of a factor up to which a balance states a constant: the printed number
+#: then has more than one valid digit
+KNOWN = 0.05
 
 #: N*m/A or m: constant of a motor, or lever arm of a force beside an angle, if nothing states it
 PLACEHOLDER = 1.0
@@ -136,15 +150,16 @@ def _lever_arm(survey: Survey, name: str, key: str, choices: Choices) -> dict[st
     return {"value": arm[0], "unit": arm[1]}
 
 
-def force_to_si(survey: Survey, key: str) -> float:
-    """Factor of a force from its column to SI, with the proposed unit, constant and gear ratio."""
+def signal_in_si(survey: Survey, key: str) -> Array:
+    """A channel's column (n,) in SI, with the proposed unit, constant and gear ratio."""
     entry = survey.channels[key]
     if key == "actuator_force" and "gear_ratio" in survey.channels["position"]:
         entry = {**entry, "gear_ratio": survey.channels["position"]["gear_ratio"]}
+    kind, table = BODY_QUANTITIES[key], Table(entry, "log")
     conversion, _ = conversion_of(
-        Table(entry, "log"), quantity=key, kind="force", axis=survey.axis, unit=entry["unit"]
+        table, quantity=key, kind=kind, axis=survey.axis, unit=entry["unit"]
     )
-    return conversion.factor
+    return conversion.signal({entry["column"]: survey.columns[entry["column"]].values})
 
 
 def state_scatter(survey: Survey, name: str) -> None:
@@ -167,4 +182,82 @@ def state_scatter(survey: Survey, name: str) -> None:
     survey.notes.append(
         f"{name!r} scatters by {entry['noise']:g} {entry['unit']} from row to row, stated as "
         "noise: delete it if the column holds the exact command"
+    )
+
+
+def scale_by_balance(survey: Survey, motion: tuple[Array, float], choices: Choices) -> None:
+    """Guess motor constant and lever arm if neither the user nor the log states them.
+
+    The one that is open follows from the factor by which the command balances the force of the
+    hand. If this factor is far from one and none of them is guessed, a note reports it.
+    """
+    stated = gear_ratio_in(survey.remarks) if choices.gear_ratio is None else None
+    if stated is not None:
+        survey.notes.append(
+            f"a line of the log states {stated[1]!r}: if position and force are those of "
+            f"the motor, use --gear-ratio {stated[0]:g}"
+        )
+    if "interaction_force" not in survey.channels:
+        return
+    scale, error = _command_scale(survey, motion)
+    if error > KNOWN * scale:
+        return
+    places = (
+        (key, part)
+        for part in ("torque_constant", "lever_arm")
+        for key in ("actuator_force", "interaction_force")
+    )
+    still_open = [p for p in places if _is_open(survey, *p)]
+    if still_open and (len(still_open) == 1 or still_open[0][1] == "torque_constant"):
+        _guess_constant(survey, *still_open[0], scale, error)
+    elif not still_open and not 1 / FACTOR_OF_ONE < scale < FACTOR_OF_ONE:
+        factor = with_standard_error(scale, error)
+        force, hand = (_column_of(survey, f"{k}_force") for k in ("actuator", "interaction"))
+        survey.notes.append(
+            f"{force!r} balances {hand!r} only with a factor of {factor}: one of the two has "
+            "another unit (--unit), or a gear lies between (--gear-ratio)"
+        )
+
+
+def _column_of(survey: Survey, key: str) -> str:
+    return str(survey.channels[key]["column"])
+
+
+def _is_open(survey: Survey, key: str, part: str) -> bool:
+    """Whether a motor constant or a lever arm is a placeholder."""
+    value = survey.channels[key].get(part, {}).get("value")
+    return f"channels.{key}.{part}" in survey.guesses and value == PLACEHOLDER
+
+
+def _command_scale(survey: Survey, motion: tuple[Array, float]) -> tuple[float, float]:
+    """The factor by which the command balances the force of the hand, and its standard error."""
+    u, hand = (signal_in_si(survey, f"{whose}_force") for whose in ("actuator", "interaction"))
+    factor, error = balance_factor(u, hand, *motion)
+    if factor == 0:
+        return 1.0, math.inf
+    return 1 / abs(factor), error / factor**2
+
+
+def _guess_constant(survey: Survey, key: str, part: str, scale: float, error: float) -> None:
+    """Set the motor constant or the lever arm of one force so that the two forces balance.
+
+    scale: factor of the command in the balance, with the placeholder in place of the constant
+    """
+    other = "interaction_force" if key == "actuator_force" else "actuator_force"
+    if key == "interaction_force":
+        scale, error = 1.0 / scale, error / scale**2
+    table, base = survey.channels[key][part], PLACEHOLDER
+    if part == "torque_constant":
+        unit = table["unit"].rpartition("/")[0]
+        base /= si_factor(unit, quantity="force", axis=survey.axis)
+    doubt = ""
+    if f"channels.{other}.unit" in survey.guesses:
+        doubt = f", if the latter is in {survey.channels[other]['unit']}"
+    elif _is_open(survey, other, "lever_arm"):
+        doubt = f", if the latter acts at {PLACEHOLDER:g} m from the axis"
+    table["value"] = float(f"{scale * base:.4g}")
+    value = with_standard_error(scale * base, error * base)
+    survey.guesses[f"channels.{key}.{part}"] = (
+        f"{value} {table['unit']}: with it, {_column_of(survey, key)!r} balances "
+        f"{_column_of(survey, other)!r}{doubt}"
     )

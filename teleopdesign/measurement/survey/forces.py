@@ -6,14 +6,23 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-from ...base.units import si_factor
-from ..column_names import likeness
+import numpy as np
+
+from ...base.units import measures, si_factor
+from ..column_names import is_wanted, likeness
 from ..encoder import Array
-from ..first_guess import SURELY_LESS, explain_force, is_turned
-from .balance import current_that_acted, find_hand, scale_by_balance
-from .content import SURE_NAME, Choices, Survey, SurveyedColumn, sample_time_of
-from .derivative import unwrap_column, wrap_of
-from .force_entry import describe_force, force_to_si, state_scatter
+from ..first_guess import SURELY_LESS, balance_factor, explain_force, is_turned
+from ..limits import SMALL
+from .content import NONE, SURE_NAME, Choices, Survey, SurveyedColumn, sample_time_of
+from .derivative import unwrap_column
+from .force_entry import (
+    FACTOR_OF_ONE,
+    _is_open,
+    describe_force,
+    scale_by_balance,
+    signal_in_si,
+    state_scatter,
+)
 from .refusals import error_without_force, error_without_position, explain_ambiguity, tells_forces
 from .relations import causes_acceleration, left_in_turn, possible_forces, relations_of
 from .roles import (
@@ -24,9 +33,18 @@ from .roles import (
     is_named_force,
     is_nameless,
     of_another_axis,
+    says,
     score_of,
     stand_together,
 )
+
+#: a column without a clear name counts as the force of the hand if it leaves at most this part of
+#: the squares that the motion does not explain: with a higher limit, one of many columns would pass
+#: by chance. The limit also bounds the deviation of its factor from one: a calibration error of a
+#: quarter still passes
+BALANCES = 2.0 / 3.0
+#: most rows by which a drive may be late behind its command; it may also smooth over these rows
+LATE = 4
 
 
 def describe_forces(
@@ -38,14 +56,14 @@ def describe_forces(
     """
     h = sample_time_of(survey)
     entry = survey.channels["position"]
-    x = unwrap_column(survey.columns[position].values, wrap_of(survey.columns[position].values))
+    x = unwrap_column(survey.columns[position].values)
     free: dict[str, SurveyedColumn] = {}
     scores: dict[str, float] = {}
     if not choices.states_all:
         survey.relations = dict(relations_of(survey, position, velocity, x))
         free = possible_forces(survey, position, velocity)
         survey.explained = {n: 1.0 - left_in_turn(c.values, x, h)[1] for n, c in free.items()}
-        scores = _score_forces(survey, position, free, choices.torque_constant is not None)
+        scores = score_forces(survey, position, free, choices.torque_constant is not None)
     force, measured = _find_driving_force(survey, free, scores, choices, (file, velocity))
     survey.channels["actuator_force"] = describe_force(survey, force, "actuator_force", choices)
     if measured:
@@ -63,28 +81,10 @@ def describe_forces(
         )
     scale_by_balance(survey, motion, choices)
     # now in SI, and behind the guessed gear
-    _choose_signs(survey, (x * _position_to_si(survey), h), force, hand)
+    _choose_signs(survey, (signal_in_si(survey, "position"), h), force, hand)
 
 
-def score_beside(survey: Survey, position: str, velocity: str | None, x: Array) -> float:
-    """The score of the other columns beside a position x (n,): one is a force, others its place."""
-    h, columns = sample_time_of(survey), survey.columns
-    beside = {n: c for n, c in columns.items() if not of_another_axis(n, position, columns)}
-    trial = replace(survey, columns=beside)
-    trial.relations = dict(relations_of(trial, position, velocity, x))
-    free = possible_forces(trial, position, velocity)
-    left = {n: left_in_turn(c.values, x, h) for n, c in free.items()}
-    trial.explained = {n: 1.0 - by_motion for n, (_, by_motion) in left.items()}
-    forces = _score_forces(trial, position, free, False)
-    places = [
-        math.log(max(by_place, LEAST_LEFT))
-        for n, (by_place, _) in left.items()
-        if not is_named_force(free[n])
-    ]
-    return max(forces.values(), default=-math.inf) - sum(places)
-
-
-def _score_forces(
+def score_forces(
     survey: Survey, position: str, free: Mapping[str, SurveyedColumn], needs_constant: bool
 ) -> dict[str, float]:
     """The score of each column that may be the force;  needs_constant: one is stated."""
@@ -143,26 +143,16 @@ def _find_driving_force(
     return force, acted is not None
 
 
-def _position_to_si(survey: Survey) -> float:
-    """Factor of the position from its column to SI, on the output side of the gear."""
-    position = survey.channels["position"]
-    if position["unit"] == "counts":
-        scale = 2 * math.pi / float(position["counts_per_turn"])
-    else:
-        scale = si_factor(position["unit"], quantity="position", axis=survey.axis)
-    return scale / float(position.get("gear_ratio", 1.0))
-
-
 def _choose_signs(
     survey: Survey, motion: tuple[Array, float], force: str, hand: str | None
 ) -> None:
     """Choose the signs of position and hand so that friction brakes and inertia is positive."""
     x, h = motion
-    u = survey.columns[force].values * force_to_si(survey, "actuator_force")
+    u = signal_in_si(survey, "actuator_force")
     if hand is None:
         total, fit = u, explain_force(u, x, h)
     else:
-        f = survey.columns[hand].values * force_to_si(survey, "interaction_force")
+        f = signal_in_si(survey, "interaction_force")
         total, fit = u + f, explain_force(u + f, x, h)
         other = explain_force(u - f, x, h)
         if other.left < SURELY_LESS * fit.left:
@@ -187,3 +177,118 @@ def _choose_signs(
         survey.notes.append(
             f"forces and positions are those on the output side of the gear of {ratio:g}"
         )
+
+
+def find_hand(
+    survey: Survey,
+    free: Mapping[str, SurveyedColumn],
+    force: str,
+    motion: tuple[Array, float],
+    choices: Choices,
+) -> str | None:
+    """The force of the hand: stated, or by its name, or by its balance with the command."""
+    if choices.interaction_force is not None:
+        return None if choices.interaction_force == NONE else choices.interaction_force
+    scores: dict[str, float] = {}
+    for name, column in free.items():
+        if name != force:
+            is_called = likeness(name, "interaction_force") >= SURE_NAME
+            left = 1.0 if is_called else _left_by_balance(survey, column, motion)
+            scores[name] = score_of("interaction_force", column, left=left)
+    hand = max(scores, key=lambda n: scores[n], default="")
+    if not hand or scores[hand] < -math.log(BALANCES):
+        return None
+    if likeness(hand, "interaction_force") < SURE_NAME:
+        survey.guesses["channels.interaction_force.column"] = (
+            f"{hand!r} is read as the force of the hand: with it, the motion leaves "
+            f"{1 - math.exp(-scores[hand]):.0%} less of the command {force!r} unexplained"
+        )
+    return hand
+
+
+def _left_by_balance(survey: Survey, column: SurveyedColumn, motion: tuple[Array, float]) -> float:
+    """Part of what the motion leaves of the command that it leaves of `k command + hand`.
+
+    Where the scale of the command is known, the factor is one.
+    """
+    is_free = _is_open(survey, "actuator_force", "torque_constant")
+    if not _may_balance(column, survey.axis, named=is_free):
+        return 1.0
+    u = signal_in_si(survey, "actuator_force")
+    other = column.values
+    if column.unit:
+        other = other * si_factor(column.unit, quantity="force", axis=survey.axis)
+    factor, _ = balance_factor(u, other, *motion)
+    if not is_free and not 1 / FACTOR_OF_ONE < abs(factor) < FACTOR_OF_ONE:
+        return 1.0
+    alone = explain_force(u, *motion)
+    factor = factor if is_free else math.copysign(1.0, factor)
+    whole = explain_force(u + factor * other, *motion)
+    if not alone.left > 0.0 or not alone.explained < 1.0:
+        return 1.0
+    # a command that was logged twice cancels itself: the motion explains no more of the rest
+    return max((whole.left / alone.left) ** 2, (1 - whole.explained) / (1 - alone.explained))
+
+
+def _may_balance(column: SurveyedColumn, axis: str, *, named: bool) -> bool:
+    """Whether a column may be the force of the hand by its name and unit.
+
+    named: the column needs the unit of a force, or the name of one that is not the motor's: with a
+        free factor, a motor voltage balances a current too
+    """
+    name, unit = column.name, column.unit
+    if is_wanted(name) or likeness(name, "position") >= SURE_NAME:
+        return False
+    if unit is not None:
+        return measures(unit, "force", axis)
+    return not named or says(name, "torque") and not says(name, "motor side")
+
+
+def current_that_acted(
+    force: str, columns: Mapping[str, SurveyedColumn], scores: Mapping[str, float]
+) -> tuple[str, float] | None:
+    """A measured current that acted in place of the commanded `force`, and how far the two differ.
+
+    A model-based controller logs the force that its model demands. Friction that the model lacks
+    shows only in the measured current: with the commanded force no effect would seem to be missing.
+
+    returns: the column of the current, and the rms of the part that the command does not explain,
+        over the rms of the current; None: `force` is no command, or the drive followed it
+    """
+    if not is_wanted(force):
+        return None
+    measured = [
+        name
+        for name, column in columns.items()
+        if name != force and is_current(column) and not is_wanted(name)
+        if likeness(name, "actuator_force") >= SURE_NAME
+        # the current that a drive draws from its supply has one side
+        if not _smaller_side(column.values) < SMALL < _smaller_side(columns[force].values)
+    ]
+    if not measured:
+        return None
+    best = max(measured, key=lambda name: scores[name])
+    share = _unexplained_share(columns[force].values, columns[best].values)
+    return (best, share**0.5) if share > LEAST_LEFT else None
+
+
+def _smaller_side(x: Array) -> float:
+    """The largest value of the smaller side of zero, over that of the larger side."""
+    sides = sorted((max(float(np.max(x)), 0.0), max(-float(np.min(x)), 0.0)))
+    return sides[0] / sides[1] if sides[1] > 0.0 else 0.0
+
+
+def _unexplained_share(wanted: Array, measured: Array) -> float:
+    """Part of the variance of a measured force that the commanded force does not explain.
+
+    The residual of each row is multiplied by that of the next row, so that noise of single rows and
+    the steps of a converter average out.
+    """
+    rows = len(measured) - LATE
+    late = [wanted[LATE - k : LATE - k + rows] for k in range(LATE + 1)]
+    columns = np.column_stack([*late, np.ones(rows)])
+    target = measured[LATE:]
+    whole = float(np.mean((target - target.mean()) ** 2))
+    solution, *_ = np.linalg.lstsq(columns, target, rcond=1e-8)
+    left = target - columns @ solution
+    return float(np.mean(left[1:] * left[:-1])) / whole if whole > 0 else 0.0

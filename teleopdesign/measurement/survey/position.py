@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import product
 
 from ..column_names import (
@@ -28,14 +30,15 @@ from .derivative import (
     may_be_position,
     rate_agreement,
     unwrap_column,
-    wrap_of,
 )
-from .forces import score_beside
+from .forces import score_forces
 from .refusals import error_without_position, explain_ambiguity
-from .relations import lags, may_be_set_point
+from .relations import lags, left_in_turn, may_be_set_point, possible_forces, relations_of
 from .roles import (
+    LEAST_LEFT,
     as_likely,
     first_of,
+    is_named_force,
     is_nameless,
     is_no_position,
     is_unit_of,
@@ -55,7 +58,7 @@ def find_position(survey: Survey, choices: Choices, file: str) -> tuple[str, str
     if choices.states_all:  # only its velocity is looked for, among the columns that are called so
         moving = {n: c for n, c in moving.items() if n == chosen or is_velocity(c)}
     moving = {n: c for n, c in moving.items() if n == chosen or may_be_position(n, columns, h)}
-    flat = {n: unwrap_column(c.values, wrap_of(c.values)) for n, c in moving.items()}
+    flat = {n: unwrap_column(c.values) for n, c in moving.items()}
     # a wrong unit that is stated is refused later, with its name
     may_be = [n for n, c in moving.items() if n in choices.units or not is_no_position(c)]
     may_be = may_be if chosen is None else [chosen]
@@ -152,3 +155,21 @@ def _note_choice(
     else:
         why = "it is the first column that moves"
     survey.guesses[key] = f"{best!r} is read as the position: {why}"
+
+
+def score_beside(survey: Survey, position: str, velocity: str | None, x: Array) -> float:
+    """The score of the other columns beside a position x (n,): one is a force, others its place."""
+    h, columns = sample_time_of(survey), survey.columns
+    beside = {n: c for n, c in columns.items() if not of_another_axis(n, position, columns)}
+    trial = replace(survey, columns=beside)
+    trial.relations = dict(relations_of(trial, position, velocity, x))
+    free = possible_forces(trial, position, velocity)
+    left = {n: left_in_turn(c.values, x, h) for n, c in free.items()}
+    trial.explained = {n: 1.0 - by_motion for n, (_, by_motion) in left.items()}
+    forces = score_forces(trial, position, free, False)
+    places = [
+        math.log(max(by_place, LEAST_LEFT))
+        for n, (by_place, _) in left.items()
+        if not is_named_force(free[n])
+    ]
+    return max(forces.values(), default=-math.inf) - sum(places)

@@ -131,7 +131,7 @@ def size_by_velocity(survey: Survey, column: SurveyedColumn, velocity: str) -> f
     speed = survey.columns[velocity]
     if speed.unit is None or not is_rate(survey, velocity):
         return 0.0
-    whole = unwrap_column(column.values, wrap_of(column.values))
+    whole = unwrap_column(column.values)
     factor, agree = derivative_factor(whole, speed.values, sample_time_of(survey))
     size = factor * si_factor(speed.unit, quantity="velocity", axis=survey.axis)
     return size if agree > DERIVATIVE else 0.0
@@ -203,7 +203,7 @@ def _position_unit(
     survey: Survey, column: SurveyedColumn, velocity: str | None, axis: str
 ) -> tuple[str, str]:
     """A unit for a position without one, from its velocity or from its range; and the reason."""
-    reach = float(np.ptp(unwrap_column(column.values, wrap_of(column.values))))
+    reach = float(np.ptp(unwrap_column(column.values)))
     size = 0.0 if velocity is None else size_by_velocity(survey, column, velocity)
     for unit in ("deg", "rad", "turns") if axis == "revolute" else ("mm", "m", "um"):
         if abs(size / si_factor(unit, quantity="position", axis=axis) - 1.0) < SMALL:

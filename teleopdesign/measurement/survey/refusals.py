@@ -15,6 +15,7 @@ from .content import (
     SurveyedColumn,
     columns_in_use,
     moves,
+    reasons,
     rises,
     sample_time_of,
 )
@@ -24,7 +25,6 @@ from .derivative import (
     is_velocity,
     rate_agreement,
     unwrap_column,
-    wrap_of,
 )
 from .roles import is_unit_of, of_another_axis, says
 
@@ -175,7 +175,7 @@ def _explain_no_force(column: SurveyedColumn, survey: Survey) -> str:
     """What a column is that might be a force: a velocity, or explained too little."""
     name, position = column.name, survey.channels["position"]["column"]
     x = survey.columns[position].values
-    x = unwrap_column(x, wrap_of(x))
+    x = unwrap_column(x)
     # a voltage is nearly in proportion to the speed
     may_agree = not is_no_velocity(column)
     if may_agree and rate_agreement(x, column.values, sample_time_of(survey)) > DERIVATIVE:
@@ -186,13 +186,6 @@ def _explain_no_force(column: SurveyedColumn, survey: Survey) -> str:
     beside = "" if best is None else f", and {best:.0%} of {force!r}"
     explained = "" if share is None else f": the motion explains {share:.0%} of it{beside}"
     return f"no channel beside {force!r}{explained}"
-
-
-def reasons(unread: Mapping[str, str], most: int = 3) -> str:
-    """Why columns of a log hold no numbers, as the end of a message; "" if all hold numbers."""
-    shown = [f"{name!r}: {why}" for name, why in list(unread.items())[:most]]
-    more = ["..."] if len(unread) > most else []
-    return f"; not read as numbers: {'; '.join(shown + more)}" if unread else ""
 
 
 def explain_ambiguity(column: str, others: Sequence[str], what: str) -> str:

@@ -28,8 +28,8 @@ from ..column_names import (
     unit_in_name,
     words_of,
 )
-from ..doors._log import bare_column
-from .content import SURE_NAME, SurveyedColumn
+from ..doors._log import Log, bare_column
+from .content import SURE_NAME, Choices, SurveyedColumn
 
 Words = tuple[str, ...]
 
@@ -198,18 +198,20 @@ def says_only(name: str, kind: str) -> bool:
     return bool(words_of(name)) and set(SAYS[kind]).issuperset(words_of(name))
 
 
-def unit_in_log(name: str, names: Collection[str]) -> str | None:
-    """The unit at the end of a column's name among the names of its log.
+def unit_in_log(name: str, log: Log, choices: Choices) -> str | None:
+    """The unit of a column: as the user or the file states it, or at the end of its name.
 
     One letter is a unit where the words before it name a length: "position_m" is in metres. Beside
     "position_s" it is an index, as of a master.
     """
+    if stated := choices.units.get(name) or log.units.get(name):
+        return stated
     unit = unit_in_name(name)
     stem, _, letter = bare_column(name).rpartition("_")
     if unit is not None or letter != "m" or not says(stem, "length"):
         return unit
     index = re.compile(re.escape(stem) + r"_[a-z]$", re.I)
-    return None if any(index.match(bare_column(n)) for n in names if n != name) else "m"
+    return None if any(index.match(bare_column(n)) for n in log.names if n != name) else "m"
 
 
 def is_unit_of(unit: str | None, quantity: str) -> bool:
