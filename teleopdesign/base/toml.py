@@ -127,9 +127,12 @@ class Table:
             raise ExperimentError(f"{self.where(key)}: found {number:g}, expected {wanted}")
         return number
 
-    def error(self, key: str, expected: str) -> ExperimentError:
-        """The error for a value that is something else than what is expected."""
-        observed = describe_toml_value(self.content.get(key))
+    def error(self, key: str, expected: str, observed: str | None = None) -> ExperimentError:
+        """The error for a value that is something else than what is expected.
+
+        observed: the value in words; None: as `describe_toml_value` names it
+        """
+        observed = describe_toml_value(self.content.get(key)) if observed is None else observed
         return ExperimentError(f"{self.where(key)}: found {observed}, expected {expected}")
 
 

@@ -12,10 +12,10 @@ import numpy as np
 from ..arms import Chain, Link, inertia_about, read_urdf, rotation_of
 from ..arms.chain import GRAVITY, tensor
 from ..base.errors import ExperimentError, did_you_mean, quote
-from ..base.files import follow_links
 from ..base.frozen import ByValue
 from ..base.toml import Table
 from .description import BODY, BodyDescription, body_from, effects_from, value_from
+from .saving import file_within
 
 #: treatment of inertial parameters: estimated, or taken from the description
 ESTIMATES = ("base parameters", "as given")
@@ -57,7 +57,7 @@ def arm_from(model: Table, folder: Path) -> tuple[ArmDescription, dict[str, Body
     table.allow(_ARM)
     joints = {name: table.table("joints").table(name) for name in table.table("joints").content}
     if not joints:
-        raise ExperimentError(f"{table.where('joints')}: found none, expected one table a joint")
+        raise table.error("joints", "one table a joint", "none")
     for name, joint in joints.items():
         joint.allow(_JOINT)
         _require_name(name, table.where("joints"))
@@ -110,13 +110,11 @@ def _kinematics(table: Table, folder: Path, joints: Mapping[str, Table]) -> Chai
     if "links" in table.content:
         for joint in joints.values():
             if "urdf_joint" in joint.content:
-                raise ExperimentError(
-                    f"{joint.where('urdf_joint')}: found beside [[model.arm.links]], expected urdf"
-                )
+                raise joint.error("urdf_joint", "urdf", "beside [[model.arm.links]]")
         return _chain_of_links(table, tuple(joints))
     file = table.text("urdf")
-    path = follow_links(folder / file) if "\0" not in file else folder
-    if not path.is_relative_to(follow_links(folder)) or not path.is_file():
+    path = file_within(folder, file)
+    if path is None:
         names = sorted(p.name for p in folder.iterdir() if p.suffix in (".urdf", ".xml"))
         raise ExperimentError(
             f"{table.where('urdf')}: no file {quote(file)} in {folder.name}/, found "
@@ -144,7 +142,7 @@ def _link(table: Table) -> Link:
     kind = table.choice("kind", ("revolute", "prismatic"), "revolute")
     axis = np.array(table.numbers("axis", 3, (0.0, 0.0, 1.0)))
     if not (size := float(np.linalg.norm(axis))) > 0:
-        raise ExperimentError(f"{table.where('axis')}: found 0, 0, 0, expected a direction")
+        raise table.error("axis", "a direction", "0, 0, 0")
     zero = (0.0,) * 3
     mass = table.number("mass") if "mass" in table.content else 0.0
     if mass < 0:

@@ -159,16 +159,14 @@ def _scales(table: Table, count: int) -> tuple[float, ...]:
     if len(numbers) != len(listed) or not all(math.isfinite(v) and v != 0 for v in numbers):
         raise table.error("scale", "a number other than 0" + ", or a list of them" * (count > 1))
     if len(listed) != count:
-        raise ExperimentError(
-            f"{table.where('scale')}: found {len(listed)} numbers, expected {count}, one a column"
-        )
+        raise table.error("scale", f"{count}, one a column", f"{len(listed)} numbers")
     return tuple(float(v) for v in numbers)
 
 
 def _sign(table: Table) -> float:
     sign = table.number_or_none("sign")
     if sign not in (None, 1.0, -1.0):
-        raise ExperimentError(f"{table.where('sign')}: found {sign:g}, expected 1 or -1")
+        raise table.error("sign", "1 or -1", f"{sign:g}")
     return 1.0 if sign is None else sign
 
 
@@ -211,10 +209,7 @@ def _unit_of_count(table: Table, unit: str, *, kind: str, axis: str) -> tuple[st
     keys = [key for key in ("count", "counts_per_turn") if key in table.content]
     if unit not in COUNTS:
         if keys:
-            raise ExperimentError(
-                f"{table.where(keys[0])}: found with unit {quote(unit)}, "
-                f"expected unit {quote(COUNTS[0])}"
-            )
+            raise table.error(keys[0], f"unit {quote(COUNTS[0])}", f"with unit {quote(unit)}")
         return unit, 1.0
     if len(keys) != 1:
         raise ExperimentError(
@@ -271,9 +266,7 @@ def _period(table: Table, unit: str, *, kind: str, axis: str, scales: Sequence[f
 def _delay(table: Table) -> float:
     delay = si_from(table, "delay", "time") if "delay" in table.content else 0.0
     if abs(delay) > LONGEST_DELAY:
-        raise ExperimentError(
-            f"{table.where('delay')}: found {delay:g} s, expected at most {LONGEST_DELAY:g} s"
-        )
+        raise table.error("delay", f"at most {LONGEST_DELAY:g} s", f"{delay:g} s")
     return delay
 
 

@@ -216,7 +216,7 @@ def sign_code_from(table: Table) -> SignCode | None:
     if not stated:
         return None
     if len(stated) == 2:
-        raise ExperimentError(f"{table.where(stated[0])}: found beside {stated[1]}, expected one")
+        raise table.error(stated[0], "one", f"beside {stated[1]}")
     bits = table.number(stated[0])
     least = 2 if stated[0] == TWOS_COMPLEMENT else 1
     if bits != int(bits) or not least <= bits <= MOST_BITS - 1:

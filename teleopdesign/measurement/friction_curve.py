@@ -116,12 +116,6 @@ def count_speeds(velocities: Iterable[Array]) -> int:
     return int(speed_numbers(np.concatenate([*velocities])).max()) + 1
 
 
-def curve_motion(record: Record, body: str) -> Motion:
-    """The points of a record as a motion without time, of which nothing is filtered."""
-    velocity, force = (record.signals[f"{body}.{name}"] for name in CHANNELS)
-    return points_as_motion(body, record.file, velocity, force)
-
-
 def points_as_motion(body: str, file: str, velocity: Array, force: Array) -> Motion:
     """Points of speed and force (n,) as a motion without time."""
     nothing = np.zeros(len(velocity))

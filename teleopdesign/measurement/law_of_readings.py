@@ -144,12 +144,6 @@ def law_of_readings(
     return None
 
 
-def _exact(rows: _Rows, back: Array) -> float:
-    """Largest error of a law that is exact up to the rounding of the command."""
-    rounding = ROUNDED * reading_step(rows.u) * (1.0 + float(np.abs(back).sum()))
-    return rounding + DIGITS * float(np.ptp(rows.u))
-
-
 def _law_of_order(
     rows: _Rows, taps: int, past: int, *, step: float, sample_time: float
 ) -> LawOfReadings | None:
@@ -168,7 +162,9 @@ def _law_of_order(
     errors = np.concatenate([rows.u[run] - _follow(rows, run, forward, back) for run in runs])
     worst = float(np.abs(errors).max())
     lost = DIGITS * float(np.ptp(rows.u))
-    if worst > _exact(rows, back) or np.abs(forward[:taps]).max() < VISIBLE * max(worst, lost):
+    # of a law that is exact up to the rounding of the command
+    exact = ROUNDED * reading_step(rows.u) * (1.0 + float(np.abs(back).sum())) + lost
+    if worst > exact or np.abs(forward[:taps]).max() < VISIBLE * max(worst, lost):
         return None
     spring, damper = _in_slow_motion(forward, back, taps)
     of_speed, is_damped = 0.0, taps + past > 1
@@ -200,21 +196,15 @@ def _follow(rows: _Rows, run: slice, forward: Array, back: Array) -> Array:
     return np.asarray(lfilter([1.0], poles, driven, zi=before)[0])
 
 
-def _memory(back: Array) -> float | None:
-    """Rows within which a filter forgets; None: it never does, as a wave of one frequency."""
-    size = float(np.abs(np.roots(np.concatenate([[1.0], -back]))).max()) if len(back) else 0.0
-    return 1.0 / (1.0 - size) if size < 1.0 else None
-
-
 def _fades(runs: Sequence[slice], back: Array, fewest: int) -> bool:
     """Whether enough rows lie so late in their runs that the filter has forgotten the first ones.
 
     A set point that varies would be the memory of a filter that does not fade.
     """
-    memory = _memory(back)
-    if memory is None:
+    size = float(np.abs(np.roots(np.concatenate([[1.0], -back]))).max()) if len(back) else 0.0
+    if size >= 1.0:  # it never does, as a wave of one frequency
         return False
-    wait = MEMORIES * memory if len(back) else 0.0
+    wait = MEMORIES / (1.0 - size) if len(back) else 0.0
     return bool(sum(max(0.0, run.stop - run.start - wait) for run in runs) >= fewest)
 
 

@@ -214,8 +214,7 @@ def stamps_are_true(clock: RecordClock, positions: Sequence[Array]) -> tuple[flo
     positions: (m,) each, of the clock's rows
     returns: the coefficient and its standard error; (1, inf) if the positions do not decide
     """
-    above = below = 0.0
-    pairs: list[tuple[Array, Array]] = []
+    pairs = [np.zeros((2, 0))]
     off = clock.stamps - clock.time[clock.places]
     for stretch in clock.of_rows:
         place = clock.places[stretch]
@@ -229,15 +228,11 @@ def stamps_are_true(clock: RecordClock, positions: Sequence[Array]) -> tuple[flo
             speed[1:-1] = (x[2:] - x[:-2]) / (2.0 * clock.sample_time)
             bend = np.diff(x, 2)[1:-1][inner]
             made = np.diff(speed * late, 2)[1:-1][inner]
-            scale = float(np.mean(bend**2))
-            if scale > 0 and len(bend):
-                above += float(made @ bend) / scale
-                below += float(made @ made) / scale
-                pairs.append((bend / math.sqrt(scale), made / math.sqrt(scale)))
-    if below <= 0:
+            if (squares := float(bend @ bend)) > 0:
+                pairs.append(np.stack([bend, made]) * math.sqrt(len(bend) / squares))
+    bends, mades = np.concatenate(pairs, axis=1)
+    if not (below := float(mades @ mades)) > 0:
         return 1.0, math.inf
-    slope = above / below
-    left = sum(float(np.sum((b - slope * m) ** 2)) for b, m in pairs)
-    number = sum(len(b) for b, _ in pairs)
+    slope = float(mades @ bends) / below
     # neighbouring second differences share readings: six of them count as one
-    return slope, math.sqrt(6.0 * left / max(number, 1) / below)
+    return slope, math.sqrt(6.0 * float(np.mean((bends - slope * mades) ** 2)) / below)

@@ -82,9 +82,7 @@ def curve_columns(
         raise ExperimentError(
             f"{file}: {quote(columns['velocity'])} is speed and force: state them"
         )
-    known = {c: as_unit(u) for c, u in (units or {}).items()} | {
-        c: u for c, u in log.units.items() if c not in (units or {})
-    }
+    known = {**log.units, **{c: as_unit(u) for c, u in (units or {}).items()}}
     written = {
         channel: known.get(column) or _unit_of_name(column, channel, axis)
         for channel, column in columns.items()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 from collections.abc import Mapping, Sequence
@@ -25,7 +24,7 @@ from .limits import SHORTEST, SMALL
 from .motion import SHORTEST as SEGMENT
 from .record import Record, RecordEntry, overlap, read_record
 from .reversals import runs_one_way
-from .saving import body_lines, guesses_text, records_text
+from .saving import body_lines, file_within, guesses_text, records_text
 from .survey import Survey, spans_of
 from .survey.content import STATEMENTS
 from .tables import open_log
@@ -295,12 +294,6 @@ def make_folder_like(
     copy_logs(logs, folder)
     others = {key: value for key, value in content.items() if key != "records"}
     for name in dict.fromkeys(texts_in(others)):
-        if _is_file_in(source, name):
+        if file_within(source, name) is not None:
             copy_logs([source / name], (folder / name).parent)
     write_text(folder / _FILE, "\n".join([text.rstrip(), "", *records_text(records), ""]))
-
-
-def _is_file_in(folder: Path, name: str) -> bool:
-    """Whether a text is the name of a file within a folder; a sentence may be too long for one."""
-    whole = os.path.realpath(folder / name)
-    return os.path.isfile(whole) and Path(whole).is_relative_to(os.path.realpath(folder))

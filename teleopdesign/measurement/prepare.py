@@ -14,7 +14,7 @@ from ..base.frozen import ByValue
 from .bandwidth import HIGHEST, LARGEST, bandwidth_of, scales
 from .experiment import Experiment
 from .filtering import Array, spectrum
-from .friction_curve import FOLDS, curve_motion
+from .friction_curve import CHANNELS, FOLDS, points_as_motion
 from .motion import SHORTEST, SMOOTHING, Motion, motions
 from .record import Record
 from .shared_links import Shared
@@ -187,7 +187,8 @@ def prepare_curve(experiment: Experiment) -> Prepared:
     stretches = []
     for record in experiment.records:
         _refuse_huge(experiment, record)
-        motion = curve_motion(record, body)
+        velocity, force = (record.signals[f"{body}.{name}"] for name in CHANNELS)
+        motion = points_as_motion(body, record.file, velocity, force)
         if len(motion.time) < FOLDS:
             raise ExperimentError(
                 f"{experiment.folder.name}/{record.file}: found {len(motion.time)} points with a "

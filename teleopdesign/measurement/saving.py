@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import hashlib
 import io
+import os
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.errors import ExperimentError
-from ..base.files import write_beside, write_text
+from ..base.files import follow_links, write_beside, write_text
 from ..base.toml import comment_text, inline_text, read_toml, string_text, toml_text
 from ..base.units import unit_of
 from .channel import BODY_QUANTITIES
@@ -156,7 +157,7 @@ def experiment_files(folder: Path) -> dict[str, Path | None]:
     None: the folder has no file of that name. If experiment.toml cannot be read, it is the only
         entry; `load_experiment` gives the reason.
     """
-    files: dict[str, Path | None] = {"experiment.toml": _resolve_within(folder, "experiment.toml")}
+    files: dict[str, Path | None] = {"experiment.toml": file_within(folder, "experiment.toml")}
     try:
         table = read_toml(folder / "experiment.toml", f"{folder.name}/experiment.toml")
         records = [t.text("file") for t in table.tables("records")]
@@ -166,18 +167,17 @@ def experiment_files(folder: Path) -> dict[str, Path | None]:
         if "\0" not in name and (folder / name).is_dir():
             for path in sorted((folder / name).rglob("*")):
                 inside = path.relative_to(folder).as_posix()
-                files[inside] = _resolve_within(folder, inside)
+                files[inside] = file_within(folder, inside)
         else:
-            files[name] = _resolve_within(folder, name)
+            files[name] = file_within(folder, name)
     return files
 
 
-def _resolve_within(folder: Path, name: str) -> Path | None:
-    """The path of a regular file in the folder; None if there is none."""
+def file_within(folder: Path, name: str) -> Path | None:
+    """The path of a regular file in the folder; None: there is none of that name."""
     path = folder / name
-    if not path.is_file() or not path.resolve().is_relative_to(folder.resolve()):
-        return None
-    return path
+    is_file = os.path.isfile(path)  # a sentence may be too long for a path
+    return path if is_file and follow_links(path).is_relative_to(follow_links(folder)) else None
 
 
 def content_digest(folder: Path) -> str:

@@ -170,12 +170,17 @@ def open_folder(
     stems = [t.name.split(".")[0] for t in tables]
     names = stems if len(set(stems)) == len(stems) else [t.name for t in tables]
     logs = {n: open_one(t, f"{file}/{t.name}") for n, t in zip(names, tables, strict=True)}
-    if are_quantities(names, [log.names for log in logs.values()]):
+    of_joints = are_quantities(names, [log.names for log in logs.values()])
+    if of_joints:
         logs = dict(zip(_without_shared_words(names), logs.values(), strict=True))
-        name_of = _field_name
     else:
         _refuse_same_columns(logs, folder, [t.name for t in tables])
-        name_of = _topic_name
+
+    def name_of(table: str, column: str) -> str:
+        """ "drive.position"; of a joint's quantity as a field of a struct: "joint_2.torque"."""
+        is_field = of_joints and not likeness(column, "time")
+        return f"{column}.{table}" if is_field else f"{table}.{column}"
+
     time_of = {name: _time_column(log, f"{file}/{name}") for name, log in logs.items()}
     seconds = {n: _seconds_of(log, time_of[n], f"{file}/{n}") for n, log in logs.items()}
     _require_shared_time(seconds, file)
@@ -222,15 +227,6 @@ def _name_both(names: Iterable[str]) -> bool:
     kinds = (("position",), ("actuator_force", "interaction_force"))
     of_names = [{k for k in kinds if any(likeness(n, q) > 0 for q in k)} for n in names]
     return all({k} in of_names for k in kinds)
-
-
-def _topic_name(table: str, column: str) -> str:
-    return f"{table}.{column}"
-
-
-def _field_name(table: str, column: str) -> str:
-    """The name of a joint's quantity, as a field of a struct: "joint_2.torque"; of its clock."""
-    return _topic_name(table, column) if likeness(column, "time") else f"{column}.{table}"
 
 
 def _without_shared_words(names: Sequence[str]) -> list[str]:

@@ -23,8 +23,13 @@ from ...stamps import share_time, step_deviations, unit_of_steps, unwrap_stamps
 from .._cells import holds_dates, is_column_of_texts, numbers_of
 from .._log import Log, join_names
 from ._table import CellTable, LongSignal, LongTable, as_text, rises, time_of
-from .rows_in_turn import machines_in_turn, reading_in_each_row
-from .several_times import clock_before_signals, separate_clocks, two_part_time
+from .several_clocks import (
+    clock_before_signals,
+    machines_in_turn,
+    reading_in_each_row,
+    separate_clocks,
+    two_part_time,
+)
 
 TableShape = Callable[[CellTable], LongTable | None]
 

@@ -46,6 +46,15 @@ class CellTable:
     def unit_of_time(self, column: str) -> str | None:
         return unit_of_time(column, "s" if column in self.dated else self.units.get(column))
 
+    def signal(self, name: str, rows: Any, time: str, clock: str, called: str = "") -> LongSignal:
+        """Some rows of a column as a signal, with its times in another column.
+
+        rows: mask or indices;  clock: name of its times;  called: name of the signal; "": as before
+        """
+        values, times = self.columns[name][rows], self.numeric[time][rows]
+        unit, time_unit = self.units.get(name, ""), self.unit_of_time(time)
+        return LongSignal(called or name, values, clock, times, unit, time_unit)
+
 
 @dataclass(frozen=True)
 class LongSignal:

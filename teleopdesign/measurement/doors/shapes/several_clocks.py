@@ -1,8 +1,10 @@
-"""Tables with times in several columns, or for some of their signals only.
+"""Tables whose signals do not share one column of times.
 
 Studios of drives, scopes of controllers and simulators write a time before each signal, viewers of
 topics a number only at the times of its signal. Clocks of operating systems and of ROS count whole
-seconds and their parts, and loggers write a time of day beside its ms.
+seconds and their parts, and loggers write a time of day beside its ms. Rows belong to several
+machines in turn, which a column names, or hold one reading each, as viewers of bags, data bases and
+decoders of a bus write them.
 """
 
 from __future__ import annotations
@@ -16,12 +18,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....base.units import measures, si_factor
-from ...column_names import likeness, unit_of_text
+from ...column_names import likeness, unit_of_text, words_of
 from ...encoder import Array, is_most
 from ...limits import HALF
 from ...stamps import step_deviations, unwrap_stamps
-from .._log import bare_column, join_names
-from ._table import AS_EVEN_AS_A_CLOCK, CellTable, LongSignal, LongTable, rises
+from .._header import UNIT_LABELS, bare_unit
+from .._log import MOST_PARTS, MOST_SIGNALS, bare_column, join_names
+from ._table import (
+    AS_EVEN_AS_A_CLOCK,
+    FEWEST_ROWS,
+    CellTable,
+    LongSignal,
+    LongTable,
+    as_text,
+    rises,
+    time_of,
+)
+
+#: last words of the names of the columns that name the signal of a row, and that hold its reading
+SIGNALS = frozenset("topic signal channel variable tag parameter series measurement".split())
+READINGS = frozenset("value values reading wert valeur valor".split())
+
+#: words of the name of a column that names or numbers machines
+NUMBERS_MACHINES = frozenset(
+    "id ids no nr num number name motor joint servo axis actuator node device drive can leg".split()
+)
 
 #: last words of the names of whole seconds, and of their part with its unit
 SECONDS = frozenset("s sec secs second seconds".split())
@@ -41,10 +62,7 @@ def clock_before_signals(table: CellTable) -> LongTable | None:
         if int(rows.sum()) < 2:  # a trace may hold a constant in one row
             single.append(short[name])
             continue
-        times, values = table.numeric[clock][rows], table.columns[name][rows]
-        unit, time_unit = table.units.get(name, ""), table.unit_of_time(clock)
-        new = short[name]
-        signals.append(LongSignal(new, values, f"time of {new}", times, unit, time_unit))
+        signals.append(table.signal(name, rows, clock, f"time of {short[name]}", short[name]))
     if not signals:
         return None
     left = f"signals of one row, left out: {join_names(single, most=4)}" if single else ""
@@ -107,9 +125,7 @@ def separate_clocks(table: CellTable) -> LongTable | None:
     signals = []
     for name, mask in partial.items():
         first = groups.setdefault(mask.tobytes(), name)
-        clock, times = f"{time} of {first}", table.numeric[time][mask]
-        unit, time_unit = table.units.get(name, ""), table.unit_of_time(time)
-        signals.append(LongSignal(name, table.columns[name][mask], clock, times, unit, time_unit))
+        signals.append(table.signal(name, mask, time, f"{time} of {first}"))
     return LongTable(tuple(signals))
 
 
@@ -134,25 +150,24 @@ def two_part_time(table: CellTable) -> LongTable | None:
     Either column alone would be a wrong time: the seconds stand still, and their part is set back
     each second.
     """
-    for first, second, units in _parts_of_times(table.names):
+    for first, second, unit in _parts_of_times(table.names):
         whole, part = (table.numeric.get(n) for n in (first, second))
         if whole is None or part is None:
             continue
-        for unit in units:
-            second_in = si_factor(unit, quantity="time")
-            if not are_parts_of_time(whole, part, per_second=1.0 / second_in):
-                continue
-            stem = _stem(first)[0] if _stem(first)[1] in SECONDS else f"{first} + {second}"
-            time = stem or "time"
-            time = f"{first} + {second}" if time in table.names else time
-            times = np.asarray(unwrap_stamps(whole)[0] + second_in * part)
-            signals = tuple(
-                LongSignal(n, x, time, times, table.units.get(n, ""), "s")
-                for n, x in table.columns.items()
-                if n not in (first, second)
-            )
-            note = f"a time in two columns: {first!r} in s, and {second!r} in {unit}"
-            return LongTable(signals, len(whole), note)
+        second_in = si_factor(unit, quantity="time")
+        if not are_parts_of_time(whole, part, per_second=1.0 / second_in):
+            continue
+        stem = _stem(first)[0] if _stem(first)[1] in SECONDS else f"{first} + {second}"
+        time = stem or "time"
+        time = f"{first} + {second}" if time in table.names else time
+        times = np.asarray(unwrap_stamps(whole)[0] + second_in * part)
+        signals = tuple(
+            LongSignal(n, x, time, times, table.units.get(n, ""), "s")
+            for n, x in table.columns.items()
+            if n not in (first, second)
+        )
+        note = f"a time in two columns: {first!r} in s, and {second!r} in {unit}"
+        return LongTable(signals, len(whole), note)
     return None
 
 
@@ -168,26 +183,121 @@ def are_parts_of_time(whole: Array, part: Array, *, per_second: float) -> bool:
     return bool(turns.any() and np.all((turns >= 0) & ((turns > 0) | (np.diff(part) >= 0))))
 
 
-def _parts_of_times(names: Sequence[str]) -> Iterator[tuple[str, str, tuple[str, ...]]]:
+def _parts_of_times(names: Sequence[str]) -> Iterator[tuple[str, str, str]]:
     """Columns of one stem whose last words are a second and a part of it: "stamp.sec".
 
     A column called "ms" alone may hold the part of a time of day beside it, without fractions. So
     may the first two columns where no column has a name.
     """
     if names[0] == "column 1" and len(names) > 2:
-        yield names[0], names[1], ("ns", "us")
+        yield from ((names[0], names[1], unit) for unit in ("ns", "us"))
     alone = [name for name in names if _stem(name)[0] == "" and _stem(name)[1] in PARTS]
     if len(alone) == 1:
         for first in (name for name in names if likeness(name, "time") > 0.0):
-            yield first, alone[0], (PARTS[_stem(alone[0])[1]],)
+            yield first, alone[0], PARTS[_stem(alone[0])[1]]
     seconds = [name for name in names if _stem(name)[1] in SECONDS]
     parts = [name for name in names if _stem(name)[1] in PARTS]
     for first, second in itertools.product(seconds, parts):
         if _stem(first)[0] == _stem(second)[0]:
-            yield first, second, (PARTS[_stem(second)[1]],)
+            yield first, second, PARTS[_stem(second)[1]]
 
 
 def _stem(name: str) -> tuple[str, str]:
     """A name without its last word, and this word in lower case: ("header.stamp", "nanosec")."""
     end = max(name.rfind(sign) for sign in "._ /")
     return name[: max(end, 0)].rstrip("._ /"), name[end + 1 :].strip("()[]").lower()
+
+
+def machines_in_turn(table: CellTable) -> LongTable | None:
+    """Rows of several machines in turn, named in a column: "hip, 0.0, 0.1", "knee, 0.0, 2.3".
+
+    Trials follow each other, machines run together. The state of one machine lasts for some rows,
+    or changes without a leap of its signals.
+    """
+    time = time_of(table)
+    if not time or len(table.columns[time]) < 2 * FEWEST_ROWS:
+        return None
+    for name in (n for n in table.names if n != time):
+        labels = _labels_of(name, table.columns[name])
+        numbers = [x for n, x in table.numeric.items() if n not in (time, name)]
+        if labels and _run_together(labels[1], table.numeric[time], numbers):
+            return _apart(table, time, name, labels)
+    return None
+
+
+def _labels_of(name: str, column: NDArray[Any]) -> tuple[list[str], NDArray[np.intp]] | None:
+    """The names of machines and the number of each row's machine, where a column may hold them."""
+    numbered = column.dtype.kind == "f"
+    words = words_of(name)
+    if numbered and not (words and NUMBERS_MACHINES.issuperset(words)):
+        return None
+    if numbered and not (np.all(column == np.round(column)) and np.all(column >= 0)):
+        return None
+    number = {cell: k for k, cell in enumerate(dict.fromkeys(column.tolist()))}
+    if not 2 <= len(number) <= MOST_PARTS or not {"", None}.isdisjoint(number):
+        return None
+    return [as_text(c) for c in number], np.array([number[c] for c in column], dtype=np.intp)
+
+
+def _run_together(labels: NDArray[np.intp], stamps: Array, signals: Sequence[NDArray[Any]]) -> bool:
+    """Whether the machines of some rows run at the same time, each with signals of its own."""
+    rows = [np.flatnonzero(labels == k) for k in range(int(labels.max()) + 1)]
+    changes = np.diff(labels) != 0
+    if min(map(len, rows)) < FEWEST_ROWS or int(changes.sum()) < 2 * len(rows):
+        return False
+    if any(np.any(np.diff(stamps[r]) < 0) for r in rows):
+        return False
+    if int(np.sum(np.diff(stamps)[changes] < 0)) >= len(rows):
+        return True
+    in_turn = float(changes.mean()) >= HALF
+    return in_turn and any(_leaps_between(signal, rows) for signal in signals)
+
+
+def _leaps_between(signal: Array, rows: Sequence[NDArray[np.intp]]) -> bool:
+    """Whether a signal changes less within the rows of each machine than from row to row."""
+    if not np.all(np.isfinite(signal)):
+        return False
+    within = sum(float(np.abs(np.diff(signal[r])).sum()) for r in rows)
+    return within < HALF * float(np.abs(np.diff(signal)).sum())
+
+
+def _apart(
+    table: CellTable, time: str, key: str, labels: tuple[list[str], NDArray[np.intp]]
+) -> LongTable:
+    """The signals of each machine, with its own clock: "hip.position" at "hip.time"."""
+    names, machine = labels
+    signals = []
+    for k, name in enumerate(names):
+        for n in (n for n in table.names if n not in (time, key)):
+            signals.append(table.signal(n, machine == k, time, f"{name}.{time}", f"{name}.{n}"))
+    note = f"rows of {len(names)} machines in turn, named in {key!r}: {join_names(names, most=4)}"
+    return LongTable(tuple(signals), len(machine), note)
+
+
+def reading_in_each_row(table: CellTable) -> LongTable | None:
+    """A column that names the signal, one with its reading: "0.0, angle, 0.1", "0.0, torque, 1"."""
+    time = time_of(table)
+    ends = {n: (words_of(n) or [""])[-1] for n in table.names}
+    keys = [n for n, word in ends.items() if word in SIGNALS]
+    readings = [n for n, word in ends.items() if word in READINGS]
+    if not time or len(keys) != 1 or len(readings) != 1:
+        return None
+    cells = table.columns[readings[0]]
+    numbers = np.array([np.nan if isinstance(cell, str) else cell for cell in cells], dtype=float)
+    texts = table.columns[keys[0]]
+    numbered = table.columns[keys[0]].dtype.kind == "f"
+    fine = np.isfinite(numbers) & np.isfinite(table.numeric[time])
+    names = list(dict.fromkeys(texts[fine].tolist()))
+    number = {name: k for k, name in enumerate(names)}
+    of_row = np.array([number.get(text, -1) for text in texts])
+    if numbered or not 0 < len(names) <= MOST_SIGNALS or not is_most(fine):
+        return None
+    unit = next((n for n in table.names if n.casefold() in UNIT_LABELS), "")
+    signals = []
+    for name in names:
+        rows = np.flatnonzero(fine & (of_row == number[name]))
+        stated = bare_unit(str(table.columns[unit][rows[0]])) if unit else ""
+        times = table.numeric[time][rows]
+        clock, time_unit = f"time of {name}", table.unit_of_time(time)
+        signals.append(LongSignal(name, numbers[rows], clock, times, stated, time_unit))
+    return LongTable(tuple(signals), int(fine.sum()), "a reading in each row")
