@@ -8,7 +8,6 @@ from check.made_channels import ask
 
 import teleopdesign as td
 from teleopdesign.measurement.motion import without_mains
-from teleopdesign.measurement.spikes import hum_of, without_hum
 
 
 @pytest.fixture(scope="module")
