@@ -63,15 +63,19 @@ def read_late_ratios(
     delays = {power: -power.args[0].coeff(S) for power in powers}
     times, marks = late_symbols(delays.values())
     placed = {power: marks[time] for power, time in delays.items()}
-    ring, *_ = sp.ring((S, *times), sp.QQ)
+    field = sp.QQ.frac_field(S, *times)
     pairs = []
     for e in entries:
-        sides = sp.fraction(sp.together(e.xreplace(placed)))
-        known = all(side.is_polynomial(*ring.symbols) for side in sides)
-        if not known or not all(time.is_Rational for time in times.values()):
-            raise ModelError(f"{where}: expected a ratio of polynomials in s and dead times: {e}")
-        above, below = (ring.from_expr(sp.expand(side)) for side in sides)
-        pairs.append(above.cancel(below))
+        try:
+            if not all(time.is_Rational for time in times.values()):
+                raise ValueError(f"a dead time of {e} is no number")
+            made = field.from_sympy(e.xreplace(placed))
+        except ZeroDivisionError:
+            raise ModelError(f"{where}: division by zero") from None
+        except ValueError:
+            allowed = "a rational function of s with rational numbers"
+            raise ModelError(f"{where}: not {allowed} and dead times: {e}") from None
+        pairs.append((made.numer, made.denom))
     return pairs, times
 
 

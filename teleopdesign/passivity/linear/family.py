@@ -30,7 +30,7 @@ from ...derive.polynomials import as_poly, element
 from ...diagrams import Diagram
 from ...frequency.late_zeros import count_growing, terms_of, zeros_at_origin
 from ...realise.lti import S
-from .impedance import Impedance, exact
+from .impedance import Impedance, exact, impedance_of
 from .matrices import (
     Ends,
     Matrix,
@@ -141,8 +141,7 @@ class Family:
     @property
     def impedance(self) -> Impedance:
         """The impedance of one port, without dead times and values."""
-        p, q = self.n[0][0].cancel(self.d)
-        return Impedance(*(as_poly(side.mul_ground(1 / q.LC), S) for side in (p, q)))
+        return impedance_of(self.n[0][0], self.d)
 
     @cached_property
     def undecayed(self) -> tuple[complex, ...]:

@@ -18,7 +18,8 @@ import sympy as sp
 from ...base.arguments import describe_value
 from ...base.errors import ModelError
 from ...controllers import resolvent
-from ...derive.polynomials import element, fraction
+from ...derive.linear_rows import read_late_ratios
+from ...derive.polynomials import as_poly, element, fraction
 from ...realise.lti import S
 from .matrices import parts_of, value_at
 
@@ -29,6 +30,8 @@ _SMALLEST = sp.Rational(1, 10**300)  # smallest size of a number that is also wr
 #: highest degree in s: exact tests of numbers of 16 digits then take some 10 s, and the time grows
 #: with the fourth power of the degree
 _HIGHEST = 40
+#: highest degree of an expression as it is written, of which factors may cancel
+_UNCANCELLED = 10 * _HIGHEST
 
 
 @dataclass(frozen=True)
@@ -123,9 +126,15 @@ def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:
     elif hasattr(system, "isdtime"):
         made = _from_control(system)
     else:
-        made = _coprime(*_ratio(read_expression(system, S, "impedance")))
+        e = read_expression(system, S, "impedance")
+        _check_degree(max(_degrees(e)), _UNCANCELLED)
+        (sides,), times = read_late_ratios([e], "impedance")
+        if times:
+            raise ModelError(f"impedance: not a rational function of s: {e}")
+        made = impedance_of(*sides)
+        _check_degree(max(made.p.degree(), made.q.degree()))
     if motion == "position":
-        return _coprime(made.p, made.q * sp.Poly(S, S))
+        return impedance_of(element(made.p), element(made.q * sp.Poly(S, S)))
     return made
 
 
@@ -170,52 +179,32 @@ def read_expression(system: Any, symbol: sp.Symbol, where: str) -> sp.Expr:
     return e.xreplace({x: exact(x) for x in e.atoms(sp.Float, sp.NumberSymbol)})
 
 
-def _ratio(e: sp.Expr) -> tuple[sp.Poly, sp.Poly]:
-    """Numerator and denominator of an expression in S, not yet coprime."""
-    if e.is_Rational or e == S:
-        return sp.Poly(e, S, domain="QQ"), sp.Poly(1, S, domain="QQ")
-    if e.is_number:
-        raise ModelError(f"impedance: coefficients are not rational numbers: {e}")
+def _degrees(e: sp.Expr) -> tuple[int, int]:
+    """Bounds of the degrees in s of numerator and denominator, before anything is multiplied."""
     if e.is_Pow and e.exp.is_Integer:
-        p, q = _ratio(e.base)
-        _check_degree(max(p.degree(), q.degree()) * abs(int(e.exp)))
-        if e.exp < 0 and p.is_zero:
-            raise ModelError("impedance: division by zero")
-        power = abs(int(e.exp))
-        return (p**power, q**power) if e.exp > 0 else (q**power, p**power)
-    if not (e.is_Add or e.is_Mul):
-        raise ModelError(f"impedance: not a rational function of s: {e}")
-    p, q = _ratio(e.args[0])
-    for part in e.args[1:]:
-        above, below = _ratio(part)
-        if e.is_Mul:
-            p, q = p * above, q * below
-        elif q == below:
-            p = p + above
-        else:
-            p, q = p * below + above * q, q * below
-        if max(p.degree(), q.degree()) > _HIGHEST:
-            common = sp.gcd(p, q)
-            p, q = p.quo(common), q.quo(common)
-        _check_degree(max(p.degree(), q.degree()))
-    return p, q
+        above, below = (side * abs(int(e.exp)) for side in _degrees(e.base))
+        return (above, below) if e.exp > 0 else (below, above)
+    parts = list(map(_degrees, e.args)) or [(int(e == S), 0)]
+    below = sum(q for _, q in parts)
+    if e.is_Mul:
+        return sum(p for p, _ in parts), below
+    return max(p + below - q for p, q in parts), below
 
 
-def _check_degree(degree: float) -> None:
-    if degree > _HIGHEST:
+def _check_degree(degree: int, most: int = _HIGHEST) -> None:
+    if degree > most:
         raise ModelError(
             f"impedance: of degree {degree} in s, expected at most {_HIGHEST}: exact tests of more "
             "would take minutes"
         )
 
 
-def _coprime(p: sp.Poly, q: sp.Poly) -> Impedance:
-    if q.is_zero:
+def impedance_of(above: Any, below: Any) -> Impedance:
+    """The impedance above/below of elements of a ring, polynomials in its first generator, s."""
+    if not below:
         raise ModelError("impedance: division by zero")
-    common = sp.gcd(p, q)
-    p, q = p.quo(common), q.quo(common)
-    lead = q.LC()
-    return Impedance(p.quo_ground(lead), q.quo_ground(lead))
+    p, q = above.cancel(below)
+    return Impedance(*(as_poly(side.mul_ground(1 / q.LC), S) for side in (p, q)))
 
 
 def _from_control(system: Any) -> Impedance:
@@ -231,7 +220,7 @@ def _from_control(system: Any) -> Impedance:
     if hasattr(system, "num"):
         p, q = ([exact(c) for c in row[0][0]] for row in (system.num, system.den))
         _check_degree(max(len(p), len(q)) - 1)
-        return _coprime(sp.Poly(p, S, domain="QQ"), sp.Poly(q, S, domain="QQ"))
+        return impedance_of(*(element(sp.Poly(c, S, domain="QQ")) for c in (p, q)))
     if not hasattr(system, "A"):
         raise ModelError(f"impedance: no linear system: {type(system).__name__}")
     _check_degree(len(system.A))
@@ -249,4 +238,4 @@ def from_state_space(a: Any, b: Any, c: Any, d: Any) -> Impedance:
     below, above = resolvent(a, [row[0] for row in b], c[0])
     q = sp.Poly(below, S, domain="QQ")
     p = sp.Poly(above or [Fraction(0)], S, domain="QQ") + q.mul_ground(sp.Rational(d[0][0]))
-    return _coprime(p, q)
+    return impedance_of(element(p), element(q))
