@@ -144,8 +144,11 @@ class Generator:
             "STAGE_STATES": states,
             "STAGE_BRISTLES": bristles,
             "FIRST_BRISTLES": bristles,
-            **{f"RATES_{stage}": states for stage in range(4)},
-            **{f"RESTS_{stage}": bristles for stage in range(4)},
+            **{
+                f"{group}_{stage}": many
+                for stage in range(4)
+                for group, many in (("RATES", states), ("RESTS", bristles))
+            },
             **dict.fromkeys(("SLOPES", "LAST_SLOPES", "WORST"), bristles),
             **dict.fromkeys(("E_HALF", "G_HALF", "E_STEP"), bristles),
             **dict.fromkeys(("WEIGHT_0", "WEIGHT_1", "WEIGHT_3"), bristles),

@@ -424,33 +424,17 @@ def differentiate_at_rest(inputs, memory, small, slopes_of):
     for lane in range(LANES):
         find_inverses(memory, lane)
     at_rest = inputs_at(inputs, np.int64(0))  # no literal, see `module_source`
-    many = MANY_STATES + MANY_BRISTLES
+    many = MANY_STATES + MANY_BRISTLES  # in rows side by side, and so are their rates
     for k in range(many):
-        state = STATES + k * LANES if k < MANY_STATES else BRISTLES + (k - MANY_STATES) * LANES
-        for side in range(2):
-            to_states, to_bristles = (RATES_0, RESTS_0) if side == 0 else (RATES_1, RESTS_1)
-            for lane in range(LANES):
-                memory[state + lane] = small if side == 0 else -small
-                rates(
-                    0.0,
-                    STATES,
-                    BRISTLES,
-                    at_rest,
-                    LATE,
-                    memory,
-                    to_states,
-                    to_bristles,
-                    lane,
-                )
-                memory[state + lane] = 0.0
+        state = STATES + k * LANES
         for lane in range(LANES):
+            memory[state + lane] = small
+            rates(0.0, STATES, BRISTLES, at_rest, LATE, memory, RATES_0, RESTS_0, lane)
+            memory[state + lane] = -small
+            rates(0.0, STATES, BRISTLES, at_rest, LATE, memory, RATES_1, RESTS_1, lane)
+            memory[state + lane] = 0.0
             for i in range(many):
-                if i < MANY_STATES:
-                    at = i * LANES + lane
-                    change = memory[RATES_0 + at] - memory[RATES_1 + at]
-                else:
-                    at = (i - MANY_STATES) * LANES + lane
-                    change = memory[RESTS_0 + at] - memory[RESTS_1 + at]
+                change = memory[RATES_0 + i * LANES + lane] - memory[RATES_1 + i * LANES + lane]
                 slopes_of[(i * many + k) * LANES + lane] = change / (2.0 * small)
 
 

@@ -150,12 +150,9 @@ class _Laws:
 
     def rates(self, *now: Any) -> np.ndarray:
         """Rates of the states."""
-        at, layout = self.made.functions, self.made.layout
-        moving, hidden = at["RATES_0"], at["RESTS_0"]
-        memory = self._evaluate("rates", (moving, hidden), *now)
-        many = len(layout.exponential)
-        straight = memory[moving : moving + len(layout.states) - many]
-        return np.concatenate([straight, memory[hidden : hidden + many]])
+        at, first = self.made.functions, self.made.functions["RATES_0"]
+        memory = self._evaluate("rates", (first, at["RESTS_0"]), *now)
+        return memory[first : first + len(self.made.layout.states)]
 
     def columns(self, *now: Any) -> np.ndarray:
         """Columns of the layout."""
