@@ -7,8 +7,9 @@ force of a law (`bound`) is a matter of intervals: see `passivity.declarations`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
+from importlib import import_module
 
 import sympy as sp
 
@@ -54,12 +55,25 @@ def _any_values(law: ControlLaw) -> dict[str, float]:
 
 @lru_cache(maxsize=256)
 def has_shape(law: ControlLaw, ability: Ability, period: sp.Expr) -> bool:
-    """Whether a law has the shape of an ability that it declares, for all parameters.
+    """Whether a law is that of the catalogue with this ability, for all parameters.
 
     period: CONTINUOUS, or SAMPLED: in a computer of any period
     """
-    made = equation_of(law, period)
-    return made is not None and _SHAPES[ability](law, made, symbols_of(law))
+    module = import_module(f".{_SHAPES[ability]}", __package__)
+    model: ControlLaw = module.CONTROLLER.named(_SHAPES[ability], "")
+    made, shape = equation_of(law, period), equation_of(model, period)
+    if made is None or shape is None or made.steps or len(made.rates) != len(shape.rates):
+        return False
+    same: dict[sp.Symbol, sp.Expr] = dict(zip(shape.rates, made.rates, strict=True))
+    for one in (ability, "bound"):
+        if parameter := getattr(model, one):
+            if not getattr(law, one):
+                return False
+            same[symbols_of(model)[parameter]] = symbols_of(law)[getattr(law, one)]
+    speed = {SIGNALS["speed"]: sp.Abs(SIGNALS["velocity"])}
+    of_model, of_law = ((x.output, *x.rates.values()) for x in (shape, made))
+    pairs = zip(of_model, of_law, strict=True)
+    return all(_is_zero(a.xreplace(same | speed) - b.xreplace(speed)) for a, b in pairs)
 
 
 def broken_declarations(law: ControlLaw, stage: Stage | None = None) -> tuple[str, ...]:
@@ -173,40 +187,12 @@ def _is_response(
     return _is_zero(output.subs(states) - sp.sympify(stated) * SIGNALS["input"])
 
 
-def _is_late(law: ControlLaw, made: ControllerEquation, symbols: _Symbols) -> bool:
-    return bool(made.output == delayed(SIGNALS["input"], symbols[law.dead_time]))
-
-
-def _is_smoothed(law: ControlLaw, made: ControllerEquation, symbols: _Symbols) -> bool:
-    if not law.bound:
-        return False
-    v = SIGNALS["velocity"]
-    shape = symbols[law.bound] * v / (symbols[law.smoothing] + sp.Abs(v))
-    return _is_zero(made.output.subs(SIGNALS["speed"], sp.Abs(v)) - shape)
-
-
-def _is_bristle(law: ControlLaw, made: ControllerEquation, symbols: _Symbols) -> bool:
-    """Whether the law is that of `dahl`; in a computer with the exact step, which none states."""
-    if len(made.rates) != 1 or made.steps or not law.bound:
-        return False
-    ((z, rate),), moved = made.rates.items(), SIGNALS["travel_rate"]
-    stiffness, level = symbols[law.bristle_stiffness], symbols[law.bound]
-    bent = moved - stiffness / level * sp.Abs(moved) * z
-    return _is_zero(made.output - stiffness * z) and _is_zero(rate - bent)
-
-
-def _is_low_pass(law: ControlLaw, made: ControllerEquation, symbols: _Symbols) -> bool:
-    if list(made.rates) != [made.output]:
-        return False
-    corner = 2 * sp.pi * symbols[law.filter_bandwidth]
-    return _is_zero(made.rates[made.output] - corner * (SIGNALS["input"] - made.output))
-
-
-_SHAPES: Mapping[Ability, Callable[[ControlLaw, ControllerEquation, _Symbols], bool]] = {
-    "dead_time": _is_late,
-    "smoothing": _is_smoothed,
-    "bristle_stiffness": _is_bristle,
-    "filter_bandwidth": _is_low_pass,
+#: ability -> the law of the catalogue that has it
+_SHAPES: Mapping[Ability, str] = {
+    "dead_time": "delay",
+    "smoothing": "smoothed_coulomb",
+    "bristle_stiffness": "dahl",
+    "filter_bandwidth": "low_pass",
 }
 _WORDS: Mapping[Ability, str] = {
     "dead_time": "dead_time, but its output is not its input of that time earlier",

@@ -22,7 +22,7 @@ from ..diagrams import Diagram
 from ..effects import SIGNALS
 from .claims.claim import Claim, Proof, Unknown
 from .declarations import is_shipped
-from .friction_pairs import FrictionPair, friction_pairs, pair_claims, proof_of
+from .friction_pairs import FrictionPair, friction_pairs, pair_claims, proof_of, without_pair
 from .linear_diagrams import WHOLE, linear_claims
 from .ports import (
     Port,
@@ -30,7 +30,6 @@ from .ports import (
     is_spanned,
     nonlinear_parts,
     ports,
-    without_friction,
     without_holders,
 )
 from .search.by_simulation import Computer
@@ -152,8 +151,7 @@ def composed_claim(
         if proof is None and (claims or pair.cancellation is not None):
             return None
         proofs += [proof.claim] if proof else []
-        gone = [pair.cancellation.name] if pair.cancellation else []
-        rest = without_friction(rest, pair.body.motion, *gone)
+        rest = without_pair(rest, pair)
         if proof is not None and proof.spends_damping:  # it leaves none to the linear rest
             if (spent := _without_damping(rest, pair.body.name)) is None:
                 return None

@@ -92,6 +92,12 @@ def _acts_alone(control: Control, part: Moving, diagram: Diagram) -> bool:
     return acts and drives_alone(diagram, control.output, part)
 
 
+def without_pair(diagram: Diagram, pair: FrictionPair) -> Diagram:
+    """The diagram without the friction of a pair and its cancellation."""
+    gone = [pair.cancellation.name] if pair.cancellation else []
+    return without_friction(diagram, pair.body.motion, *gone)
+
+
 def pair_claims(pair: FrictionPair, *, simulated: bool = True) -> list[TopicClaim]:
     """Claims about friction with its cancellation, by the theorems for a diagnosed device.
 
@@ -131,10 +137,9 @@ def refuting(diagram: Diagram, pairs: Sequence[FrictionPair]) -> list[Claim]:
     """
     rest, moved = diagram, [port.motion for port in ports(diagram)]
     for pair in pairs:
-        gone = [pair.cancellation.name] if pair.cancellation else []
         if pair.body.motion not in moved or not pair.is_constant:
             return []
-        rest = without_friction(rest, pair.body.motion, *gone)
+        rest = without_pair(rest, pair)
     if nonlinear_parts(rest):
         return []
     claims = [one for pair in pairs for one in pair_claims(pair, simulated=False)]

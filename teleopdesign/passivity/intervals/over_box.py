@@ -27,11 +27,18 @@ from ...diagrams.units import first_axis, unit_of_value
 from ..claims.claim import use_rotary_units
 from ..declarations import is_shipped
 from ..diagram_claims import composed_claim
-from ..friction_pairs import FrictionPair, friction_pairs, pair_claims, proof_of, refuting
+from ..friction_pairs import (
+    FrictionPair,
+    friction_pairs,
+    pair_claims,
+    proof_of,
+    refuting,
+    without_pair,
+)
 from ..linear.conditions import certificates_over_box
 from ..linear.family import family_of_states
 from ..linear.impedance import decimal, exact
-from ..ports import drop_absent_effects, nonlinear_parts, ports, without_friction, without_holders
+from ..ports import drop_absent_effects, nonlinear_parts, ports, without_holders
 from .box import IntervalClaim, ValueBox, Worst, box_of, interval_claim, nonlinear_within
 from .linear import CLAIMS, judge_at_points, judge_linear, judge_stability, states_over
 
@@ -200,8 +207,7 @@ def _rest_is_passive(middle: Diagram, box: ValueBox) -> bool:
     rest = drop_absent_effects(middle)
     pairs = friction_pairs(rest)
     for pair in pairs:
-        gone = [pair.cancellation.name] if pair.cancellation else []
-        rest = without_friction(rest, pair.body.motion, *gone)
+        rest = without_pair(rest, pair)
     other_values = tuple(n for n in box.names if not _belongs_to_friction(n, pairs))
     if nonlinear_parts(rest):
         return False

@@ -11,11 +11,9 @@ samples of a computer the travel grows as Re(V z^k).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import lru_cache
-from typing import Any
 
 import mpmath
 import numpy as np
@@ -23,7 +21,7 @@ import sympy as sp
 
 from ...base.frozen import ByValue
 from ...derive.polynomials import even_part, where_negative
-from ...realise.lti import S
+from ..linear.family import family_of_matrix
 from ..linear.impedance import Impedance
 from ..linear.matrices import square_root
 from ..linear.sweep import passive_margin
@@ -116,15 +114,10 @@ def value_at(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> np.n
     with mpmath.workdps(_DIGITS):
         s = mpmath.mpc(*(mpmath.mpf(x.numerator) / x.denominator for x in (rate, frequency)))
         try:
-            return np.array([[complex(x) for x in row] for row in _numeric_matrix(z, "mpmath")(s)])
+            rows = family_of_matrix(z).precisely(s)
+            return np.array([[complex(x) for x in row] for row in rows])
         except (ZeroDivisionError, OverflowError):
             return np.full(z.shape, np.nan, dtype=complex)
-
-
-@lru_cache(maxsize=16)
-def _numeric_matrix(z: sp.ImmutableMatrix, library: str) -> Callable[[Any], list[list[Any]]]:
-    made: Callable[[Any], list[list[Any]]] = sp.lambdify(S, z.tolist(), library)
-    return made
 
 
 def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> GrowingWave | None:
@@ -138,8 +131,7 @@ def wave_of(z: sp.ImmutableMatrix, rate: Fraction, frequency: Fraction) -> Growi
     """
     s, is_late = complex(float(rate), float(frequency)), z.has(sp.exp)
     if is_late:
-        with np.errstate(all="ignore"):
-            near = np.array([_numeric_matrix(z, "numpy")(np.complex128(s))], dtype=complex)
+        near = family_of_matrix(z).at(np.array([s]))
         if passive_margin(near)[0] > _PLAIN * np.abs(near).max():
             return None
     value = value_at(z, rate, frequency)
