@@ -232,7 +232,7 @@ def _describe_device(
     force, stiff = device.force_unit, device.stiffness_unit
     lines = [
         f"friction level: lowest {device.lowest} {force}, highest {device.highest} {force}, "
-        f"over {device.friction.over}"
+        f"over {device.over}"
     ]
     if device.presliding is None:
         lines.append(

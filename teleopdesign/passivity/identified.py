@@ -87,7 +87,9 @@ class IdentifiedDevice:
     """Friction of an identified device, as bounds for claims of passivity.
 
     reach: range of the motions in the claims; None: every motion
-    friction: levels and presliding stiffness, bounds over the reach and the 95 % intervals
+    lowest, highest: friction level that can occur over the reach and the 95 % intervals, N or N m
+    presliding: stiffness of friction before it slides, N/m or N m/rad; None for ideal friction
+    over: the reach in words
     least_resistance: least force of friction level and viscous damping together at any speed, N
     damping: damping that is present at every speed, N s/m; 0 where the model has none
     bristle_damping: damping of friction before it slides, N s/m; 0 where the model has none
@@ -99,7 +101,10 @@ class IdentifiedDevice:
 
     body: Body
     reach: Reach | None
-    friction: FrictionInterval
+    lowest: Interval
+    highest: Interval
+    presliding: Interval | None
+    over: str
     least_resistance: Interval
     damping: Interval
     bristle_damping: Interval
@@ -111,21 +116,6 @@ class IdentifiedDevice:
     def set_aside(self) -> tuple[str, ...]:
         """Names of effects that may supply energy, or that no theorem covers."""
         return tuple(self.left_open)
-
-    @property
-    def lowest(self) -> Interval:
-        """The lowest friction level that can occur, N or N m."""
-        return self.friction.lowest
-
-    @property
-    def highest(self) -> Interval:
-        """The highest friction level that can occur, N or N m."""
-        return self.friction.highest
-
-    @property
-    def presliding(self) -> Interval | None:
-        """Stiffness of friction before it slides, N/m or N m/rad; None for ideal friction."""
-        return self.friction.presliding
 
     @property
     def actuation(self) -> tuple[str, ...]:
@@ -182,12 +172,10 @@ def identify_device(
     return IdentifiedDevice(
         body,
         reach,
-        replace(
-            friction,
-            lowest=friction.lowest.round_outward(digits=DIGITS),
-            highest=friction.highest.round_outward(digits=DIGITS),
-            presliding=friction.presliding and friction.presliding.round_outward(digits=DIGITS),
-        ),
+        friction.lowest.round_outward(digits=DIGITS),
+        friction.highest.round_outward(digits=DIGITS),
+        friction.presliding and friction.presliding.round_outward(digits=DIGITS),
+        friction.over,
         resistance.round_outward(digits=DIGITS),
         damping.least.round_outward(digits=DIGITS),
         bristles.round_outward(digits=DIGITS),
@@ -272,7 +260,7 @@ def restate_for_device(
     """
     left = {name: why for name, why in device.left_open.items() if name not in besides}
     claim = use_units_of(device.body.axis, claim)
-    return extend_to_device(claim, over=device.friction.over, left=left)
+    return extend_to_device(claim, over=device.over, left=left)
 
 
 def _is_open(effect: Effect) -> bool:

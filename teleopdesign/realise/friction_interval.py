@@ -20,25 +20,19 @@ from ..base.units import unit_after_number, unit_of
 from ..blocks import Body, Value
 from ..effects import SIGNALS, Effect, sort_by_action
 from .extremes import Least, Ranges, least_value
-from .reach import ANY_MOTION, Reach, largest_speed, signal_ranges, words_of
+from .reach import (
+    ANY_MOTION,
+    Reach,
+    largest_speed,
+    signal_ranges,
+    unit_of_signal,
+    words_of,
+)
 from .simulated import without_absent
 
 #: symbol of the speed of sliding in either direction; > 0, so that its sign is known
 SPEED = sp.Symbol("speed", positive=True)
 DIRECTION = SIGNALS["direction"]
-
-#: signal on which friction levels may depend -> its quantity; a direction has none
-_QUANTITIES = {
-    "time": "time",
-    "speed": "velocity",
-    "temperature": "temperature",
-    **dict.fromkeys(("position", "other_position", "penetration"), "position"),
-    **dict.fromkeys(("velocity", "other_velocity"), "velocity"),
-    **dict.fromkeys(("acceleration", "other_acceleration"), "acceleration"),
-    **dict.fromkeys(
-        ("command", "acting_force", "carried_force", "interaction_force", "level"), "force"
-    ),
-}
 
 
 @dataclass(frozen=True)
@@ -272,8 +266,7 @@ def _where(point: Mapping[sp.Symbol, float], body: Body) -> str:
 
 def _unit_of(signal: str, body: Body) -> str:
     """The unit of a signal after its number; "" where it has none, such as a direction."""
-    quantity = _QUANTITIES.get(signal)
-    return "" if quantity is None else unit_after_number(unit_of(quantity, body.axis))
+    return unit_after_number(unit_of_signal(signal, body.axis))
 
 
 def _explain_unbounded(level: sp.Expr, reach: Reach | None) -> str:

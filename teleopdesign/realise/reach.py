@@ -67,6 +67,13 @@ def signal_ranges(reach: Reach | None) -> dict[sp.Symbol, tuple[float, float]]:
     return {SIGNALS[n]: r for n, r in ends.items() if n not in ("velocity", "direction")}
 
 
+def unit_of_signal(name: str, axis: str) -> str:
+    """Unit of a signal on which friction levels may depend; "" of a direction, which has none."""
+    quantity = {"speed": "velocity", "penetration": "position", "level": "force"}.get(name, name)
+    quantity = "force" if name.endswith(("force", "command")) else quantity.removeprefix("other_")
+    return "" if name == "direction" else unit_of(quantity, axis)
+
+
 def words_of(reach: Reach | None, law: sp.Expr, *, speed: bool, axis: str) -> str:
     """The ranges of a law's signals in words: "speeds up to 3 m/s, position -0.1 to 0.1 m".
 
@@ -77,9 +84,7 @@ def words_of(reach: Reach | None, law: sp.Expr, *, speed: bool, axis: str) -> st
     parts += ["both directions"] if law.has(SIGNALS["direction"]) else []
     for symbol, (low, high) in signal_ranges(reach).items():
         if law.has(symbol):
-            quantity = "force" if symbol.name.endswith(("force", "command")) else symbol.name
-            quantity = quantity.removeprefix("other_")
-            unit = unit_of("position" if quantity == "penetration" else quantity, axis)
+            unit = unit_of_signal(symbol.name, axis)
             parts.append(_range(symbol.name.replace("_", " "), low, high, unit))
     return ", ".join(parts) or ANY_MOTION
 
