@@ -39,18 +39,13 @@ _FARTHEST = from_float(1e300)
 _GUARD = (from_float(1 - 2.0**-50), from_float(1 + 2.0**-50))
 
 
-class Singular(Exception):
-    """The law may be undefined or unbounded within the ranges."""
-
-
 def enclosure_of(
-    law: sp.Expr, variables: Sequence[sp.Symbol], *, smooth: bool = False
+    law: sp.Expr, variables: Sequence[sp.Symbol]
 ) -> Callable[[Sequence[Enclosure]], Enclosure]:
     """The law as a function of one interval for each variable.
 
     The function keeps its last values: parts whose variables are as before are not computed anew.
 
-    smooth: raise `Singular` where the law divides by zero, or takes a root or logarithm of zero
     raises ModelError: the law has a function without a known bound
     """
     places: dict[sp.Basic, int] = {v: i for i, v in enumerate(variables)}
@@ -64,8 +59,7 @@ def enclosure_of(
             arguments = tuple(place(a) for a in _arguments(node))
             places[node] = len(depends)
             depends.append(reduce(or_, (depends[i] for i in arguments), 0) or constant)
-            operation = _operation(node, smooth)
-            steps.append((places[node], depends[-1], operation, arguments))
+            steps.append((places[node], depends[-1], _operation(node), arguments))
         return places[node]
 
     last = place(sp.sympify(law))
@@ -83,7 +77,7 @@ def enclosure_of(
         for at, depend, operation, arguments in steps:
             if depend & changed:
                 values[at] = operation(*[values[i] for i in arguments])
-        changed = 0  # not where a step raised: these values are computed anew
+        changed = 0
         return _in_floats(values[last])
 
     return evaluate
@@ -108,7 +102,7 @@ def _arguments(node: sp.Basic) -> tuple[sp.Basic, ...]:
     return () if node.is_Atom else node.args
 
 
-def _operation(node: sp.Basic, smooth: bool) -> Callable[..., Any]:
+def _operation(node: sp.Basic) -> Callable[..., Any]:
     """The operation of a node of the law on the intervals, or possibilities, of its arguments."""
     if node in (sp.true, sp.false):
         return lambda: (node == sp.true, node == sp.false)
@@ -116,12 +110,7 @@ def _operation(node: sp.Basic, smooth: bool) -> Callable[..., Any]:
         constant = _constant(node)
         return lambda: constant
     if isinstance(node, sp.Pow):
-        return _power(node, smooth)
-    if isinstance(node, sp.log):
-        return lambda x: _logarithm(x, smooth)
-    if isinstance(node, sp.tan):
-        sine, cosine = _OPERATIONS[sp.sin], _OPERATIONS[sp.cos]
-        return lambda x: _multiply(sine(x), _reciprocal(cosine(x), smooth))
+        return _power(node)
     operation = _OPERATIONS.get(node.func)
     if operation is None:
         raise ModelError(f"no guaranteed bound: none is known of {node.func.__name__}(...)")
@@ -154,43 +143,37 @@ def _multiply(*parts: _Ends) -> _Ends:
     return _ZERO if _ZERO in parts else reduce(lambda x, y: libmpi.mpi_mul(x, y, BITS), parts)
 
 
-def _reciprocal(x: _Ends, smooth: bool) -> _Ends:
-    if smooth and mpf_sign(x[0]) <= 0 <= mpf_sign(x[1]):
-        raise Singular
+def _reciprocal(x: _Ends) -> _Ends:
     inverse: _Ends = libmpi.mpi_div(_ONE, x, BITS)
     return inverse
 
 
-def _power(node: sp.Pow, smooth: bool) -> Callable[..., _Ends]:
+def _power(node: sp.Pow) -> Callable[..., _Ends]:
     exponent = node.exp
     if not exponent.is_Rational:
         if node.base == sp.E:
             return lambda _, y: _exponential(y)
-        return lambda x, y: _exponential(_multiply(y, _logarithm(x, smooth)))
+        return lambda x, y: _exponential(_multiply(y, _logarithm(x)))
     whole, root = abs(int(exponent.p)), int(exponent.q)
 
     def power(x: _Ends) -> _Ends:
         if root != 1:
-            if smooth and mpf_sign(x[0]) <= 0:
-                raise Singular
             if mpf_sign(x[0]) < 0:
                 return _WHOLE
             x = libmpi.mpi_sqrt(x, BITS) if root == 2 else _root(x, root)
         x = libmpi.mpi_pow_int(x, whole, BITS)
-        return _reciprocal(x, smooth) if exponent < 0 else x
+        return _reciprocal(x) if exponent < 0 else x
 
     return power
 
 
 def _root(x: _Ends, root: int) -> _Ends:
     """The root of an interval that is not negative."""
-    power = _exponential(_multiply(_logarithm(x, False), _both_ways(libmp.from_rational, 1, root)))
+    power = _exponential(_multiply(_logarithm(x), _both_ways(libmp.from_rational, 1, root)))
     return _hull(_ZERO, power) if x[0] == fzero else power
 
 
-def _logarithm(x: _Ends, smooth: bool) -> _Ends:
-    if smooth and mpf_sign(x[0]) <= 0:
-        raise Singular
+def _logarithm(x: _Ends) -> _Ends:
     if mpf_sign(x[0]) < 0 or mpf_sign(x[1]) <= 0:
         return _WHOLE
     return _rising(libmp.mpf_log, x)
@@ -279,8 +262,10 @@ _OPERATIONS: Mapping[Any, Callable[..., Any]] = {
     sp.Add: _add,
     sp.Mul: _multiply,
     sp.exp: _exponential,
+    sp.log: _logarithm,
     sp.sin: partial(_wave, libmpi.mpi_sin),
     sp.cos: partial(_wave, libmpi.mpi_cos),
+    sp.tan: lambda x: _multiply(_wave(libmpi.mpi_sin, x), _reciprocal(_wave(libmpi.mpi_cos, x))),
     sp.tanh: lambda x: _limit(_rising(libmp.mpf_tanh, x), _WAVE),
     sp.atan: partial(_rising, libmp.mpf_atan),
     sp.sinh: lambda x: _multiply(_HALF, libmpi.mpi_sub(*_exponentials(x), BITS)),

@@ -15,7 +15,7 @@ from itertools import count
 import sympy as sp
 
 from ..base.errors import ModelError
-from .enclosure import Enclosure, Singular, enclosure_of
+from .enclosure import Enclosure, enclosure_of
 
 #: relative distance of a bound from a value that occurs, at which the bound is tight enough:
 #: friction levels are known to 1e-2 at best, and a tenth of this distance needs a few boxes more
@@ -97,10 +97,8 @@ class _Search:
             low, high = narrow[i]
             if low == high or slope is None:
                 continue
-            try:
-                least, most = slope(narrow)
-            except Singular:
-                continue
+            # beside a pole, where the law may jump, no slope has finite bounds
+            least, most = slope(narrow)
             if least >= 0 and math.isfinite(most) and math.isfinite(low):
                 narrow[i] = low, low
             elif most <= 0 and math.isfinite(least) and math.isfinite(high):
@@ -164,12 +162,15 @@ def least_value(law: sp.Expr, ranges: Ranges) -> Least:
 def _slope(
     law: sp.Expr, symbol: sp.Symbol, symbols: Sequence[sp.Symbol]
 ) -> Callable[[Sequence[Enclosure]], Enclosure] | None:
-    """The enclosure of the derivative; None where it does not show monotony: pieces may jump."""
-    if law.has(sp.Piecewise, sp.Heaviside):
+    """The enclosure of the derivative; None where it does not show monotony.
+
+    Pieces may jump, and atan(tan(x)), whose derivative is simplified to 1.
+    """
+    if law.has(sp.Piecewise, sp.Heaviside, sp.tan):
         return None
     try:
         # a kink is no jump: signs of a derivative are any between -1 and 1 there
-        return enclosure_of(sp.diff(law, symbol), symbols, smooth=True)
+        return enclosure_of(sp.diff(law, symbol), symbols)
     except ModelError:
         return None
 

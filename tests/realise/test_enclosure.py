@@ -93,6 +93,8 @@ def test_no_value_is_below_the_least_and_the_least_is_met(law, x, y, shares):
         (X / sp.sqrt(1 + X**2), {X: (-3.0, 5.0)}, -3 / 10**0.5),
         (sp.Piecewise((X, X > 1), (2 - X, True)), {X: (-3.0, 3.0)}, 1.0),
         (sp.Abs(X) - X / 2, {X: (-1.0, 1.0)}, 0.0),
+        (sp.atan(1 / X), {X: (-1.0, 2.0)}, -sp.pi.evalf() / 2),
+        (sp.atan(sp.tan(X)), {X: (-2.0, 1.0)}, -sp.pi.evalf() / 2),
     ],
 )
 def test_the_least_value_is_known_to_the_stated_tightness(law, over, least):
