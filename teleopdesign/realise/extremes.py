@@ -23,9 +23,6 @@ TIGHTNESS = 1e-4
 #: most boxes for a bound, about 1.3 ms each for a law with 17 symbols; then the bound stays as it
 #: is. Most laws of the catalogue need less than a hundred, a wave beside a load up to all of them
 MOST_BOXES = 1000
-#: boxes after which a lower value is looked for about the best point again, and halvings of each
-#: step of this search
-BOXES_PER_DESCENT, DESCENT = 50, 8
 #: most boxes while the law has no bound: further boxes would not change this
 MOST_UNBOUNDED = 100
 
@@ -75,20 +72,6 @@ class _Search:
         value = self.over([(x, x) for x in point])[1]
         if value < self.met:
             self.met, self.point = value, tuple(point)
-
-    def descend(self, box: _Box) -> None:
-        """Look for a lower value about the best point, along one symbol after the other.
-
-        The bound of a wave soon is its amplitude, which the middles of boxes seldom meet.
-        """
-        for i, (low, high) in enumerate(self.start):
-            width = box.ranges[i][1] - box.ranges[i][0]
-            width = width if 0 < width < math.inf else abs(self.point[i]) or 1.0
-            for _ in range(DESCENT):
-                width *= 0.5
-                at = self.point
-                for x in (at[i] - width, at[i] + width):
-                    self.meet((*at[:i], min(max(x, low), high), *at[i + 1 :]))
 
     def box(self, ranges: tuple[tuple[float, float], ...]) -> _Box:
         """The box, narrowed to the ends where a monotone law is least, with points evaluated."""
@@ -148,8 +131,6 @@ def least_value(law: sp.Expr, ranges: Ranges) -> Least:
         if math.isinf(waiting[0].bound) and looked_at >= MOST_UNBOUNDED:
             break
         lowest = heapq.heappop(waiting)
-        if looked_at % BOXES_PER_DESCENT == BOXES_PER_DESCENT - 1:
-            search.descend(lowest)
         halves = search.split(lowest)
         if not halves:
             finished = min(finished, lowest.bound)
