@@ -42,8 +42,7 @@ def sheet(
     network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route], title: str
 ) -> Drawing:
     """The drawing of a diagram with a layout; shapes are in the order of painting."""
-    x = _line_abscissas(network, cells, grid, routes)
-    y = _line_ordinates(network, cells, grid, routes)
+    x, y = (_places(network, cells, grid, routes, axis) for axis in (0, 1))
     middle = {n: (x[grid.vertex(n)[0]], y[grid.vertex(n)[1]]) for n in cells.at}
     shapes: list[SheetShape] = []
     texts: list[Text] = []
@@ -66,34 +65,34 @@ def sheet(
     return _crop((*shapes, *texts), title)
 
 
-def _line_abscissas(
-    network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route]
+def _places(
+    network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route], axis: int
 ) -> dict[int, float]:
-    """Number of a used vertical line -> its x (points)."""
-    used = _lines(routes, 0)
-    columns = sorted({c for c, _ in cells.at.values()})
+    """Number of a used line -> its place (points);  axis: 0 vertical, 1 horizontal lines."""
+    used = {a[axis] for r in routes for a, b in pairwise(r.vertices) if a[axis] == b[axis]}
+    numbers = sorted({cell[axis] for cell in cells.at.values()})
+    first, last = numbers[0], numbers[-1]
     at: dict[int, float] = {}
-    x = 0.0
-    for i, c in enumerate(range(columns[0], columns[-1] + 2)):
+    end = 0.0  # of what is placed
+    for i, number in enumerate(range(first, last + 2)):
         start = i * (grid.tracks + 1)
-        before = _room(network, cells, routes, c - 1, RIGHT)
-        after = _room(network, cells, routes, c, -RIGHT)
         lines = [k for k in range(start, start + grid.tracks) if k in used]
-        x = _gap(at, x, before, after, lines)
-        if c <= columns[-1]:
-            half = _half(network, cells, 0, c)
-            at[start + grid.tracks] = x + half
-            x += 2 * half
+        if axis == 0:
+            before, after = (
+                _room(network, cells, routes, c, side)
+                for c, side in ((number - 1, RIGHT), (number, LEFT))
+            )
+        else:
+            room = BETWEEN_ROWS if lines or first < number <= last else 0.0
+            before, after = room * (number > first), room * (number <= last)
+        for k, line in enumerate(lines):
+            at[line] = end + before + PITCH * k
+        end += before + PITCH * max(len(lines) - 1, 0) + after
+        if number <= last:
+            half = max(HALF_ROW * axis, _half(network, cells, axis, number))
+            at[start + grid.tracks] = end + half
+            end += 2 * half
     return at
-
-
-def _gap(at: dict[int, float], x: float, before: float, after: float, lines: list[int]) -> float:
-    """Place the used lines between two columns or rows; returns where the next one starts."""
-    x += before
-    for k, line in enumerate(lines):
-        x += PITCH if k else 0.0
-        at[line] = x
-    return x + after
 
 
 def _room(network: Network, cells: Cells, routes: Sequence[Route], column: int, side: int) -> float:
@@ -115,32 +114,6 @@ def _room(network: Network, cells: Cells, routes: Sequence[Route], column: int, 
         else:
             need = max(need, APPROACH + max(0.0, sign - 8.0) - spare)
     return need
-
-
-def _line_ordinates(
-    network: Network, cells: Cells, grid: RoutingGrid, routes: Sequence[Route]
-) -> dict[int, float]:
-    """Number of a used horizontal line -> its y (points)."""
-    used = _lines(routes, 1)
-    rows = sorted({r for _, r in cells.at.values()})
-    at: dict[int, float] = {}
-    y = 0.0
-    for i, r in enumerate(range(rows[0], rows[-1] + 2)):
-        start = i * (grid.tracks + 1)
-        inside = rows[0] < r <= rows[-1]
-        lines = [k for k in range(start, start + grid.tracks) if k in used]
-        room = BETWEEN_ROWS if lines or inside else 0.0
-        y = _gap(at, y, room if r > rows[0] else 0.0, room if r <= rows[-1] else 0.0, lines)
-        if r <= rows[-1]:
-            half = max(HALF_ROW, _half(network, cells, 1, r))
-            at[start + grid.tracks] = y + half
-            y += 2 * half
-    return at
-
-
-def _lines(routes: Sequence[Route], axis: int) -> set[int]:
-    """Numbers of the lines that carry a piece of wire; axis: 0 vertical, 1 horizontal lines."""
-    return {a[axis] for one in routes for a, b in pairwise(one.vertices) if a[axis] == b[axis]}
 
 
 def _half(network: Network, cells: Cells, axis: int, line: int) -> float:
