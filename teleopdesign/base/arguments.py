@@ -35,6 +35,7 @@ __all__ = [
     "check_arguments",
     "check_types",
     "checked_in_place",
+    "conforming",
     "describe_value",
     "instance",
     "matrix_of",
@@ -125,6 +126,13 @@ def instance(value: Any, kind: type[Any], where: str, *, expected: str = "") -> 
     """
     if not isinstance(value, kind):
         raise _error("", "", where, WrongValue("", value, expected or with_article(kind.__name__)))
+
+
+def conforming(value: Any, annotation: Any, where: str) -> None:
+    """Raise ModelError unless the value is of the type that an annotation states."""
+    check = check_of(annotation)
+    if check is not None and (wrong := check(value)) is not None:
+        raise _error("", "", where, wrong)
 
 
 def matrix_of(value: Any, where: str) -> Any:

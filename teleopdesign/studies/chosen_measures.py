@@ -19,7 +19,6 @@ from typing import Any
 
 import numpy as np
 
-from ..base.arguments import instance, number
 from ..base.errors import ModelError, UnknownSignal, did_you_mean, unknown
 from ..base.expectations import describe_value, number_check
 from ..base.frozen import ByValue
@@ -74,28 +73,12 @@ def measure(name: str, **options: Any) -> Measure:
         if default is ... and option not in options:
             raise ModelError(f'measure {name}: option "{option}" has no value')
     for option, content in options.items():
-        is_text = option in _NAMES or isinstance(kind.options[option], str)
-        _check_option(f"measure {name}: {option}", content, is_text=is_text)
+        kind.check(option, content)
     values = {**{k: v for k, v in kind.options.items() if v is not ...}, **options}
     signal = values.get("signal") if kind.options.get("signal", "") is ... else None
     label = f"{name}_{signal}" if signal else name
     signals = tuple(str(values.get(s, s)) for s in kind.signals)
     return Measure(label, kind.function, values, of_package=True, signals=signals)
-
-
-#: options without a default that name something
-_NAMES = ("signal", "parameter")
-
-
-def _check_option(where: str, content: Any, *, is_text: bool) -> None:
-    """Raise ModelError for an option that is no text, or neither a number nor several."""
-    if is_text:
-        instance(content, str, where, expected="a text")
-    elif np.ndim(content) == 0:
-        number(content, where)
-    else:
-        for value in content:
-            number(value, where)
 
 
 def require_one_meaning(measures: Iterable[Measure]) -> None:

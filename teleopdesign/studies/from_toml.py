@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.errors import ExperimentError, ModelError, did_you_mean, quote, unknown
+from ..base.errors import ExperimentError, ModelError, did_you_mean, quote
 from ..base.toml import Table, describe_toml_value, read_toml
 from ..controllers import CONTROLLERS, ControlLaw
 from ..diagrams import Diagram, read_diagram
@@ -210,26 +210,9 @@ def _read_measures(table: Table) -> dict[str, Measure]:
     measures: dict[str, Measure] = {}
     for name in table.content:
         entry = table.table(name)
-        kind = entry.text("measure", default=name)
-        if kind not in MEASURES:
-            raise ExperimentError(f"{entry.where()}: {unknown('measure', kind, MEASURES)}")
         options = {k: v for k, v in entry.content.items() if k != "measure"}
-        entry.allow(("measure", *MEASURES[kind].options))
-        for option in options:
-            content, default = options[option], MEASURES[kind].options[option]
-            if isinstance(default, float | int):
-                options[option] = entry.number(option)
-                if isinstance(default, int):
-                    options[option] = read_whole(entry, option)
-            elif isinstance(default, str):
-                options[option] = entry.text(option)
-            elif not isinstance(content, str | int | float | list) or isinstance(content, bool):
-                raise ExperimentError(
-                    f"{entry.where(option)}: found {describe_toml_value(content)}, "
-                    "expected a number or a text"
-                )
         try:
-            measures[name] = measure(kind, **options)
+            measures[name] = measure(entry.text("measure", default=name), **options)
         except ModelError as error:
             raise ExperimentError(f"{entry.where()}: {error}") from error
     return measures

@@ -8,7 +8,7 @@ Onset of instability: whether an oscillation grows, and the parameter at which t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -30,31 +30,31 @@ def _rows(point: Point, signal: str, after: float) -> tuple[np.ndarray, str]:
     return rows.values[kept], rows.unit
 
 
-def _rms(point: Point, *, signal: str, after: float) -> Amount:
+def _rms(point: Point, *, signal: str, after: float = 0.0) -> Amount:
     """root mean square of a signal, from the time `after` (s) on"""
     values, unit = _rows(point, signal, after)
     with np.errstate(over="ignore"):  # a motion without bound
         return Amount(float(np.sqrt(np.mean(values**2))), unit, f"rms of {signal}")
 
 
-def _peak(point: Point, *, signal: str, after: float) -> Amount:
+def _peak(point: Point, *, signal: str, after: float = 0.0) -> Amount:
     """largest size of a signal, from the time `after` (s) on"""
     values, unit = _rows(point, signal, after)
     return Amount(float(np.abs(values).max()), unit, f"largest size of {signal}")
 
 
-def _force_error(point: Point, *, after: float) -> Amount:
+def _force_error(point: Point, *, after: float = 0.0) -> Amount:
     """rms of the force error R_D - R_M of a haptic interface"""
     return replace(_rms(point, signal="E", after=after), text="rms of the force error R_D - R_M")
 
 
-def _tracking_error(point: Point, *, after: float) -> Amount:
+def _tracking_error(point: Point, *, after: float = 0.0) -> Amount:
     """rms of the position error X_m - X_s of a teleoperator"""
     amount = _rms(point, signal="X_e", after=after)
     return replace(amount, text="rms of the position error X_m - X_s")
 
 
-def _transparency_error(point: Point, *, after: float) -> Amount:
+def _transparency_error(point: Point, *, after: float = 0.0) -> Amount:
     """rms of the user's force less that of the tip on the environment, at the same time"""
     from ..simulate import force_displacement
 
@@ -63,7 +63,14 @@ def _transparency_error(point: Point, *, after: float) -> Amount:
     return Amount(curves.rms[""], curves.data["force"].attrs["units"], text)
 
 
-def _impedance(point: Point, *, frequency: Any, amplitude: float, motion: str, force: str) -> Any:
+def _impedance(
+    point: Point,
+    *,
+    frequency: float | Sequence[float],
+    amplitude: float,
+    motion: str = "L",
+    force: str = "E",
+) -> Any:
     """impedance force/motion at frequencies (Hz), measured with a sinusoid of that amplitude"""
     from ..frequency import measured_impedance
 
@@ -87,7 +94,7 @@ def _impedance(point: Point, *, frequency: Any, amplitude: float, motion: str, f
     }
 
 
-def _energy_drawn(point: Point, *, motion: str, force: str) -> Amount:
+def _energy_drawn(point: Point, *, motion: str = "L", force: str = "R_V") -> Amount:
     """most energy that a port has released, kinetic energy of a start at speed included
 
     the start is not known to the sum: a sine of phase 0 begins at its largest speed, and its
@@ -99,7 +106,7 @@ def _energy_drawn(point: Point, *, motion: str, force: str) -> Amount:
     return Amount(max(0.0, -lowest), "J", f"energy drawn at the port ({force}, {motion})")
 
 
-def _limit_cycle_amplitude(point: Point, *, signal: str, last: float) -> Amount:
+def _limit_cycle_amplitude(point: Point, *, signal: str, last: float = 0.25) -> Amount:
     """half the range of a signal over the last part of the simulation (`last` of its time)"""
     if not 0 < last <= 1:
         raise ModelError(f"measure limit_cycle_amplitude: last: found {last:g}, expected 0 to 1")
@@ -119,7 +126,7 @@ def _growth(point: Point, *, signal: str) -> Amount:
 
 
 def _onset(
-    point: Point, *, parameter: str, low: float, high: float, signal: str, steps: int
+    point: Point, *, parameter: str, low: float, high: float, signal: str, steps: int = 10
 ) -> Amount:
     """least value of a parameter, between low and high (> 0), at which a motion grows
 
@@ -161,7 +168,7 @@ def _amounts_of_claim(claim: Any, name: str) -> dict[str, Amount]:
     }
 
 
-def _passivity(point: Point, *, stroke: float, speed: float, tries: int) -> Any:
+def _passivity(point: Point, *, stroke: float = 0.01, speed: float = 0.1, tries: int = 15) -> Any:
     """what the package settles about all ports of the diagram: status and margin
 
     "refuted" if any claim on a port is; else the weakest of the claims that settle it. With a
@@ -214,43 +221,22 @@ def _verdict(point: Point) -> Any:
     }
 
 
-_AFTER = {"after": 0.0}
-_PORT = {"motion": "L", "force": "R_V"}
-
-MEASURES: Catalogue[Kind] = Catalogue(
-    {
-        k.name: k
-        for k in (
-            Kind("rms", _rms, {"signal": ..., **_AFTER}, ("signal",)),
-            Kind("peak", _peak, {"signal": ..., **_AFTER}, ("signal",)),
-            Kind("force_error", _force_error, _AFTER, ("E",)),
-            Kind("tracking_error", _tracking_error, _AFTER, ("X_e",)),
-            Kind("transparency_error", _transparency_error, _AFTER, ("X_m", "F_m", "X_s", "F_s")),
-            Kind(
-                "impedance",
-                _impedance,
-                {"frequency": ..., "amplitude": ..., "motion": "L", "force": "E"},
-            ),
-            Kind("energy_drawn", _energy_drawn, _PORT, ("motion", "force")),
-            Kind(
-                "limit_cycle_amplitude",
-                _limit_cycle_amplitude,
-                {"signal": ..., "last": 0.25},
-                ("signal",),
-            ),
-            Kind("growth", _growth, {"signal": ...}, ("signal",)),
-            Kind(
-                "onset",
-                _onset,
-                {"parameter": ..., "low": ..., "high": ..., "signal": ..., "steps": 10},
-            ),
-            Kind("claim", _claim),
-            Kind("passivity", _passivity, {"stroke": 0.01, "speed": 0.1, "tries": 15}),
-            Kind("verdict", _verdict),
-        )
-    },
-    "measure",
+_KINDS = (
+    Kind(_rms, ("signal",)),
+    Kind(_peak, ("signal",)),
+    Kind(_force_error, ("E",)),
+    Kind(_tracking_error, ("X_e",)),
+    Kind(_transparency_error, ("X_m", "F_m", "X_s", "F_s")),
+    Kind(_impedance),
+    Kind(_energy_drawn, ("motion", "force")),
+    Kind(_limit_cycle_amplitude, ("signal",)),
+    Kind(_growth, ("signal",)),
+    Kind(_onset),
+    Kind(_claim),
+    Kind(_passivity),
+    Kind(_verdict),
 )
+MEASURES: Catalogue[Kind] = Catalogue({kind.name: kind for kind in _KINDS}, "measure")
 
 
 #: a swing has died out if it is below this share of the largest one: smaller swings are creep of

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, get_type_hints
 
 import numpy as np
 
+from ..base.arguments import conforming
 from ..base.errors import ModelError
 from ..base.expectations import describe_value
 from ..base.frozen import ByValue
@@ -95,16 +97,29 @@ PointFunction = Callable[..., Any]
 
 @dataclass(frozen=True, eq=False)
 class Kind(ByValue):
-    """A measure of the package: function(point, **options) -> Amount, or several by name.
+    """A measure of the package: a function of a point and options -> Amount, or several by name.
 
-    options: name -> default; `...` if required
     signals: all that it needs of a simulation: signals, or options that name signals
     """
 
-    name: str
     function: PointFunction
-    options: Mapping[str, Any] = field(default_factory=dict)
     signals: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        return self.function.__name__.removeprefix("_")
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Option -> default; `...` if required."""
+        declared = inspect.signature(self.function).parameters.values()
+        named = (p for p in declared if p.kind is p.KEYWORD_ONLY)
+        return {p.name: ... if p.default is p.empty else p.default for p in named}
+
+    def check(self, option: str, value: Any) -> None:
+        """Raise ModelError for a value that is none of the option's type."""
+        kind = get_type_hints(self.function)[option]
+        conforming(value, kind, f"measure {self.name}: {option}")
 
     @property
     def text(self) -> str:
