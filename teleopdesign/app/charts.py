@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..show.figures.diagnosis import label_of
+from ..base.sentences import unit_on_page
 from ..show.figures.style import AFTER, BACKWARD, BEFORE, FORWARD
 
 if TYPE_CHECKING:
@@ -57,71 +57,66 @@ def residual_chart(data: Dataset, body: str, use: str) -> Chart:
 
     data: as `Comparison.data`;  use: "fit" or "check"
     """
-    unit = {n: data[n].attrs["units"] for n in ("time", "position", "velocity", "residual")}
-    residual = {
-        "field": "residual",
-        "type": "quantitative",
-        "title": f"residual ({unit['residual']})",
+    half, colour = WIDE // 2 - 35, _colour_by_direction()
+    over = {
+        name: {"name": f"residual_over_{name}"} | _points(data, name, colour, width)
+        for name, width in (("time", WIDE), ("velocity", half), ("position", half))
+    }
+    below = {"hconcat": [over["velocity"], over["position"]]}
+    views = [view["name"] for view in over.values()]
+    chart = _chart(rows_of(data, body, use), [_forces(data), over["time"], below])
+    chart["params"] = [{"name": "span", "select": {"type": "interval"}, "views": views}]
+    chart["resolve"] = {"scale": {"color": "independent"}}
+    return Chart(chart)
+
+
+def _chart(rows: list[dict[str, float | str]], panels: list[dict[str, Any]]) -> dict[str, Any]:
+    """Panels below each other, of the same rows."""
+    return {
+        "$schema": "https://vega.github.io/schema/vega-lite/v5.json",
+        "datasets": {ROWS: rows},
+        "vconcat": panels,
+        "config": {"axis": {"grid": False}},
     }
 
-    def over(name: str, width: int) -> dict[str, Any]:
-        along = {
-            "field": name,
-            "type": "quantitative",
-            "title": f"{name} ({unit[name]})",
-            "scale": {"zero": False},
-        }
-        return {
-            "data": {"name": ROWS},
-            "name": f"residual_over_{name}",
-            "width": width,
-            "height": HIGH,
-            "mark": {"type": "circle", "size": 9, "opacity": 0.7},
-            "encoding": {
-                "x": along,
-                "y": residual,
-                "color": _colour_by_direction(),
-                "tooltip": _tip(),
-            },
-        }
 
-    half = WIDE // 2 - 35
-    below = {"hconcat": [over("velocity", half), over("position", half)]}
-    views = [f"residual_over_{name}" for name in ("time", "velocity", "position")]
-    return Chart(
-        {
-            "$schema": "https://vega.github.io/schema/vega-lite/v5.json",
-            "datasets": {ROWS: rows_of(data, body, use)},
-            "params": [{"name": "span", "select": {"type": "interval"}, "views": views}],
-            "vconcat": [_forces(unit), over("time", WIDE), below],
-            "resolve": {"scale": {"color": "independent"}},
-            "config": {"axis": {"grid": False}},
-        }
-    )
+def _title(data: Dataset, name: str) -> str:
+    """Name and unit of a variable."""
+    shown = data[name].attrs
+    return f"{shown.get('label', name)} ({unit_on_page(shown['units'])})"
 
 
-def _forces(unit: dict[str, str]) -> dict[str, Any]:
-    """Measured and modelled force over time, one line for each record."""
-    colours = {"domain": ["measured", "model"], "range": ["gray", AFTER]}
-    force = {"field": "value", "type": "quantitative", "title": f"force ({unit['residual']})"}
+def _panel(data: Dataset, x: str, mark: dict[str, Any], width: int) -> dict[str, Any]:
+    """A panel over a variable, still without what it shows."""
+    along = {"field": x, "type": "quantitative", "title": _title(data, x), "scale": {"zero": False}}
     return {
         "data": {"name": ROWS},
-        "width": WIDE,
+        "width": width,
         "height": HIGH,
-        "transform": [{"fold": ["measured", "model"], "as": ["force", "value"]}],
-        "mark": {"type": "line", "strokeWidth": 1.2, "clip": True},
-        "encoding": {
-            "x": {"field": "time", "type": "quantitative", "title": f"time ({unit['time']})"},
-            "y": force,
-            "detail": {"field": "record", "type": "nominal"},
-            "color": {
-                "field": "force",
-                "type": "nominal",
-                "scale": colours,
-                "legend": _legend_above(),
-            },
-        },
+        "mark": mark,
+        "encoding": {"x": along},
     }
+
+
+def _points(data: Dataset, x: str, colour: dict[str, Any], width: int = WIDE) -> dict[str, Any]:
+    """The residual over a variable of the data."""
+    panel = _panel(data, x, {"type": "circle", "size": 9, "opacity": 0.7}, width)
+    residual = {"field": "residual", "type": "quantitative", "title": _title(data, "residual")}
+    panel["encoding"] |= {"y": residual, "color": colour, "tooltip": _tip()}
+    return panel
+
+
+def _forces(data: Dataset) -> dict[str, Any]:
+    """Measured and modelled force over time, one line for each record."""
+    panel = _panel(data, "time", {"type": "line", "strokeWidth": 1.2, "clip": True}, WIDE)
+    title = _title(data, "residual").replace("residual", "force")
+    panel["transform"] = [{"fold": ["measured", "model"], "as": ["force", "value"]}]
+    panel["encoding"] |= {
+        "y": {"field": "value", "type": "quantitative", "title": title},
+        "detail": {"field": "record", "type": "nominal"},
+        "color": _colour("force", {"measured": "gray", "model": AFTER}),
+    }
+    return panel
 
 
 def comparison_chart(
@@ -137,44 +132,24 @@ def comparison_chart(
         for data, name in zip((one, other), names, strict=True)
         for row in rows_of(data, body, use)
     ]
-    unit = one["residual"].attrs["units"]
-    residual = {"field": "residual", "type": "quantitative", "title": f"residual ({unit})"}
-    colours = {"domain": list(names), "range": [BEFORE, AFTER]}
-    of = {"field": "of", "type": "nominal", "scale": colours, "legend": _legend_above()}
+    colour = _colour("of", dict(zip(names, (BEFORE, AFTER), strict=True)))
+    return Chart(_chart(rows, [_points(one, x, colour) for x in ("carrier", "time")]))
 
-    def over(name: str) -> dict[str, Any]:
-        title = label_of(one, name)
-        along = {"field": name, "type": "quantitative", "title": title, "scale": {"zero": False}}
-        return {
-            "data": {"name": ROWS},
-            "width": WIDE,
-            "height": HIGH,
-            "mark": {"type": "circle", "size": 9, "opacity": 0.6},
-            "encoding": {"x": along, "y": residual, "color": of, "tooltip": _tip()},
-        }
 
-    return Chart(
-        {
-            "$schema": "https://vega.github.io/schema/vega-lite/v5.json",
-            "datasets": {ROWS: rows},
-            "vconcat": [over("carrier"), over("time")],
-            "config": {"axis": {"grid": False}},
-        }
-    )
+def _colour(field: str, colours: dict[str, str]) -> dict[str, Any]:
+    """A colour for each value of a field, with a legend above."""
+    return {
+        "field": field,
+        "type": "nominal",
+        "scale": {"domain": list(colours), "range": list(colours.values())},
+        "legend": {"title": None, "orient": "top"},
+    }
 
 
 def _colour_by_direction() -> dict[str, Any]:
     """Colour by the direction of motion; samples that are not selected are grey."""
-    colours = {
-        "domain": ["forward", "backward", "at rest"],
-        "range": [FORWARD, BACKWARD, "darkgray"],
-    }
-    shown = {"field": "direction", "type": "nominal", "scale": colours, "legend": _legend_above()}
-    return {"condition": {"param": "span", **shown}, "value": "lightgray"}
-
-
-def _legend_above() -> dict[str, Any]:
-    return {"title": None, "orient": "top"}
+    ways = {"forward": FORWARD, "backward": BACKWARD, "at rest": "darkgray"}
+    return {"condition": {"param": "span", **_colour("direction", ways)}, "value": "lightgray"}
 
 
 def _tip() -> list[dict[str, str]]:

@@ -42,6 +42,10 @@ class Cut:
     inputs: tuple[str, ...]
     separating: tuple[str, ...] = ()
 
+    def __str__(self) -> str:
+        what = ", ".join(self.blocks) or "the wiring"
+        return f"cut {self.name}: {self.signal} from {', '.join(self.inputs)} tests {what}"
+
 
 @dataclass(frozen=True)
 class Cuts:
@@ -57,8 +61,7 @@ class Cuts:
     def __repr__(self) -> str:
         lines = []
         for cut in self.tested:
-            what = ", ".join(cut.blocks) or "the wiring"
-            lines.append(f"cut {cut.name}: {cut.signal} from {', '.join(cut.inputs)} tests {what}")
+            lines.append(str(cut))
             if cut.separating:
                 lines.append(f"    to tell them apart: record {', '.join(cut.separating)}")
         lines += [f"untested: {block}: {why}" for block, why in self.untested.items()]

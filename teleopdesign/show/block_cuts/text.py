@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from ...base.files import write_text
 from ...base.sentences import with_standard_error
-from ...block_cuts.cuts import Cut
 from ...block_cuts.cuts_ladder import Key
 from ...block_cuts.diagnosis import BlockDiagnosis
 from ...diagnose.criteria import CRITERIA
@@ -32,7 +31,7 @@ def block_diagnosis_text(diagnosis: BlockDiagnosis) -> str:
             lines += [f"      {text}" for text in _parameters(diagnosis, row.added)]
     floors = [f"{100 * diagnosis.floors[c.name]:.3g}%" for c in cuts]
     lines.append(_line("noise floor", floors, ""))
-    lines += ["", *(_tests(c) for c in diagnosis.cuts.tested)]
+    lines += ["", *map(str, diagnosis.cuts.tested)]
     lines += [f"untested: {block}: {why}" for block, why in diagnosis.cuts.untested.items()]
     for name, value in diagnosis.experiment.assumed.items():
         lines.append(f"assumed: {name} = {value}")
@@ -48,11 +47,6 @@ def _line(label: str, cells: list[str], last: str) -> str:
 
 def _words(key: Key) -> str:
     return f"{key[0]} at {key[1]}"
-
-
-def _tests(cut: Cut) -> str:
-    what = ", ".join(cut.blocks) or "the wiring"
-    return f"cut {cut.name}: {cut.signal} from {', '.join(cut.inputs)} tests {what}"
 
 
 def _how_to_tell(diagnosis: BlockDiagnosis, group: tuple[Key, ...]) -> list[str]:

@@ -27,7 +27,11 @@ _PLACES = {
     "load": "where the command's size is ",
     "interaction_force": "at interaction forces ",
 }
-_AFTER = {"time": " of a record", "since_reversal": " after it sets off", "travel": " of travel"}
+_AFTER = {
+    "time": " of a record",
+    "since_reversal": " after it sets off",
+    "travel": " of travel after it sets off",
+}
 
 
 def place(region: SignRegion, variable: Variable, axis: str) -> str:
@@ -38,36 +42,28 @@ def place(region: SignRegion, variable: Variable, axis: str) -> str:
             low, high = -high, -low
         way = "backward" if region.backward else "forward"
         inner = replace(region, low=low, high=high)
-        return f"moving {way}{_range(inner, variable, axis, ' ')}"
-    if variable.name in _AFTER:
-        return _describe_since(region, variable, axis)
+        return f"moving {way} {_range(inner, variable, axis)}".rstrip()
+    if (after := _AFTER.get(variable.name)) is not None:
+        first = "in the first" if variable.name == "time" else "within"
+        words = f"between {{}}{after}", f"{first} {{}}{after}", f"from {{}}{after} on"
+        return _range(region, variable, axis, words) or "throughout"
     over = _range(region, variable, axis)
     return _PLACES.get(variable.name, "") + over if over else "throughout"
 
 
-def _range(region: SignRegion, variable: Variable, axis: str, before: str = "") -> str:
+def _range(
+    region: SignRegion,
+    variable: Variable,
+    axis: str,
+    words: tuple[str, str, str] = ("between {}", "below {}", "above {}"),
+) -> str:
+    """A range in words: those with both ends, with a high and with a low end; "": everywhere."""
     q = variable.quantity
     if math.isfinite(region.low) and math.isfinite(region.high):
-        return f"{before}between {span(region.low, region.high, q, axis)}"
+        return words[0].format(span(region.low, region.high, q, axis))
     if math.isfinite(region.high):
-        return f"{before}below {amount(region.high, q, axis)}"
-    if math.isfinite(region.low):
-        return f"{before}above {amount(region.low, q, axis)}"
-    return ""
-
-
-def _describe_since(region: SignRegion, variable: Variable, axis: str) -> str:
-    q, after = variable.quantity, _AFTER[variable.name]
-    if variable.name == "travel":
-        after += " after it sets off"
-    if math.isfinite(region.low) and math.isfinite(region.high):
-        return f"between {span(region.low, region.high, q, axis)}{after}"
-    if math.isfinite(region.high):
-        first = "in the first" if variable.name == "time" else "within"
-        return f"{first} {amount(region.high, q, axis)}{after}"
-    if math.isfinite(region.low):
-        return f"from {amount(region.low, q, axis)}{after} on"
-    return "throughout"
+        return words[1].format(amount(region.high, q, axis))
+    return words[2].format(amount(region.low, q, axis)) if math.isfinite(region.low) else ""
 
 
 def _size(value: float, shape: Shape, axis: str, *, backward: bool = False) -> str:
