@@ -1,27 +1,29 @@
 """Diagnosis of many recordings: an answer file for each, kept from run to run.
 
-Each folder is a point of a study. The number of the point comes from the content of the folder, the
-search and the versions. So an unchanged folder is not diagnosed again, but a folder that has
-changed or failed is.
+Each folder is a point of a study. A digest of its content, the search and the versions is kept for
+its answer. So an unchanged folder is not diagnosed again, but a folder that has changed or failed
+is.
 """
 
 from __future__ import annotations
 
+import json
+import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..base.errors import ExperimentError, ModelError
-from ..base.files import follow_links
+from ..base.errors import ExperimentError
+from ..base.files import follow_links, read_whole, write_json
 from ..base.frozen import ByValue
+from ..diagnose.answer import content_of_answer
 from ..effects import EFFECTS, Effect
 from ..measurement.saving import content_digest
 from .chosen_measures import measures_of
 from .evaluate import StudyTask, Unit
 from .fingerprint import fingerprint, versions
-from .journal import Journal
 from .outcomes import Clock, PointOutcome, Progress
 from .points import points_of
 from .processes import run_on_this_machine
@@ -29,10 +31,8 @@ from .processes import run_on_this_machine
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis
 
-#: file of finished folders within the output folder
-JOURNAL = "journal.part"
-#: digits of base 16 of a folder's number: 60 bits, which JSON holds as a whole number
-_DIGITS = 15
+#: file of the output folder: name of each answer, and a digest of what it was made of
+FINISHED = "finished.json"
 
 
 @dataclass(frozen=True)
@@ -83,43 +83,48 @@ def diagnose_folders(
     chosen = FolderSearch() if search is None else search
     answers = answer_files(folders, output)
     made_with = fingerprint(chosen.known, chosen.among, chosen.quick, versions())
-    numbers = [
-        int(fingerprint(made_with, answers[f].name, content_digest(f))[:_DIGITS], 16)
-        for f in folders
-    ]
-    journal = Journal(output / JOURNAL, "diagnoses of folders", len(folders))
-    try:
-        journal.forget_failures()
-        done = [
-            n in journal.outcomes and answers[f].exists()
-            for f, n in zip(folders, numbers, strict=True)
-        ]
-        clock = Clock(len(folders), sum(done), progress, "folders")
-        outcomes = {n: journal.outcomes[n] for n, there in zip(numbers, done, strict=True) if there}
+    digests = {answers[f].name: fingerprint(made_with, content_digest(f)) for f in folders}
+    finished = _read_digests(output / FINISHED)
+    todo: list[Unit] = []
+    for k, answer in enumerate(answers.values()):
+        if not answer.exists() or finished.get(answer.name) != digests[answer.name]:
+            todo.append((k,))
+    clock = Clock(len(folders), len(folders) - len(todo), progress, "folders")
+    failures: dict[int, str] = {}
 
-        def sink(outcome: PointOutcome) -> None:
-            kept = replace(outcome, point=numbers[outcome.point])
-            journal.add(kept)
-            outcomes[kept.point] = kept
-            clock.count(outcome)
+    def sink(outcome: PointOutcome) -> None:
+        name = answers[folders[outcome.point]].name
+        if outcome.reason:
+            failures[outcome.point] = outcome.reason
+        else:
+            finished[name] = digests[name]
+            write_json(output / FINISHED, finished)
+        clock.count(outcome)
 
-        task = StudyTask(
-            model=partial(
-                _write_answer, files={str(f): a for f, a in answers.items()}, search=chosen
-            ),
-            case={},
-            points=points_of({"experiment": [str(f) for f in folders]}),
-            measures=measures_of("verdict"),
-        )
-        todo: list[Unit] = [(k,) for k, there in enumerate(done) if not there]
-        if todo:
-            run_on_this_machine(task, todo, sink, workers)
-    finally:
-        journal.close()
-    return tuple(
-        _diagnosed_folder(folder, answers[folder], outcomes[number])
-        for folder, number in zip(folders, numbers, strict=True)
+    files = {str(f): answer for f, answer in answers.items()}
+    task = StudyTask(
+        model=partial(_write_answer, files=files, search=chosen),
+        case={},
+        points=points_of({"experiment": [str(f) for f in folders]}),
+        measures=measures_of("verdict"),
     )
+    if todo:
+        run_on_this_machine(task, todo, sink, workers)
+    return tuple(
+        DiagnosedFolder(f, answers[f], failure=failures[k])
+        if k in failures
+        else _diagnosed_folder(f, answers[f])
+        for k, f in enumerate(folders)
+    )
+
+
+def _read_digests(path: Path) -> dict[str, str]:
+    """Name of an answer -> digest of what it was made of; none where there is no such file."""
+    try:
+        content = json.loads(read_whole(path))
+    except (OSError, ValueError):
+        return {}
+    return content if isinstance(content, dict) else {}
 
 
 def answer_files(folders: Sequence[Path], output: Path) -> dict[Path, Path]:
@@ -160,18 +165,10 @@ def _write_answer(experiment: str, files: Mapping[str, Path], search: FolderSear
     return diagnosis
 
 
-def _diagnosed_folder(folder: Path, answer: Path, outcome: PointOutcome) -> DiagnosedFolder:
-    if outcome.reason:
-        return DiagnosedFolder(folder, answer, failure=outcome.reason)
-    values = {form[0]: value for form, value in zip(outcome.form, outcome.values, strict=True)}
-    try:
-        return DiagnosedFolder(
-            folder,
-            answer,
-            verdict=str(values["verdict"]),
-            missing=str(values["missing"]),
-            before=float(values["check_error_before"]),
-            after=float(values["check_error_after"]),
-        )
-    except (KeyError, TypeError) as error:
-        raise ModelError(f"{folder}: its kept outcome lacks {error}: remove {JOURNAL}") from error
+def _diagnosed_folder(folder: Path, answer: Path) -> DiagnosedFolder:
+    """What the answer of a folder says."""
+    content = content_of_answer(answer)
+    errors = [row["check_error"] for row in content["ladder"]]
+    before, after = (math.nan if e is None else float(e) for e in (errors[0], errors[-1]))
+    missing = ", ".join(f"{one['effect']} at {one['at']}" for one in content["missing"])
+    return DiagnosedFolder(folder, answer, content["verdict"], missing, before, after)

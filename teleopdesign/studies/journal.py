@@ -33,7 +33,7 @@ class Journal:
     def __init__(self, path: Path | None, study: str, points: int) -> None:
         """Open the journal, with the outcomes of an earlier run of the same study.
 
-        points: number of points; point numbers may be higher if they come from contents
+        points: number of points
         raises ExperimentError: it belongs to another study, is in use, or cannot be written
         """
         self.path, self.study, self.points = path, study, points
@@ -92,7 +92,9 @@ class Journal:
     def _knows(self, content: Mapping[str, Any]) -> bool:
         """Whether a line is a form, a failed point, or a point whose form precedes it."""
         if "point" in content:
-            return "reason" in content or content.get("form") in self._forms
+            index, form = content["point"], content.get("form")
+            is_next = index in range(self.points) and index not in self.outcomes
+            return is_next and ("reason" in content or form in self._forms)
         return "form" in content and "values" in content
 
     def _take(self, content: Mapping[str, Any]) -> None:
@@ -101,7 +103,7 @@ class Journal:
         outcome = PointOutcome(
             index, form, _tuples(content.get("values", ())), content.get("reason", "")
         )
-        self.outcomes.keep(outcome)  # a failure that was forgotten may have a later line
+        self.outcomes.keep(outcome)
 
     def add(self, outcome: PointOutcome) -> None:
         """Store an outcome; raises ExperimentError: the file cannot be written."""
@@ -136,11 +138,6 @@ class Journal:
                 f"{self.path}: cannot be written: {error.strerror}; {len(self.outcomes)} of "
                 f"{self.points} points are kept: the same study continues from there"
             ) from error
-
-    def forget_failures(self) -> None:
-        """Drop failed points, so that they are computed again."""
-        for point in self.outcomes.failed_points():
-            self.outcomes.drop(point)
 
     def close(self) -> None:
         """Close the file without removing it."""

@@ -45,10 +45,7 @@ def as_row(outcome: PointOutcome) -> tuple[Any, ...]:
 
 
 class Outcomes(Mapping[int, PointOutcome]):
-    """Outcome by number of the point.
-
-    points: lower numbers are stored in arrays; higher numbers, such as digests, one by one
-    """
+    """Outcome by number of the point, from 0 to below `points`."""
 
     def __init__(self, points: int) -> None:
         # pages of zeros take no memory until they are written
@@ -59,34 +56,18 @@ class Outcomes(Mapping[int, PointOutcome]):
         self._many = 0
 
     def keep(self, outcome: PointOutcome) -> None:
-        """Store an outcome, in place of an earlier one of the same point."""
-        index = outcome.point
-        if index not in self:
-            self._many += 1
-        self._apart.pop(index, None)
-        number = self._form_number(outcome)
-        if self._is_counted(index):
-            self._places[index] = number
+        """Store the outcome of a point that has none yet."""
+        index, number = outcome.point, self._form_number(outcome)
+        self._many += 1
+        self._places[index] = number
         if number == _APART:
             self._apart[index] = outcome
         else:
             self._rows[number - 1][index] = outcome.values
 
-    def drop(self, index: int) -> None:
-        """Drop the outcome of a point."""
-        self._many -= index in self
-        if self._is_counted(index):
-            self._places[index] = _NOWHERE
-        self._apart.pop(index, None)
-
-    def failed_points(self) -> list[int]:
-        """Numbers of the points that failed."""
-        return [index for index, outcome in self._apart.items() if outcome.reason]
-
     def _form_number(self, outcome: PointOutcome) -> int:
         """Number of the form whose array stores the outcome."""
-        plain = self._is_counted(outcome.point) and all(type(v) is float for v in outcome.values)
-        if outcome.reason or not plain:
+        if outcome.reason or not all(type(v) is float for v in outcome.values):
             return _APART
         if outcome.form not in self._forms:
             if len(self._forms) == _MOST_FORMS:
@@ -95,15 +76,10 @@ class Outcomes(Mapping[int, PointOutcome]):
             self._rows.append(np.zeros((len(self._places), len(outcome.values))))
         return self._forms[outcome.form]
 
-    def _is_counted(self, index: int) -> bool:
-        return 0 <= index < len(self._places)
-
     def __contains__(self, index: object) -> bool:
-        if not isinstance(index, int):
+        if not isinstance(index, int) or not 0 <= index < len(self._places):
             return False
-        if self._is_counted(index):
-            return bool(self._places[index] != _NOWHERE)
-        return index in self._apart
+        return bool(self._places[index] != _NOWHERE)
 
     def __getitem__(self, index: int) -> PointOutcome:
         if index not in self:
@@ -115,8 +91,7 @@ class Outcomes(Mapping[int, PointOutcome]):
         return PointOutcome(index, form, tuple(self._rows[number - 1][index].tolist()))
 
     def __iter__(self) -> Iterator[int]:
-        yield from map(int, np.flatnonzero(self._places))
-        yield from (index for index in self._apart if not self._is_counted(index))
+        return map(int, np.flatnonzero(self._places))
 
     def __len__(self) -> int:
         return self._many

@@ -264,6 +264,7 @@ def goes_on(command, sources, out):
     is_done = (out / command.files[0]).exists()
     before = [p for p in out.rglob(".*")]
     kept = sum(map(_whole_points, out.glob("*.part")))
+    kept += sum(len(json.loads(path.read_text())) for path in out.glob("*/finished.json"))
     ended = run(command, sources, out)
     wrong = violations(command, ended, out, signal.SIGINT, before)
     if ended.status != 0:
