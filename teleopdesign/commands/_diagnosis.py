@@ -18,7 +18,7 @@ from ._arms import inertia_line, joint_of, place_at_pose
 from ._terminal import Reporter, print_styled
 
 if TYPE_CHECKING:
-    from ..block_cuts import DiagramExperiment
+    from ..block_cuts import BlockDiagnosis, DiagramExperiment
     from ..blocks import Body
     from ..diagnose import Diagnosis
     from ..effects import Effect
@@ -115,11 +115,13 @@ def stated_model(experiment: Experiment, options: argparse.Namespace) -> Model:
 
 def diagnosis_of(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
     """The diagnosis of an experiment: read from the answer, or computed now with progress shown."""
-    from ..diagnose import load_answer
+    from ..diagnose import Diagnosis, load_answer
 
     if options.answer is not None:
         return load_answer(options.answer, effects_by_name(options), experiment=experiment)
-    return diagnose_experiment(experiment, options)
+    diagnosis = diagnose_now(experiment, options)
+    assert isinstance(diagnosis, Diagnosis)
+    return diagnosis
 
 
 def diagnosis_of_part(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
@@ -130,21 +132,27 @@ def diagnosis_of_part(experiment: Experiment, options: argparse.Namespace) -> Di
     return diagnosis_of(experiment, options).joints[joint]
 
 
-def diagnose_experiment(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
-    """The diagnosis of an experiment, computed now with progress shown.
+def diagnose_now(
+    experiment: Experiment | DiagramExperiment, options: argparse.Namespace
+) -> Diagnosis | BlockDiagnosis:
+    """The diagnosis of bodies or of a whole diagram, computed now with progress shown.
 
     The options choose its plan and its candidate effects.
     """
-    from ..diagnose import find_missing
+    from ..block_cuts import DiagramExperiment, find_missing
     from ..diagnose.search_plan import PLAN, QUICK
 
-    among = candidate_effects(
-        effects_by_name(options), getattr(options, "only", ()), getattr(options, "exclude", ())
+    known = effects_by_name(options)
+    diagnosis = find_missing(
+        experiment,
+        None if isinstance(experiment, DiagramExperiment) else stated_model(experiment, options),
+        progress=(reporter := Reporter()),
+        plan=QUICK if getattr(options, "quick", False) else PLAN,
+        among=candidate_effects(
+            known, getattr(options, "only", ()), getattr(options, "exclude", ())
+        ),
+        known=known,
     )
-    model = stated_model(experiment, options)
-    plan = QUICK if getattr(options, "quick", False) else PLAN
-    reporter = Reporter()
-    diagnosis = find_missing(experiment, model, progress=reporter, plan=plan, among=among)
     reporter.clear()
     return diagnosis
 

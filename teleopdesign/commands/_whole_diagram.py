@@ -12,13 +12,12 @@ from ..base.files import write_beside, write_json
 from ..base.toml import read_toml
 from ._diagnosis import (
     answer_in,
-    candidate_effects,
+    diagnose_now,
     effects_by_name,
     experiment_or_diagram,
     print_diagnosis,
 )
 from ._options import say_written
-from ._terminal import Reporter
 
 if TYPE_CHECKING:
     from ..block_cuts import BlockDiagnosis, DiagramExperiment
@@ -35,24 +34,12 @@ def diagnose_diagram(experiment: DiagramExperiment, options: argparse.Namespace)
     raises ModelError: an option that only an experiment of bodies has
     """
     from ..block_cuts import BlockDiagnosis, write_answer
-    from ..block_cuts.search import find_missing
-    from ..diagnose.search_plan import PLAN, QUICK
 
     for name in _OF_BODIES:
         if getattr(options, name):
             raise ModelError(f"--{name}: is for experiments of bodies, found a whole diagram")
-    known = effects_by_name(options)
-    reporter = Reporter()
-    print(experiment)
-    print()
-    diagnosis = find_missing(
-        experiment,
-        progress=reporter,
-        plan=QUICK if options.quick else PLAN,
-        among=candidate_effects(known, options.only, options.exclude),
-        known=known,
-    )
-    reporter.clear()
+    print(f"{experiment}\n")
+    diagnosis = diagnose_now(experiment, options)
     assert isinstance(diagnosis, BlockDiagnosis)
     print_diagnosis(str(diagnosis))
     if options.json is not None:
@@ -94,7 +81,7 @@ def diagnosed_diagram(options: argparse.Namespace) -> BlockDiagnosis | None:
 
     raises ModelError: an option that asks for one body
     """
-    from ..block_cuts import BlockDiagnosis, find_missing, load_answer
+    from ..block_cuts import BlockDiagnosis, load_answer
     from ..block_cuts.saved import is_block_answer
 
     answer = options.answer or answer_in(options.folder)
@@ -106,15 +93,11 @@ def diagnosed_diagram(options: argparse.Namespace) -> BlockDiagnosis | None:
         if getattr(options, name, None):
             option = name.replace("_", "-")
             raise ModelError(f"--{option}: is for experiments of bodies, found a whole diagram")
-    known = effects_by_name(options)
     if answer is not None:
         options.answer = answer
-        diagnosis = load_answer(answer, known)
+        diagnosis = load_answer(answer, effects_by_name(options))
     else:
-        reporter = Reporter()
-        experiment = experiment_or_diagram(options.folder)
-        diagnosis = find_missing(experiment, progress=reporter, known=known)
-        reporter.clear()
+        diagnosis = diagnose_now(experiment_or_diagram(options.folder), options)
     assert isinstance(diagnosis, BlockDiagnosis)
     return diagnosis
 

@@ -18,7 +18,7 @@ from . import STOPPED
 from ._command_line import BAD_INPUT
 from ._diagnosis import (
     candidate_effects,
-    diagnose_experiment,
+    diagnose_now,
     effects_by_name,
     experiment_or_diagram,
     folder_of,
@@ -108,7 +108,7 @@ def run(options: argparse.Namespace) -> int:
         raise ModelError("--loop: found without --simulate, which it belongs to")
     if len(options.folder) > 1 or options.output is not None:
         return diagnose_all(options)
-    from ..diagnose import write_answer
+    from ..diagnose import Diagnosis, write_answer
     from ..diagnose.predictions import write_predictions
     from ..measurement import Experiment
 
@@ -117,7 +117,8 @@ def run(options: argparse.Namespace) -> int:
     if not isinstance(whole, Experiment):
         return diagnose_diagram(whole, options)
     experiment = whole
-    diagnosis = diagnose_experiment(experiment, options)
+    diagnosis = diagnose_now(experiment, options)
+    assert isinstance(diagnosis, Diagnosis)
     _print(diagnosis, experiment, verbose=options.verbose)
     simulation = _simulation(diagnosis, options)
     if options.json is not None:
