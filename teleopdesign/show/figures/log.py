@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 from ...base.files import write_beside
 from ...base.units import unit_of
+from ...measurement.channel import BODY_QUANTITIES
 from ...measurement.experiment import Experiment
 from ...measurement.first_guess import motion_columns
 from ...measurement.survey import Survey
@@ -31,7 +32,6 @@ _LETTERS = 125
 #: width of the picture, inches beside, below and above its axes (beside: a label of two lines and
 #: numbers such as -0.00015), and part of their height between
 _WIDTH, _MARGINS, _BETWEEN = 9.0, (1.2, 0.55, 0.15, 0.3), 0.45
-_KINDS = {"actuator_force": "force", "interaction_force": "force"}
 
 
 def save_survey(figure: Figure, path: Path) -> None:
@@ -74,7 +74,7 @@ def _draw_survey(survey: Survey, experiment: Experiment) -> Figure:
         axes = figure.add_subplot(grid[row], sharex=first)
         first = first or axes
         channel = experiment.channels[key]
-        kind = _KINDS.get(channel.quantity, channel.quantity)
+        kind = BODY_QUANTITIES[channel.quantity]
         for record in experiment.records:
             some = slice(None, None, max(1, len(record.time) // _POINTS))
             shade = _SHADES[record.use]

@@ -15,6 +15,7 @@ from ...base.finding import Finding, Graph
 from ...base.units import unit_of
 from ...diagnose import Diagnosis, SimulationComparison
 from ...diagnose.answer import answer
+from ...measurement.channel import BODY_QUANTITIES
 from ...measurement.experiment import Experiment
 from ...measurement.reading import ReadingStep, log_name
 from ..diagnose.text import sentence
@@ -291,7 +292,6 @@ def _digest(experiment: Experiment, file: str) -> str:
 
 def channel_rows(experiment: Experiment) -> tuple[ChannelRow, ...]:
     """Every channel of the experiment."""
-    kinds = {"actuator_force": "force", "interaction_force": "force"}
     return tuple(
         ChannelRow(
             name=name,
@@ -302,7 +302,7 @@ def channel_rows(experiment: Experiment) -> tuple[ChannelRow, ...]:
             si_unit=(
                 ""
                 if c.body is None
-                else unit_of(kinds.get(c.quantity, c.quantity), experiment.axis(c.body))
+                else unit_of(BODY_QUANTITIES[c.quantity], experiment.axis(c.body))
             ),
         )
         for name, c in experiment.channels.items()

@@ -13,11 +13,12 @@ from ...studies.points import SAMPLE
 from ...studies.result import REASON
 from ..figures.style import ONE_COLUMN, TWO_COLUMNS
 from ..registry import shows
-from .data import data_of, label, number, spread
+from .data import StudyData, data_of, label, number, spread
 from .maps import MOST_PANELS
 
 if TYPE_CHECKING:
     import matplotlib.figure
+    import xarray
 
     from ...studies import Samples, Study
     from ...studies.plots import StudyPlots
@@ -122,19 +123,31 @@ def draw_curves(
     if len(each) > 1:
         raise ModelError(f"curves: give values of all but two of {', '.join(dims)}: at=...")
     figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.5 + 0.5 * bool(each)))
-    lines = study.data[each[0]].values if each else [None]
-    shown = spread(len(lines), _MOST_LINES)
-    colours = plt.get_cmap("viridis")(np.linspace(0, 0.85, len(shown)))
-    for colour, k in zip(colours, shown, strict=True):
-        one = values.isel({each[0]: k}) if each else values
-        entry = number(lines[k]) if each else None
-        axis.plot(study.data[across].values, one.values, ".-", color=colour, label=entry)
+    for one, style in _lines(study, values, *each):
+        axis.plot(study.data[across].values, one.values, ".-", **style)
     study.label_axis(axis, "x", across)
     axis.set_ylabel(label(values))
     if each:
         title = label(study.data[each[0]])
         figure.legend(title=title, loc="outside lower center", ncols=4)
     return figure
+
+
+def _lines(
+    study: StudyData, values: xarray.DataArray, each: str = ""
+) -> list[tuple[xarray.DataArray, dict[str, Any]]]:
+    """The values at some values of an axis, with colour and label;  "": all of them, without."""
+    import matplotlib as mpl
+
+    if not each:
+        return [(values, {"color": FIRST})]
+    known = study.data[each].values
+    shown = spread(len(known), _MOST_LINES)
+    colours = mpl.colormaps["viridis"](np.linspace(0, 0.85, len(shown)))
+    return [
+        (values.isel({each: k}), {"color": colour, "label": number(known[k])})
+        for colour, k in zip(colours, shown, strict=True)
+    ]
 
 
 @shows("scatter")
@@ -150,9 +163,6 @@ def draw_points(plots: StudyPlots, measure: str) -> matplotlib.figure.Figure:
             "expected points drawn together, with one more axis at most"
         )
     each = next((str(d) for d in values.dims if d != SAMPLE), "")
-    lines = study.data[each].values if each else [None]
-    shown = spread(len(lines), _MOST_LINES)
-    colours = plt.get_cmap("viridis")(np.linspace(0, 0.85, len(shown))) if each else [FIRST]
     names = [n for n in study.axes if study.data[n].dims == (SAMPLE,)][:MOST_PANELS]
     size = 1.5 if values.sizes[SAMPLE] > _MANY_POINTS else 4.0
     columns = min(len(names), 4)
@@ -161,10 +171,8 @@ def draw_points(plots: StudyPlots, measure: str) -> matplotlib.figure.Figure:
         rows, columns, sharey=True, squeeze=False, figsize=(TWO_COLUMNS, 0.5 + 1.7 * rows)
     )
     for name, axis in zip(names, axes.flat, strict=False):
-        for colour, k in zip(colours, shown, strict=True):
-            one = values.isel({each: k}) if each else values
-            entry = number(lines[k]) if each else None
-            axis.plot(study.data[name], one, ".", markersize=size, color=colour, label=entry)
+        for one, style in _lines(study, values, each):
+            axis.plot(study.data[name], one, ".", markersize=size, **style)
         study.label_axis(axis, "x", name)
     for axis in axes.flat[len(names) :]:
         axis.remove()
