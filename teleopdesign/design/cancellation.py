@@ -13,16 +13,11 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from ..base.errors import ModelError
 from ..base.sentences import round_down, round_up
 from ..base.shown import Shown
 from ..base.units import unit_after_number, unit_of
-from ..blocks import Body
 from ..controllers import CANCEL, Controller, controller, laws_that_declare
-from ..realise.damping_interval import largest_acting_force
-from ..realise.friction_interval import FrictionInterval
-from ..realise.reach import Reach
-from .assumptions import Assumptions
+from .device import Device
 
 
 @dataclass(frozen=True)
@@ -67,73 +62,42 @@ class ProposedController(Shown):
 STIFFNESS_FRACTION = 0.9
 
 
-def acting_gain(body: Body, reach: Reach, *, errors: float) -> float:
-    """Upper bound of the acting force per commanded force, over the intervals of the parameters.
-
-    raises ModelError: no bound is known for an effect of the actuation
-    """
-    # a small one: saturation only takes from it; any, where the motor was off
-    command = 1e-3 * (reach.command or 1.0)
-    gain = largest_acting_force(body, command, reach, errors=errors) / command
-    if not math.isfinite(gain):
-        raise ModelError("design: no bound is known of the force that the actuation makes")
-    return gain
-
-
-def cancelled_level(
-    friction: FrictionInterval,
-    body: Body,
-    reach: Reach,
-    gain: float,
-    assumptions: Assumptions,
-) -> Reason | None:
+def cancelled_level(device: Device) -> Reason | None:
     """The level to cancel, as a commanded force; None where no level is certain.
 
     It is None if the least level may be zero, or if the records never reach the level.
     """
-    if friction.lowest.low <= 0 or not friction.slides_within(reach.travel):
+    if (friction := device.friction) is None:
         return None
-    unit = unit_of("force", body.axis)
-    sure = friction.lowest.low
+    assumptions, gain, sure = device.stated, device.gain, friction.lowest.low
+    if sure <= 0 or not friction.slides_within(device.reach.travel):
+        return None
+    unit = unit_of("force", device.body.axis)
     value = round_down(assumptions.fraction * sure / gain)
     least = f"the least level within {assumptions.errors:g} standard errors, {sure:.4g}"
     why = f"{assumptions.fraction:g} of {least} {unit} (at {friction.where_lowest}"
-    known = body.parameters.get("coulomb.level")
+    known = device.body.parameters.get("coulomb.level")
     why += ")" if known is None else f"; the identified Coulomb level is {known.value:.4g} {unit})"
     if gain != 1.0:
         why += f", over the {gain:.4g} {unit} that acts of a commanded {unit}"
     return Reason("level", value, unit, why + ", so that f_D <= f_C (P37 to P39)")
 
 
-def dahl_cancellation(
-    level: Reason,
-    friction: FrictionInterval,
-    reach: Reach,
-    gain: float,
-    assumptions: Assumptions,
-    *,
-    axis: str,
-    late: float,
-    damping: float,
-) -> ProposedController | None:
-    """A Dahl cancellation with that level; None where presliding allows no stiffness.
-
-    gain: acting force per commanded force;  late: delay of the force, s
-    damping: of small motion, lower end of its interval
-    """
-    acting = level.value * gain
+def dahl_cancellation(level: Reason, device: Device) -> ProposedController | None:
+    """A Dahl cancellation with that level; None where presliding allows no stiffness."""
+    reach, axis, counts = device.reach, device.body.axis, device.stated.counts
+    acting = level.value * device.gain
     unit = unit_of("position", axis)
     lengths = {
-        f"{assumptions.counts:g} encoder steps of {reach.step:.3g} {unit}": (
-            assumptions.counts * reach.step
-        ),
+        f"{counts:g} encoder steps of {reach.step:.3g} {unit}": counts * reach.step,
         f"{reach.unresolved:.3g} {unit}, below which the records show no presliding, so that P43 "
         "holds with one": reach.unresolved,
     }
     longest = max(lengths, key=lengths.__getitem__)
     limits = {f"a bristle length f_D/sigma_D of {longest}": acting / lengths[longest]}
-    if friction.presliding is not None:
+    if (friction := device.friction) is not None and friction.presliding is not None:
         softest, most = friction.presliding.low, friction.highest.high
+        late, damping = device.delay, device.damping
         if softest <= 0 or (late > 0 and damping <= 0) or math.isinf(most):
             return None
         passive = softest * math.sqrt(acting / most)
@@ -151,7 +115,7 @@ def dahl_cancellation(
                 f"at {1e3 * late:.3g} ms (P49)"
             ] = needed
     why = min(limits, key=limits.__getitem__)
-    stiffness = round_down(limits[why] / gain)
+    stiffness = round_down(limits[why] / device.gain)
     law = laws_that_declare("bristle_stiffness")[0]
     made = controller(law.name, {law.bound: level.value, law.bristle_stiffness: stiffness})
     named = f"{law.name}.{law.bristle_stiffness}"
@@ -159,28 +123,18 @@ def dahl_cancellation(
     return ProposedController(made, (_name_reason(law.name, level), reason))
 
 
-def smoothed_cancellation(
-    level: Reason,
-    reach: Reach,
-    assumptions: Assumptions,
-    *,
-    axis: str,
-    period: float,
-    filter_bandwidth: float,
-) -> ProposedController:
-    """A smoothed Coulomb cancellation with that level.
-
-    period: of sampling, s;  filter_bandwidth: of the filter on the differenced position, Hz
-    """
+def smoothed_cancellation(level: Reason, device: Device) -> ProposedController:
+    """A smoothed Coulomb cancellation with that level."""
     from ..realise.kernel import velocity_smoothing
 
+    axis, share, step = device.body.axis, device.stated.count_force, device.reach.step
+    period, filtered = device.sampling.period, device.sampling.velocity_bandwidth
     unit = unit_of("velocity", axis)
-    count = reach.step / period * velocity_smoothing(filter_bandwidth, period)
-    share = assumptions.count_force
+    count = step / period * velocity_smoothing(filtered, period)
     value = round_up(count * (1 / share - 1), digits=2)
     why = (
-        f"one encoder step of {reach.step:.3g} {unit_of('position', axis)} in a sample of "
-        f"{1e3 * period:g} ms, through the {filter_bandwidth:.3g} Hz velocity filter, is "
+        f"one encoder step of {step:.3g} {unit_of('position', axis)} in a sample of "
+        f"{1e3 * period:g} ms, through the {filtered:.3g} Hz velocity filter, is "
         f"{count:.3g} {unit}: it moves the force by no more than {share:g} of the level"
     )
     law = laws_that_declare("smoothing")[0]

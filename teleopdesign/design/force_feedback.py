@@ -13,16 +13,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import sympy as sp
-
 from ..base.sentences import round_down, round_up
 from ..base.units import unit_of
-from ..blocks import Body
 from ..controllers import scheduled_force_feedback
-from ..realise.lti import S
-from ..realise.reach import Reach
-from .assumptions import Assumptions
 from .cancellation import ProposedController, Reason
+from .device import Device
 
 #: largest proposed gain: at this gain only a few percent of friction is left
 MOST_GAIN = 20.0
@@ -63,20 +58,6 @@ class FeedbackLoop:
         return math.degrees(margin) if self.crossover else math.inf
 
 
-def whole_inertia(body: Body) -> float:
-    """Inertia of the body, including the part behind a compliance or gap, kg or kg m^2."""
-    for effect in [e for e in body.effects if e.role == "structure"]:
-        body = body.without_effect(effect.name)
-    return float(body.equation().inertia.subs(body.numbers()))
-
-
-def identified_delay(body: Body) -> float:
-    """Delay at low frequency of the body's identified actuation (dead time and lag), s."""
-    form, _ = body.actuation(S)
-    form = sp.sympify(form, strict=True).subs(body.numbers())
-    return float(sp.limit(-sp.diff(form, S) / form, S, 0))
-
-
 def largest_gain(*, share: float, bandwidth: float, delay: float, factor: float) -> float:
     """Largest k at which the loop is stable with `factor` times its delay.
 
@@ -94,19 +75,15 @@ def largest_gain(*, share: float, bandwidth: float, delay: float, factor: float)
 
 
 def force_feedback(
-    body: Body,
-    reach: Reach,
-    assumptions: Assumptions,
-    *,
-    load: float,
-    delay: float,
-    smoothing_velocity: float,
+    device: Device, *, smoothing_velocity: float
 ) -> tuple[ProposedController, FeedbackLoop]:
-    """H for a body and a load, and its loop at rest.
+    """H for a device with its load, and its loop at rest.
 
-    load: m_H;  delay: T_d, s;  smoothing_velocity: a of the cancellation beside H, 0: none
+    smoothing_velocity: a of the cancellation beside H, 0: none
     """
-    mass = whole_inertia(body)
+    mass, load, assumptions, reach = device.inertia, device.load, device.assumptions, device.reach
+    # the command is held for a sample, and so is the error that the low-pass takes in
+    delay, axis = device.held_delay, device.body.axis
     share, bandwidth = load / (mass + load), assumptions.bandwidth
     factor = assumptions.delay_factor
     free = largest_gain(share=share, bandwidth=bandwidth, delay=delay, factor=factor)
@@ -116,7 +93,7 @@ def force_feedback(
     least = smoothing_velocity * gain / (1 + gain)
     scheduling = round_up(max(SCHEDULE_MARGIN * least, reach.rms_speed), digits=2)
     law = scheduled_force_feedback(gain=gain, scheduling_velocity=scheduling, bandwidth=bandwidth)
-    kilo, speed = unit_of("inertia", body.axis), unit_of("velocity", body.axis)
+    kilo, speed = unit_of("inertia", axis), unit_of("velocity", axis)
     with_load = f"with a load of {load:.3g} {kilo} on {mass:.3g} {kilo} tolerates {factor:g} times"
     rigid = f"held rigidly tolerates {HELD_FACTOR:g} times"
     why = f"the largest whose loop {with_load if free <= held else rigid} its delay of "

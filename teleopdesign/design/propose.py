@@ -13,45 +13,23 @@ from ..diagrams import Diagram, four_cases, haptic_interface
 from ..model import Model
 from ..passivity import Claim
 from ..passivity.claims.claim import use_units_of
-from ..realise.damping_interval import small_motion_damping
-from ..realise.friction_interval import FrictionInterval, friction_interval
-from ..realise.reach import Reach
-from .assumptions import (
-    Assumptions,
-    StatedMotion,
-    device_of_diagram,
-    reach_of,
-    sampling_of,
-    stated_motion,
-)
+from .assumptions import Assumptions, device_of_diagram, reach_of
 from .cancellation import (
     ProposedController,
-    acting_gain,
     cancelled_level,
     dahl_cancellation,
     smoothed_cancellation,
     smoothing_name,
 )
+from .device import Device
 from .expected import ExpectedError, expected_error, unexplained_force
-from .force_feedback import FeedbackLoop, force_feedback, identified_delay, whole_inertia
+from .force_feedback import FeedbackLoop, force_feedback
 from .linear import transparency
-from .other_effects import (
-    following_cancellation,
-    late_force_claim,
-    not_cancelled,
-    with_forces,
-    with_gains_divided_out,
-)
+from .other_effects import following_cancellation, late_force_claim, not_cancelled, with_forces
 from .outcome import Design
 from .prediction import Prediction, felt_impedance, predict
 from .quasi_static import SHARES, residual_friction
 from .verdict import cancellation_claims, compliant_claim, energy_claim, feedback_claim
-
-#: load of a hand over the inertia of the device, if no load is stated
-LOAD = 3.0
-#: bandwidth of the velocity filter if none is stated: the smaller of FILTER (Hz) and FILTER_SHARE
-#: times the sample rate
-FILTER, FILTER_SHARE = 50.0, 0.1
 
 
 @dataclass(frozen=True)
@@ -98,160 +76,95 @@ def design(
         diagnosis, place, assumptions = device_of_diagram(diagnosis, place, assumptions)
     at = _place(diagnosis.model, place)
     reach = reach_of(diagnosis.experiment, at)
-    body = free_space(diagnosis.model.body(at))
-    settings = complete_assumptions(assumptions or Assumptions(), body, reach)
-    motion = stated_motion(reach, settings, body.axis)
-    friction = friction_interval(body, reach, errors=settings.errors)
-    options: list[ProposedController | None] = [*cancellations(body, friction, reach, settings)]
-    trials = [_trial(body, one, motion, reach, settings) for one in options or [None]]
+    device = Device(free_space(diagnosis.model.body(at)), reach, assumptions or Assumptions())
+    motion = device.motion
+    trials = [_trial(device, one) for one in cancellations(device) or [None]]
     best = min(trials, key=lambda t: t.left)
-    covariance, sampling = diagnosis.covariance({"Z_M": at}), sampling_of(settings, reach)
+    covariance = diagnosis.covariance({"Z_M": at})
     others = [t for t in trials if t is not best]
     return Design(
         experiment=diagnosis.experiment.title or diagnosis.experiment.folder.name,
         place=at,
-        body=body,
-        assumptions=settings,
+        body=device.body,
+        assumptions=device.assumptions,
         reach=reach,
-        friction=friction,
+        friction=device.friction,
         cancellation=best.cancellation,
         other=others[0].cancellation if others else None,
         other_left=others[0].left if others else float("nan"),
         force_feedback=best.force_feedback,
         loop=best.loop,
         prediction=best.prediction,
-        expected=_error_to_expect(best, diagnosis, at, settings, reach),
-        not_cancelled=not_cancelled(body, best.cancellation),
-        impedance=felt_impedance(best.prediction.hybrid, motion, sampling, covariance),
+        expected=_error_to_expect(best, diagnosis, at, device),
+        not_cancelled=not_cancelled(device, best.cancellation),
+        impedance=felt_impedance(best.prediction.hybrid, motion, device.sampling, covariance),
         residual=residual_friction(
-            body,
+            device.body,
             cancellation=best.friction.controller if best.friction else None,
             force_feedback=best.force_feedback.controller,
             speeds=reach.peak_speed * SHARES,
             position=motion.centre,
         ),
-        transparency=transparency(_with_load(best, body, settings), motion, covariance),
-        claims=_claims(best, body, friction, reach, settings),
+        transparency=transparency(_with_load(best, device), motion, covariance),
+        claims=_claims(best, device),
         verdict=diagnosis.verdict,
         left=diagnosis.left,
     )
 
 
-def _error_to_expect(
-    best: Trial, diagnosis: Diagnosis, at: str, settings: Assumptions, reach: Reach
-) -> ExpectedError:
+def _error_to_expect(best: Trial, diagnosis: Diagnosis, at: str, device: Device) -> ExpectedError:
     """The force error of what can be built with the recorded sensors."""
-    case = "hybrid" if reach.measures_force else "MBC" if best.cancellation else "none"
+    case = "hybrid" if device.reach.measures_force else "MBC" if best.cancellation else "none"
     cases, error = best.prediction.cases, diagnosis.after.check_error
     floor = error / max(diagnosis.left, 1.0)
     return expected_error(
         case,
         four_cases(best.prediction.hybrid, every=True)[case],
-        best.prediction.motion,
-        sampling_of(settings, reach),
+        device.motion,
+        device.sampling,
         simulated=cases[case].simulated,
         without=cases["none"].simulated,
         unexplained=unexplained_force(diagnosis.experiment, at, error=error, floor=floor),
     )
 
 
-def complete_assumptions(assumptions: Assumptions, body: Body, reach: Reach) -> Assumptions:
-    """The assumptions, with missing ones derived from the record and the body."""
-    period = assumptions.sample_period or reach.sample_period
-    mass = whole_inertia(body)
-    delay = period if assumptions.delay is None else assumptions.delay
-    filtered = assumptions.velocity_bandwidth or min(FILTER, FILTER_SHARE / period)
-    load = assumptions.load or float(f"{LOAD * mass:.2g}")
-    return replace(
-        assumptions, sample_period=period, delay=delay, velocity_bandwidth=filtered, load=load
-    )
-
-
-def cancellations(
-    body: Body, friction: FrictionInterval | None, reach: Reach, assumptions: Assumptions
-) -> list[ProposedController]:
+def cancellations(device: Device) -> list[ProposedController | None]:
     """The laws for C that are passive within all intervals; none if no level is certain."""
-    if friction is None:
+    level = cancelled_level(device)
+    if device.friction is None or level is None:
         return []
-    gain = command_gain(body, reach, errors=assumptions.errors)
-    level = cancelled_level(friction, body, reach, gain, assumptions)
-    if level is None:
-        return []
-    damping = small_motion_damping(body, errors=assumptions.errors)
-    late = _total_delay(body, assumptions)
-    dahl = dahl_cancellation(
-        level, friction, reach, gain, assumptions, axis=body.axis, late=late, damping=damping
-    )
-    laws = [] if dahl is None else [dahl]
-    if friction.presliding is not None:
+    dahl = dahl_cancellation(level, device)
+    laws: list[ProposedController | None] = [] if dahl is None else [dahl]
+    if device.friction.presliding is not None:
         # in small motion a smoothed cancellation is a negative damper that a bristle cannot stop
         return laws
-    assert assumptions.sample_period is not None and assumptions.velocity_bandwidth is not None
-    smoothed = smoothed_cancellation(
-        level,
-        reach,
-        assumptions,
-        axis=body.axis,
-        period=assumptions.sample_period,
-        filter_bandwidth=assumptions.velocity_bandwidth,
-    )
-    follows = following_cancellation(smoothed, body, reach, assumptions, gain=gain)
-    return [*laws, smoothed if follows is None else follows]
+    smoothed = smoothed_cancellation(level, device)
+    return [*laws, following_cancellation(smoothed, device) or smoothed]
 
 
-def command_gain(body: Body, reach: Reach, *, errors: float) -> float:
-    """Upper bound of the acting force per commanded force, once C has divided its gains out."""
-    rest, ratio = with_gains_divided_out(body, reach=reach, errors=errors)
-    return ratio * acting_gain(rest, reach, errors=errors)
-
-
-def _trial(
-    body: Body,
-    option: ProposedController | None,
-    motion: StatedMotion,
-    reach: Reach,
-    assumptions: Assumptions,
-) -> Trial:
-    assert (
-        assumptions.load is not None
-        and assumptions.sample_period is not None
-        and assumptions.delay is not None
-    )
-    whole = with_forces(option, body, assumptions)
+def _trial(device: Device, option: ProposedController | None) -> Trial:
+    whole = with_forces(option, device)
     names = whole.controller.names() if whole else {}
     smoothing = smoothing_name(names)
     h, loop = force_feedback(
-        body,
-        reach,
-        assumptions,
-        load=assumptions.load,
-        # the command is held for a sample, and so is the error that the low-pass takes in
-        delay=_total_delay(body, assumptions) + assumptions.sample_period,
-        smoothing_velocity=0.0 if smoothing is None else names[smoothing],
+        device, smoothing_velocity=0.0 if smoothing is None else names[smoothing]
     )
     diagram, linear = (
         haptic_interface(
-            body,
+            device.body,
             cancellation=one.controller if one else None,
             force_feedback=h.controller,
         )
         for one in (whole, option)
     )
-    sampling = sampling_of(assumptions, reach)
-    prediction = predict(diagram, motion, sampling, linear=linear)
+    prediction = predict(diagram, device.motion, device.sampling, linear=linear)
     return Trial(option, whole, h, loop, diagram, prediction)
 
 
-def _total_delay(body: Body, assumptions: Assumptions) -> float:
-    """Computing delay plus the delay of the identified actuation, s."""
-    assert assumptions.delay is not None
-    return assumptions.delay + identified_delay(body)
-
-
-def _with_load(best: Trial, body: Body, assumptions: Assumptions) -> Diagram:
+def _with_load(best: Trial, device: Device) -> Diagram:
     """The diagram with the load in place of the hand."""
-    assert assumptions.load is not None
-    inertia = replace(body.parameters["inertia"], value=assumptions.load)
+    body = device.body
+    inertia = replace(body.parameters["inertia"], value=device.load)
     return haptic_interface(
         body,
         hand=Body(body.axis, {"inertia": inertia}),
@@ -260,38 +173,19 @@ def _with_load(best: Trial, body: Body, assumptions: Assumptions) -> Diagram:
     )
 
 
-def _claims(
-    best: Trial,
-    body: Body,
-    friction: FrictionInterval | None,
-    reach: Reach,
-    assumptions: Assumptions,
-) -> Mapping[str, tuple[Claim, ...]]:
+def _claims(best: Trial, device: Device) -> Mapping[str, tuple[Claim, ...]]:
     """The claims on passivity of each case."""
+    body = device.body
     by_case: dict[str, list[Claim]] = {case: [] for case in four_cases(best.diagram, every=True)}
-    late = _total_delay(body, assumptions)
-    if best.friction is not None and friction is not None:
-        gain = command_gain(body, reach, errors=assumptions.errors)
-        by_case["MBC"] = cancellation_claims(
-            body,
-            best.friction,
-            friction,
-            reach,
-            gain=gain,
-            late=late,
-            errors=assumptions.errors,
-            fraction=assumptions.fraction,
-        )
-        compliant = compliant_claim(body, best.friction, friction, gain=gain)
+    if best.friction is not None:
+        by_case["MBC"] = cancellation_claims(device, best.friction)
+        compliant = compliant_claim(device, best.friction)
         by_case["MBC"] += [compliant] if compliant is not None else []
-    assert assumptions.sample_period is not None
-    held = late + assumptions.sample_period
-    if (of_place := late_force_claim(body, reach, assumptions, late=held)) is not None:
+    if (of_place := late_force_claim(device)) is not None:
         by_case["MBC"].append(of_place)
     by_case["FF"] = [feedback_claim(body, best.force_feedback.controller)]
-    sampling = sampling_of(assumptions, reach)
     for case, diagram in four_cases(best.prediction.hybrid, every=True).items():
-        claim = energy_claim(diagram, best.prediction.motion, reach, sampling, axis=body.axis)
+        claim = energy_claim(diagram, device.motion, device.reach, device.sampling, axis=body.axis)
         by_case[case].append(claim)
     return {
         case: tuple(use_units_of(body.axis, c) for c in claims) for case, claims in by_case.items()

@@ -38,7 +38,7 @@ from ..passivity import (
 from ..passivity.identified import effects_left_open, extend_to_device
 from ..passivity.linear.impedance import exact
 from ..passivity.theorems.lugre import add_bristle_damping
-from ..realise.damping_interval import damping_interval, small_motion_damping
+from ..realise.damping_interval import damping_interval
 from ..realise.friction_interval import FrictionInterval, value_interval
 from ..realise.lti import S
 from ..realise.reach import Reach
@@ -46,72 +46,56 @@ from ..realise.tips import led_motion
 from ..simulate import Sampling
 from .assumptions import StatedMotion
 from .cancellation import ProposedController
+from .device import Device
 from .prediction import steady_cycle
 
 
-def compliant_claim(
-    body: Body, chosen: ProposedController, friction: FrictionInterval, *, gain: float
-) -> Claim | None:
+def compliant_claim(device: Device, chosen: ProposedController) -> Claim | None:
     """Claim on passivity of the cancellation through the identified compliance; None without one.
 
     Friction is that of the motor side, as in the effect; friction of the link is taken as zero and
     would only help.
     """
+    body, gain, friction = device.body, device.gain, device.friction
     values = {n: v.value for n, v in body.parameters.items()}
     tip = values.get("transmission_compliance.tip_inertia", 0.0)
     # the equation of the motor side: what moves behind the compliance has a separate one
     motor = float(body.equation().inertia.subs(body.numbers()))
     law = chosen.controller.stages[0].law
-    if tip <= 0 or motor <= 0 or not law.bristle_stiffness:
+    if friction is None or tip <= 0 or motor <= 0 or not law.bristle_stiffness:
         return None
     numbers = chosen.controller.names()
-    level, stiffness = (
-        numbers[f"{law.name}.{law.bound}"],
-        numbers[f"{law.name}.{law.bristle_stiffness}"],
-    )
+
+    def near(value: float) -> str:
+        return _decimal(round_near(value, digits=6))
+
+    def most(name: str) -> str:
+        return _decimal(round_up(numbers[f"{law.name}.{name}"] * gain, digits=6))
+
     return any_environment(
         motor_level=_decimal(round_down(friction.lowest.low, digits=4)),
         link_level=0,
-        transmission_stiffness=_decimal(
-            round_near(values["transmission_compliance.stiffness"], digits=6)
-        ),
-        transmission_damping=_decimal(
-            round_near(values["transmission_compliance.damping"], digits=6)
-        ),
-        compensator_level=_decimal(round_up(level * gain, digits=6)),
-        compensator_stiffness=_decimal(round_up(stiffness * gain, digits=6)),
-        motor_inertia=_decimal(round_near(motor, digits=6)),
-        link_inertia=_decimal(round_near(tip, digits=6)),
+        transmission_stiffness=near(values["transmission_compliance.stiffness"]),
+        transmission_damping=near(values["transmission_compliance.damping"]),
+        compensator_level=most(law.bound),
+        compensator_stiffness=most(law.bristle_stiffness),
+        motor_inertia=near(motor),
+        link_inertia=near(tip),
     )
 
 
-def cancellation_claims(
-    body: Body,
-    chosen: ProposedController,
-    friction: FrictionInterval,
-    reach: Reach,
-    *,
-    gain: float,
-    late: float,
-    errors: float,
-    fraction: float,
-) -> list[Claim]:
-    """Claims on friction and its cancellation, at the worst ends of all intervals.
-
-    gain: acting force per commanded force;  late: delay of the cancellation's force, s
-    errors: half width of the intervals in standard errors
-    fraction: largest part of the level that a cancellation which follows the level has anywhere
-    """
+def cancellation_claims(device: Device, chosen: ProposedController) -> list[Claim]:
+    """Claims on friction and its cancellation, at the worst ends of all intervals."""
+    friction = device.friction
+    assert friction is not None
     # what actuation makes of a command is in its gain and in how late it is
-    actuation = [e.name for e in body.effects if e.role == "actuation"]
-    open_ones = effects_left_open(body, reach, errors=errors)
+    actuation = [e.name for e in device.body.effects if e.role == "actuation"]
+    open_ones = effects_left_open(device.body, device.reach, errors=device.stated.errors)
     left = {name: why for name, why in open_ones.items() if name not in actuation}
     if not chosen.controller.stages[0].law.bound:
-        claims = [_claim_of_all_levels(friction, fraction)]
+        claims = [_claim_of_all_levels(friction, device.stated.fraction)]
     else:
-        claims = _friction_claims(
-            body, chosen, friction, reach, gain=gain, late=late, errors=errors
-        )
+        claims = _friction_claims(device, chosen, friction)
     return [extend_to_device(c, over=friction.over, left=left) for c in claims]
 
 
@@ -130,16 +114,10 @@ def _claim_of_all_levels(friction: FrictionInterval, fraction: float) -> Claim:
 
 
 def _friction_claims(
-    body: Body,
-    chosen: ProposedController,
-    friction: FrictionInterval,
-    reach: Reach,
-    *,
-    gain: float,
-    late: float,
-    errors: float,
+    device: Device, chosen: ProposedController, friction: FrictionInterval
 ) -> list[Claim]:
     """Claims on friction and its cancellation alone."""
+    body, gain, late, errors = device.body, device.gain, device.delay, device.stated.errors
     law, numbers = chosen.controller.stages[0].law, chosen.controller.names()
     level = round_up(numbers[f"{law.name}.{law.bound}"] * gain, digits=6)
     least = round_down(friction.lowest.low, digits=4)
@@ -157,7 +135,7 @@ def _friction_claims(
     )
     damped = body.parameters.get("presliding.bristle_damping", Value(0.0, fixed=True))
     bristle = value_interval(damped, errors=errors)
-    viscous = damping_interval(body, reach, errors=errors).least
+    viscous = damping_interval(body, device.reach, errors=errors).least
     claims = [
         add_bristle_damping(
             pair,
@@ -171,7 +149,7 @@ def _friction_claims(
     if late > 0:
         claims.append(
             delayed_small_motion(
-                damping=_decimal(round_down(small_motion_damping(body, errors=errors), digits=4)),
+                damping=_decimal(round_down(device.damping, digits=4)),
                 compensator_stiffness=_decimal(stiffness),
                 delay=_decimal(late),
                 presliding_stiffness=presliding,

@@ -11,6 +11,7 @@ from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value
 from teleopdesign.design import Assumptions, design
 from teleopdesign.design.assumptions import StatedMotion
+from teleopdesign.design.device import Device
 from teleopdesign.design.other_effects import with_forces
 from teleopdesign.design.propose import cancellations
 from teleopdesign.design.quasi_static import quasi_static_error, slow_output
@@ -102,14 +103,13 @@ def test_friction_that_may_be_none_is_not_cancelled(unsure):
 def test_an_actuator_that_gives_more_is_commanded_less(rod, designed):
     """Force that acts is command times gain: C divides the identified gain out."""
     body = with_effect(rod, "actuator_gain", {"gain": 1.25}).model.body("device")
-    settings, speeds = designed.assumptions, np.array([0.01, 0.1, -0.2])
-    pairs = zip(
-        cancellations(body, designed.friction, designed.reach, settings),
-        cancellations(designed.body, designed.friction, designed.reach, settings),
-        strict=True,
+    strong, device = (
+        Device(b, designed.reach, designed.assumptions) for b in (body, designed.body)
     )
+    speeds = np.array([0.01, 0.1, -0.2])
+    pairs = zip(cancellations(strong), cancellations(device), strict=True)
     for one, reference in pairs:
-        whole = with_forces(one, body, settings)
+        whole = with_forces(one, strong)
         commanded = slow_output(whole.controller, np.zeros(3), speeds)
         wanted = slow_output(reference.controller, np.zeros(3), speeds)
         # levels are rounded down to three digits

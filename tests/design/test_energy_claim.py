@@ -4,7 +4,7 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.design.assumptions import StatedMotion
-from teleopdesign.design.cancellation import acting_gain
+from teleopdesign.design.device import acting_gain
 from teleopdesign.design.verdict import energy_claim, energy_taken
 from teleopdesign.realise.reach import Reach
 

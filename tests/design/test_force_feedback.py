@@ -9,13 +9,8 @@ from hypothesis import strategies as st
 import teleopdesign as td
 from teleopdesign.blocks import Body, Value
 from teleopdesign.design import Assumptions, FeedbackLoop
-from teleopdesign.design.force_feedback import (
-    MOST_GAIN,
-    force_feedback,
-    identified_delay,
-    largest_gain,
-    whole_inertia,
-)
+from teleopdesign.design.device import Device, identified_delay
+from teleopdesign.design.force_feedback import MOST_GAIN, force_feedback, largest_gain
 
 from .test_friction_range import REACH
 
@@ -60,15 +55,19 @@ def test_identified_lag_and_delay_of_the_actuator_count():
 def test_the_loop_moves_what_is_behind_a_compliance_too():
     body = Body("prismatic", {"inertia": Value(0.5)})
     tip = {"tip_inertia": 0.4, "stiffness": 1e3, "damping": 1.0}
-    assert whole_inertia(body.with_effect(td.EFFECTS["transmission_compliance"], tip)) == 0.5
-    assert whole_inertia(body.with_effect(td.EFFECTS["added_inertia"], {"inertia": 0.2})) == 0.7
+    for effect, values, whole in (
+        ("transmission_compliance", tip, 0.5),
+        ("added_inertia", {"inertia": 0.2}, 0.7),
+    ):
+        more = body.with_effect(td.EFFECTS[effect], values)
+        assert Device(more, REACH, Assumptions()).inertia == whole
 
 
 @pytest.mark.parametrize("a", [0.0, 0.005, 0.5])
 def test_the_schedule_keeps_residual_friction_falling(a):
     """P13: b (1 + k) >= a k."""
     body = Body("prismatic", {"inertia": Value(0.2)})
-    made, _ = force_feedback(body, REACH, Assumptions(), load=0.6, delay=2e-3, smoothing_velocity=a)
+    made, _ = force_feedback(Device(body, REACH, Assumptions(load=0.6)), smoothing_velocity=a)
     values = made.controller.names()
     k, b = values["velocity_schedule.gain"], values["velocity_schedule.scheduling_velocity"]
     assert b * (1 + k) >= a * k

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 import teleopdesign as td
 from teleopdesign.blocks import Body, Value
 from teleopdesign.design import Assumptions
-from teleopdesign.design.cancellation import acting_gain, cancelled_level
+from teleopdesign.design.cancellation import cancelled_level
+from teleopdesign.design.device import Device, acting_gain
 from teleopdesign.realise.friction_interval import friction_interval
 from teleopdesign.realise.reach import Reach
 
@@ -106,9 +107,11 @@ def test_a_strong_actuator_and_its_ripple_count():
     assert acting_gain(device, REACH, errors=0.0) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize("gain", [0.8, 1.0, 1.6])
-def test_the_level_is_commanded_so_that_the_part_that_acts_is_the_same(gain):
-    device = body(1.0, actuator_gain={"gain": gain})
-    friction, settings = friction_interval(device, REACH, errors=0.0), Assumptions(fraction=0.5)
-    level = cancelled_level(friction, device, REACH, gain, settings)
-    assert gain * level.value == pytest.approx(0.5, rel=0.005)  # rounded down to three digits
+@pytest.mark.parametrize("stderr", [0.0, 0.05, 0.3])
+def test_the_level_is_commanded_so_that_no_more_acts_within_the_errors_of_the_gain(stderr):
+    strong = body(1.0, actuator_gain={"gain": 1.25})
+    strong = strong.with_values({"actuator_gain.gain": Value(1.25, stderr=1.25 * stderr)})
+    device = Device(strong, REACH, Assumptions(fraction=0.5, errors=2.0))
+    assert device.gain == pytest.approx(1.0 + 2.0 * stderr)
+    level = cancelled_level(device).value * device.gain
+    assert level == pytest.approx(0.5, rel=0.005)  # rounded down to three digits

@@ -1,5 +1,7 @@
 """What C cancels beside a constant level: within every interval, and by the effects' own laws."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import teleopdesign as td
 from teleopdesign.blocks import Value
 from teleopdesign.design import Assumptions
 from teleopdesign.design.cancellation import ProposedController, Reason
+from teleopdesign.design.device import Device
 from teleopdesign.design.other_effects import (
     following_cancellation,
     forces_to_cancel,
@@ -41,7 +44,7 @@ SMOOTHED = ProposedController(
 )
 
 
-def joint(**effects):
+def joint(settings=SETTINGS, **effects):
     """A joint with Coulomb and viscous friction and these effects, every value within 2 %."""
     body = td.Body("revolute", {"inertia": 0.01})
     stated = {"coulomb": {"level": 0.3}, "viscous": {"damping": 0.02}, **effects}
@@ -52,7 +55,7 @@ def joint(**effects):
         for n, v in body.parameters.items()
         if v.value and not v.fixed
     }
-    return body.with_values(errors)
+    return Device(body.with_values(errors), REACH, settings)
 
 
 PLACE = {"amplitude": 0.4, "period": 0.9, "phase": 0.3}
@@ -68,8 +71,8 @@ COGGING = {"amplitude": 0.1, "period": 0.57, "phase": 0.3}
     ],
 )
 def test_a_level_that_is_followed_stays_below_every_level_of_the_interval(effects):
-    body = joint(**effects)
-    made = following_cancellation(SMOOTHED, body, REACH, SETTINGS, gain=1.0)
+    device = joint(**effects)
+    made, body = following_cancellation(SMOOTHED, device), device.body
     places, speeds = np.linspace(-0.5, 0.5, 41), np.array([0.01, 0.2, 1.5, -0.01, -0.2, -1.5])
     cancelled = np.array([slow_output(made.controller, places, np.full(41, v)) for v in speeds])
     random = np.random.default_rng(2)
@@ -91,25 +94,23 @@ def test_a_level_that_is_followed_stays_below_every_level_of_the_interval(effect
 
 
 def test_a_spring_is_cancelled_by_a_part_and_a_periodic_force_whole():
-    body = joint(spring={"stiffness": 2.0}, cogging=COGGING)
-    wanted = forces_to_cancel(body, SETTINGS)
+    wanted = forces_to_cancel(joint(spring={"stiffness": 2.0}, cogging=COGGING))
     assert wanted["cogging"] == COGGING
     assert wanted["spring"]["stiffness"] == pytest.approx(0.9 * 2.0 * (1 - 1.96 * 0.02), rel=0.01)
 
 
 def test_what_no_command_cancels_is_listed_with_its_reason():
-    body = joint(cogging=COGGING, quadratic_drag={"drag": 0.01})
-    whole = with_forces(SMOOTHED, body, SETTINGS)
-    assert set(not_cancelled(body, whole)) == {"viscous", "quadratic_drag"}
-    assert all(not_cancelled(body, whole).values())
+    device = joint(cogging=COGGING, quadratic_drag={"drag": 0.01})
+    left = not_cancelled(device, with_forces(SMOOTHED, device))
+    assert set(left) == {"viscous", "quadratic_drag"} and all(left.values())
 
 
 def test_a_force_of_place_that_comes_late_needs_damping_of_its_slope_times_the_delay():
-    body = joint(cogging=COGGING)
     slope = COGGING["amplitude"] * 2 * np.pi / COGGING["period"]
-    enough = late_force_claim(body, REACH, SETTINGS, late=2e-3)
+    enough = late_force_claim(joint(cogging=COGGING))
     damping = 0.02 * (1 - 1.96 * 0.02)
     assert enough.holds
     assert enough.verdict.margin == pytest.approx(damping - slope * 2e-3, rel=1e-3)
-    assert not late_force_claim(body, REACH, SETTINGS, late=0.03).holds
-    assert late_force_claim(joint(), REACH, SETTINGS, late=0.03) is None
+    late = replace(SETTINGS, delay=0.029)
+    assert not late_force_claim(joint(late, cogging=COGGING)).holds
+    assert late_force_claim(joint(late)) is None

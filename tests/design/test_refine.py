@@ -6,6 +6,7 @@ import pytest
 
 from teleopdesign.design import refine
 from teleopdesign.design.cancellation import Reason, smoothed_cancellation
+from teleopdesign.design.device import Device
 
 pytestmark = pytest.mark.slow  # a whole design
 
@@ -33,10 +34,8 @@ def test_the_error_before_is_the_one_predicted(designed):
 
 def test_a_smoothed_cancellation_keeps_its_velocity_above_the_encoders(designed):
     level = Reason("level", 0.49, "N", "made for a test")
-    smoothed = smoothed_cancellation(
-        level, designed.reach, designed.assumptions, axis="prismatic", period=1e-3,
-        filter_bandwidth=50.0,
-    )  # fmt: skip
+    device = Device(designed.body, designed.reach, designed.assumptions)
+    smoothed = smoothed_cancellation(level, device)
     hybrid = designed.prediction.hybrid.with_block("C", smoothed.controller)
     prediction = replace(designed.prediction, hybrid=hybrid)
     made = replace(designed, cancellation=smoothed, prediction=prediction)
