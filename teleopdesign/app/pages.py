@@ -10,9 +10,9 @@ from ..base.sentences import number_on_page as number
 from ..base.sentences import unit_on_page as unit_text
 from ..base.sentences import with_error_on_page as with_error
 from ..base.units import unit_after_number, unit_of
-from ..diagnose.adequacy import floors_left, is_adequate
 from ..diagnose.by_simulation import compare_by_simulation
 from ..diagnose.comparison import residual_data
+from ..diagnose.evidence import floors_left, is_adequate
 from ..diagnose.noise_floor import say_floors
 from ..show.figures.carrier import carrier_of_change, with_carrier
 from ..show.report.parameter_table import correlation_rows

@@ -1,7 +1,7 @@
 """The ladder of the computer's cuts: which effect of which controller block explains the rest.
 
 Score, thresholds and probabilities are those of a body's diagnosis (`diagnose.evidence`,
-`diagnose.criteria`, `diagnose.adequacy`).
+`diagnose.criteria`, `diagnose.evidence`).
 """
 
 from __future__ import annotations
@@ -12,9 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..diagnose.adequacy import removed_share
 from ..diagnose.criteria import CRITERIA
-from ..diagnose.evidence import SAME, chance, gain_score
+from ..diagnose.evidence import SAME, chance, gain_score, removed_share
 from ..effects.of_blocks.controllers import CONTROL_EFFECTS
 from .computer import Placed
 from .control_rows import ControlFit, ControlRows

@@ -12,10 +12,10 @@ import numpy as np
 from ..base.frozen import ByValue
 from ..base.shown import Shown, figure_of
 from ..diagnose import Diagnosis
-from ..diagnose.adequacy import VerdictName
 from ..diagnose.answer import answer
 from ..diagnose.candidates import Candidate
 from ..diagnose.criteria import CRITERIA
+from ..diagnose.statements import VerdictName
 from .computer import Placed
 from .computer_fit import ControlData
 from .computer_search import Attempt, ComputerLadder, ComputerStep

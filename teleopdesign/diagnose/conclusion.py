@@ -15,11 +15,11 @@ from ..check import why_silent
 from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .adequacy import VerdictName, is_adequate, records_differ
 from .candidates import Candidate
 from .decision import select_other_helpers
 from .error import force_error, refer_to_command
 from .estimates import correct_fit
+from .evidence import is_adequate, records_differ
 from .fit import Fit, estimate
 from .free_functions import Belief, belief
 from .identifiability import doubt, explains_most
@@ -32,8 +32,7 @@ from .probability import probable
 from .repeats import repeatability
 from .rung import Rung, estimate_without, first_rise, reorder_and_refit, undo, without_rise
 from .search_plan import EFFORTS
-from .stand_in import check_error_on_all
-from .statements import SetAside
+from .statements import SetAside, VerdictName
 from .undetermined import find_undetermined
 
 
@@ -206,6 +205,26 @@ def remove_doubtful_rung(
     aside = SetAside(rung.added, rung.fit.check_error, why)
     search.progress(f"set aside: {aside}")
     return replace(state.with_rungs(order), set_aside=(*state.set_aside, aside))
+
+
+def estimable_on_all(prepared: Prepared) -> Prepared | None:
+    """All records, each as a fit record and for comparison; None: no check records.
+
+    None for an arm's joints too: their shared link parameters belong to the fit records.
+    """
+    if not prepared.of("check") or prepared.is_linked:
+        return None
+    records = (*prepared.of("fit"), *prepared.of("check"))
+    both = (replace(s, use=use) for use in ("fit", "check") for s in records)
+    return Prepared(prepared.experiment, prepared.bandwidth, tuple(both))
+
+
+def check_error_on_all(fit: Fit, prepared: Prepared) -> float | None:
+    """Check error of a model estimated on all records; None as in `estimable_on_all`."""
+    together = estimable_on_all(prepared)
+    if together is None:
+        return None
+    return force_error(estimate(fit.model, together).model, prepared.of("check"))
 
 
 def with_last_corrected(search: LadderSearch, state: LadderState) -> tuple[Rung, ...]:

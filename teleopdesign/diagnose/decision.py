@@ -1,6 +1,6 @@
 """Decisions of a diagnosis: which effects count, and which of several candidates is accepted.
 
-Every threshold is a field of `Criteria`. `adequacy` decides what counts as noise.
+Every threshold is a field of `Criteria`. `evidence` decides what counts as noise.
 
 Candidates that count come first, then those that leave fewer squares on the check records
 (`rank_key`). Among the candidates that the records cannot distinguish from the best, the simplest
@@ -11,10 +11,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from .adequacy import is_adequate
 from .candidates import Candidate
 from .criteria import CRITERIA
-from .evidence import check_score, check_squares, gain_at_command, score_at_command, whole_score
+from .evidence import (
+    check_score,
+    check_squares,
+    gain_at_command,
+    is_adequate,
+    score_at_command,
+    whole_score,
+)
 from .fit import Fit
 from .noise_floor import NoiseFloor
 from .ranking import REFUSALS, Ranked, Ranking

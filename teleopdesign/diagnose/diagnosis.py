@@ -20,10 +20,10 @@ from ..measurement.experiment import Experiment
 from ..measurement.prepare import Prepared
 from ..model import Model
 from ..realise.friction_cells import FrictionCell
-from .adequacy import VerdictName, floors_left, is_adequate
 from .candidates import Candidate
 from .covariance import covariance_in_blocks
 from .criteria import CRITERIA
+from .evidence import floors_left, is_adequate
 from .learnable import Learnable, NearReversals
 from .model_data import model_of_body
 from .no_named_law import FreeForm
@@ -43,6 +43,7 @@ from .statements import (
     SetAside,
     StepEvidence,
     Undetermined,
+    VerdictName,
     estimate_of,
 )
 

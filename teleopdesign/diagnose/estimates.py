@@ -5,10 +5,9 @@ from __future__ import annotations
 from ..measurement.experiment import Experiment
 from ..measurement.prepare import prepare
 from ..model import Model
-from .adequacy import is_adequate, limit_noise_floor
 from .candidates import restrict_to_curve
 from .criteria import CRITERIA
-from .evidence import check_squares
+from .evidence import check_squares, is_adequate, limit_noise_floor
 from .fit import Fit
 from .ladder_state import LadderSearch, search_for
 from .noise_floor import NoiseFloor, noise_floor

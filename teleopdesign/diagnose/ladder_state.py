@@ -14,9 +14,9 @@ from ..measurement.experiment import Experiment
 from ..measurement.friction_curve import count_speeds
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
-from .adequacy import VerdictName, is_adequate, is_noise, limit_noise_floor
 from .candidates import Candidate, restrict_to_curve
 from .decision import is_supported, worth_pursuing
+from .evidence import is_adequate, is_noise, limit_noise_floor
 from .fit import Fit
 from .free_functions import Belief
 from .learnable import Learnable, NearReversals
@@ -29,7 +29,7 @@ from .repeats import Repeatability
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan, cut_to_windows
 from .stated_fit import estimate_values, with_late_hand, with_late_starts, with_paying_shift
-from .statements import SetAside, Undetermined
+from .statements import SetAside, Undetermined, VerdictName
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from .adequacy import explained_share, is_adequate
 from .candidates import Candidate, list_look_alikes
 from .criteria import CRITERIA
 from .decision import (
@@ -24,7 +23,7 @@ from .decision import (
     select_simplest,
     simplicity,
 )
-from .evidence import check_squares, whole_score
+from .evidence import check_squares, explained_share, is_adequate, whole_score
 from .fit import Fit, fit_squares
 from .ladder_state import LadderSearch, LadderState
 from .plausibility import undetermined_of

@@ -17,9 +17,9 @@ from ..base.sentences import percent
 from ..measurement.bandwidth import LOWEST
 from ..measurement.prepare import Prepared, prepare
 from ..model import Model
-from .adequacy import Errors
 from .criteria import CRITERIA
 from .diagnosis import Diagnosis
+from .evidence import Errors
 from .fit import estimate
 
 

@@ -26,8 +26,9 @@ from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from .criteria import CRITERIA
-from .evidence import check_squares, gain_score
+from .evidence import check_squares, gain_score, is_noise
 from .fit import Fit, estimate
+from .noise_floor import NoiseFloor
 from .residual import residuals
 from .search_plan import PLAN
 
@@ -54,6 +55,12 @@ class Tone:
             gain_score(self.residual, fit.check_residual, fit.check_blocks)
             > CRITERIA.indistinguishable
         )
+
+    def holds_all_but_noise(self, fit: Fit, floor: NoiseFloor) -> bool:
+        """Whether the tone explains all of a fit's error except noise."""
+        squares = check_squares(fit)
+        left = fit.check_error * float(np.sqrt(self.squares / squares)) if squares > 0.0 else 0.0
+        return is_noise(left, floor)
 
 
 def best_tone(fitted: Fit, prepared: Prepared) -> Tone:

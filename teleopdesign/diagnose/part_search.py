@@ -16,6 +16,7 @@ import numpy as np
 from ..blocks import Value
 from ..measurement.prepare import Prepared
 from ..model import Model
+from .climb import is_of_readings
 from .criteria import CRITERIA
 from .decision import is_better
 from .fit import Fit, estimate, fit_squares
@@ -27,7 +28,6 @@ from .parts import PreparedParts
 from .parts_fit import PartsFit, PartsRung, estimate_parts
 from .record_shift import shifts_of
 from .rung import Rung
-from .stand_in import is_of_readings
 from .statements import SetAside
 
 

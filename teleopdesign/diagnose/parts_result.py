@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from ..measurement.reading import reading_data
 from ..model import Model
-from .adequacy import VerdictName
 from .answer import with_recording
 from .diagnosis import Diagnosis
 from .ladder_state import LadderEnd
@@ -19,7 +18,7 @@ from .parts import PreparedParts, mean_inertias, with_bodies_of
 from .parts_fit import PartsRung, error_over_joints, with_body_inertia
 from .recording import DiagnosedRecording, fingerprint_of
 from .result import diagnosis_of
-from .statements import EstimatedValue, JointErrors, LadderRow, finite
+from .statements import EstimatedValue, JointErrors, LadderRow, VerdictName, finite
 
 
 def diagnosis_of_parts(

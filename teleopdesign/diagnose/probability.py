@@ -16,11 +16,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .adequacy import floors_left, is_adequate, removed_share
 from .candidates import Candidate
 from .criteria import CRITERIA
 from .decision import helps_but_is_barred
-from .evidence import chance
+from .evidence import chance, floors_left, is_adequate, removed_share
 from .free_functions import Belief
 from .ladder_state import LadderEnd
 from .ranking import Ranked, Ranking

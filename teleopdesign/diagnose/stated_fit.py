@@ -26,11 +26,10 @@ from ..blocks import Value
 from ..measurement.prepare import Prepared
 from ..measurement.record_clock import CLOCK
 from ..model import Model
-from .adequacy import is_adequate
 from .candidates import Candidate, bodies_with_measured_force, make_starts
 from .criteria import CRITERIA
 from .decision import is_better
-from .evidence import check_score, check_squares
+from .evidence import check_score, check_squares, is_adequate
 from .fit import Fit, estimate, fit_squares
 from .noise_floor import NoiseFloor
 from .ranking import Ranked
@@ -105,11 +104,12 @@ def with_late_starts(fit: Fit, stated: Model, prepared: Prepared) -> Fit:
     for shift in shifts_of(fit.model, prepared.stretches):
         if shift.latest <= CLOCK.early * shift.row:
             continue
-        start, before = make_starts(stated, prepared.scales)[0], fit.model.record_shift
-        late = [{**before, shift.at: Value(p * shift.latest)} for p in PLAN.late_starts]
-        rough = estimate_best_start([start.with_record_shift(x) for x in late], (), prepared)
-        if fit_squares(rough) < (1.0 - PLAN.distinct_minimum) * fit_squares(fit):
-            fit = min((fit, estimate(rough.model, prepared)), key=fit_squares)
+        start = make_starts(stated, prepared.scales)[0]
+        for part in PLAN.late_starts:
+            shifts = {**fit.model.record_shift, shift.at: Value(part * shift.latest)}
+            rough = estimate_best_start([start.with_record_shift(shifts)], (), prepared)
+            if fit_squares(rough) < (1.0 - PLAN.distinct_minimum) * fit_squares(fit):
+                fit = min((fit, estimate(rough.model, prepared)), key=fit_squares)
     return fit
 
 

@@ -17,6 +17,8 @@ from ..model import Model
 from .candidates import Candidate
 from .ranking import named_instead
 
+#: how a diagnosis ends
+VerdictName = Literal["effects_missing", "model_adequate", "undecided"]
 #: why a candidate that leaves less does not count
 Why = Literal["refused", "not determined"]
 #: what the error of an older answer lacks

@@ -17,12 +17,11 @@ from functools import partial
 
 from ..effects import Effect
 from ..model import Model
-from .adequacy import explained_share, is_adequate
 from .candidates import Candidate, comes_too_early, make_starts
 from .criteria import CRITERIA
 from .decision import is_better, is_supported, objection
 from .draws import best_draws
-from .evidence import check_squares
+from .evidence import check_squares, explained_share, is_adequate
 from .fit import Fit, estimate
 from .identifiability import OpenWidths
 from .ladder_state import LadderSearch, LadderState

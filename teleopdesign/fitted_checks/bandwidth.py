@@ -8,7 +8,7 @@ import numpy as np
 
 from ..base.finding import Finding
 from ..check import CheckedRecording, RecordingCheck
-from ..diagnose.adequacy import is_adequate
+from ..diagnose.evidence import is_adequate
 from ..diagnose.fit import estimate
 from ..diagnose.narrower_band import narrower_band
 from ..diagnose.noise_floor import noise_floor

@@ -6,13 +6,11 @@ from diagnose.made_records import write_made
 
 import teleopdesign as td
 from teleopdesign.diagnose.candidates import Candidate
+from teleopdesign.diagnose.climb import stands_in_for_values
+from teleopdesign.diagnose.conclusion import estimable_on_all
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.rung import Rung
-from teleopdesign.diagnose.stand_in import (
-    estimable_on_all,
-    stands_in_for_values,
-)
 from teleopdesign.diagnose.stated_fit import estimate_stated
 from teleopdesign.measurement.prepare import prepare
 from teleopdesign.model import Model

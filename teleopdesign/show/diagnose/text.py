@@ -9,8 +9,8 @@ from ...base.sentences import percent, with_standard_error
 from ...base.shown import html_table
 from ...base.units import unit_after_number
 from ...blocks import Value
-from ...diagnose.adequacy import records_differ
 from ...diagnose.criteria import CRITERIA
+from ...diagnose.evidence import records_differ
 from ...diagnose.noise_floor import say_floors
 from ...diagnose.undetermined import open_parameters_line
 from ..registry import shows
