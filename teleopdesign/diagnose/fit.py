@@ -154,11 +154,9 @@ def _with_held_shifts(solution: Solution, stretches: Sequence[Stretch]) -> Solut
     if not shifts.held.any():
         return solution
     here = select_bodies(stretches, shifts.bodies)
-    jacobian = solution.jacobian.copy()
-    jacobian[:, len(solution.free) :] = 0.0
-    columns = here.relative(solution.model, shifts.names)[1] * shifts.row
-    jacobian[here.rows, len(solution.free) :] = columns
-    return replace(solution, jacobian=jacobian)
+    p, columns = len(solution.free), np.zeros((len(solution.residual), len(shifts.logs)))
+    columns[here.rows] = here.relative(solution.model, shifts.names)[1] * shifts.row
+    return replace(solution, jacobian=np.hstack([solution.jacobian[:, :p], columns]))
 
 
 def with_errors(solution: Solution, blocks: NDArray[np.intp]) -> Model:
