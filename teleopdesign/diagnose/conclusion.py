@@ -17,14 +17,14 @@ from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate
 from .decision import select_other_helpers
-from .error import force_error, refer_to_command
+from .error import error_near_reversals, force_error, refer_to_command
 from .estimates import correct_fit
 from .evidence import is_adequate, records_differ
 from .fit import Fit, estimate
 from .free_functions import Belief, belief
 from .identifiability import doubt, explains_most
 from .ladder_state import LadderEnd, LadderSearch, LadderState
-from .learnable import error_near_reversals, learnable
+from .learnable import learnable
 from .no_named_law import free_form
 from .noise_floor import NoiseFloor
 from .plausibility import implausible_effects

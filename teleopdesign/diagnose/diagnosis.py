@@ -23,8 +23,9 @@ from ..realise.friction_cells import FrictionCell
 from .candidates import Candidate
 from .covariance import covariance_in_blocks
 from .criteria import CRITERIA
+from .error import NearReversals
 from .evidence import floors_left, is_adequate
-from .learnable import Learnable, NearReversals
+from .learnable import Learnable
 from .model_data import model_of_body
 from .no_named_law import FreeForm
 from .noise_floor import NoiseFloor

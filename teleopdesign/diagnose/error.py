@@ -14,15 +14,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.codec import At, InUnit, Size
 from ..base.frozen import ByValue
+from ..base.sentences import percent
 from ..blocks import Body
 from ..measurement.filtering import Array
 from ..measurement.motion import Motion
-from ..measurement.prepare import Stretch, measured_force
+from ..measurement.prepare import Prepared, Stretch, measured_force
+from ..measurement.reversals import mark_reversals
 from ..model import Model
 from ..realise.along_motion import Residual
 from ..realise.residual_at_command import (
@@ -33,6 +37,9 @@ from ..realise.residual_at_command import (
 )
 from .record_offsets import AlongRecords, follow_records
 from .residual import residuals
+
+#: s to either side of a reversal that count as near: there presliding, gaps and lags show
+NEAR = 0.1
 
 
 def error_of(stretches: Sequence[Stretch], values: Sequence[Array]) -> float:
@@ -57,6 +64,42 @@ def force_error(model: Model, stretches: Sequence[Stretch]) -> float:
     if not stretches:
         return float("nan")
     return error_of(stretches, [r for r, _ in residuals(model, stretches)])
+
+
+@dataclass(frozen=True)
+class NearReversals:
+    """Check error on the rows within `NEAR` of a reversal, relative to the force there.
+
+    share: part of these rows among all rows that count;  within: s
+    """
+
+    error: Annotated[Size, At("check_error")]
+    share: Size
+    within: Annotated[float, InUnit("s")] = NEAR
+
+    def __str__(self) -> str:
+        return (
+            f"within {self.within:g} s of a reversal: {percent(self.error, '.3g')} of the force "
+            f"there ({percent(self.share, '.2g')} of the rows)"
+        )
+
+
+def mark_near_reversals(motion: Motion) -> NDArray[np.bool_]:
+    """Whether each sample (n,) is within `NEAR` of a reversal."""
+    return mark_reversals(motion.direction, within=round(NEAR / motion.sample_time))
+
+
+def error_near_reversals(model: Model, prepared: Prepared) -> NearReversals | None:
+    """The error near reversals on check records, else on fit records; None: no reversals."""
+    stretches = prepared.of("check") or prepared.of("fit")
+    left = force = 0.0
+    rows = whole = 0
+    for s, (residual, _) in zip(stretches, residuals(model, stretches), strict=True):
+        near = mark_near_reversals(s.motion)[s.keep]
+        left += s.weight * float(np.sum(residual[near] ** 2))
+        force += s.weight * float(np.sum(measured_force(s)[near] ** 2))
+        rows, whole = rows + int(near.sum()), whole + len(near)
+    return NearReversals(float(np.sqrt(left / force)), rows / whole) if force > 0.0 else None
 
 
 @dataclass(frozen=True, eq=False)

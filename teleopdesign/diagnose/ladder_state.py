@@ -16,10 +16,11 @@ from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .candidates import Candidate, restrict_to_curve
 from .decision import is_supported, worth_pursuing
+from .error import NearReversals
 from .evidence import is_adequate, is_noise, limit_noise_floor
 from .fit import Fit
 from .free_functions import Belief
-from .learnable import Learnable, NearReversals
+from .learnable import Learnable
 from .no_named_law import FreeForm
 from .noise_floor import NoiseFloor, noise_floor
 from .outside_tone import Tone, best_tone

@@ -21,30 +21,30 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from ..base.codec import At, InUnit, Size
+from ..base.codec import At, Size
 from ..base.sentences import percent
 from ..base.units import unit_of
 from ..measurement.filtering import Array
 from ..measurement.friction_curve import FOLDS
 from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared, Stretch, measured_force
-from ..measurement.reversals import mark_reversals
+from ..measurement.reversals import look_back_to_reversal
 from ..model import Model
-from .error import error_of
+from .candidates import tells_place_from_time
+from .error import error_of, mark_near_reversals
 from .fit import estimate
 from .folds import folds, with_rows
 from .record_offsets import apply_record_offsets
 from .residual import residuals
 from .search_plan import EFFORTS
-from .tree_inputs import inputs_along
 
-#: s to either side of a reversal that count as near: there presliding, gaps and lags show
-NEAR = 0.1
 #: most rows that the trees learn from, spread evenly: more rows take time and add little
 MOST_ROWS = 20_000
 #: number of trees, learning rate, leaves, and fewest rows a leaf: as in scikit-learn, with leaves
 #: twice as large, because neighbouring rows are not independent. No number is tuned
 TREES, RATE, LEAVES, ROWS_OF_A_LEAF = 150, 0.08, 31, 40
+#: s without sure motion after which a motion counts as a new start, even in the same direction
+REST = 0.5
 #: a place is named if its part of the learned force exceeds its part of the rows by more than this;
 #: otherwise the learned force is spread over all places
 EXCESS_OF_A_PLACE = 0.2
@@ -80,40 +80,9 @@ class Learnable:
         )
 
 
-@dataclass(frozen=True)
-class NearReversals:
-    """Check error on the rows within `NEAR` of a reversal, relative to the force there.
-
-    share: part of these rows among all rows that count;  within: s
-    """
-
-    error: Annotated[Size, At("check_error")]
-    share: Size
-    within: Annotated[float, InUnit("s")] = NEAR
-
-    def __str__(self) -> str:
-        return (
-            f"within {self.within:g} s of a reversal: {percent(self.error, '.3g')} of the force "
-            f"there ({percent(self.share, '.2g')} of the rows)"
-        )
-
-
 def is_installed() -> bool:
     """Whether the optional package for trees (extra `learn`) is installed."""
     return find_spec("sklearn") is not None
-
-
-def error_near_reversals(model: Model, prepared: Prepared) -> NearReversals | None:
-    """The error near reversals on check records, else on fit records; None: no reversals."""
-    stretches = prepared.of("check") or prepared.of("fit")
-    left = force = 0.0
-    rows = whole = 0
-    for s, (residual, _) in zip(stretches, residuals(model, stretches), strict=True):
-        near = _mark_near(s.motion)[s.keep]
-        left += s.weight * float(np.sum(residual[near] ** 2))
-        force += s.weight * float(np.sum(measured_force(s)[near] ** 2))
-        rows, whole = rows + int(near.sum()), whole + len(near)
-    return NearReversals(float(np.sqrt(left / force)), rows / whole) if force > 0.0 else None
 
 
 def learnable(
@@ -151,7 +120,7 @@ def _measure_learnable(
     alone: list[Array] = []
     for held, there in _turns(model, prepared, stretches):
         motions = [motion for _, motion in apply_record_offsets(there, stretches)]
-        inputs = inputs_along(motions, beside)
+        inputs = _inputs_along(motions, beside)
         left = [r for r, _ in residuals(there, stretches)]
         of_rest = _predict_held_out(stretches, inputs, left, held, seed)
         of_force = _predict_held_out(stretches, inputs, measured, held, seed)
@@ -235,10 +204,6 @@ def _trees(inputs: Array, target: Array, seed: int) -> Callable[[Array], Array]:
     return lambda along: np.asarray(trees.predict(along[:, varies]))
 
 
-def _mark_near(motion: Motion) -> NDArray[np.bool_]:
-    return mark_reversals(motion.direction, within=round(NEAR / motion.sample_time))
-
-
 def _where(model: Model, stretches: Sequence[Stretch], gain: Sequence[Array]) -> str:
     """Where most of the gain lies, in words: range of speeds, and reversals; "": nowhere special.
 
@@ -249,7 +214,7 @@ def _where(model: Model, stretches: Sequence[Stretch], gain: Sequence[Array]) ->
     if not each.sum() > 0.0:
         return ""
     speed = np.concatenate([np.abs(s.motion.velocity[s.keep]) for s in stretches])
-    near = np.concatenate([_mark_near(s.motion)[s.keep] for s in stretches])
+    near = np.concatenate([mark_near_reversals(s.motion)[s.keep] for s in stretches])
 
     def excess(rows: NDArray[np.bool_]) -> float:
         """Share of the gain in these rows, less their share of all rows."""
@@ -268,3 +233,55 @@ def _where(model: Model, stretches: Sequence[Stretch], gain: Sequence[Array]) ->
     if excess(near) > EXCESS_OF_A_PLACE:
         words.append("around reversals")
     return " ".join(words)
+
+
+def _inputs_along(
+    motions: Sequence[Motion], beside: Sequence[Sequence[Motion]] = ()
+) -> list[Array]:
+    """Inputs of the trees (n, k), for each motion; further measured channels are inputs too.
+
+    beside: for each motion, those of an arm's other joints at the same times
+    """
+    if beside:  # the other motion of a joint is the motion of one of these
+        motions = [replace(m, further=_without_other_motion(m)) for m in motions]
+    inputs = [_columns_of_body(m, [o for o in motions if o.body == m.body]) for m in motions]
+    if not beside:
+        return inputs
+    with_place = [tells_place_from_time(of_one) for of_one in zip(*beside, strict=True)]
+    return [
+        np.column_stack([mine, *_columns_of_others(others, with_place)])
+        for mine, others in zip(inputs, beside, strict=True)
+    ]
+
+
+def _without_other_motion(motion: Motion) -> dict[str, Array]:
+    return {n: x for n, x in motion.further.items() if not n.startswith("other_")}
+
+
+def _columns_of_body(motion: Motion, motions: Sequence[Motion]) -> Array:
+    """Inputs from the motion of the body itself (n, k); NaN before the first certain motion.
+
+    motions: all motions of that body. Where none returns to a place, or none reverses, position or
+        time since a reversal would reveal the time, and with it the recorded command
+    """
+    since = look_back_to_reversal(
+        motion.direction, motion.position, sample_time=motion.sample_time, rest=REST
+    )
+    columns: list[Array] = [motion.velocity, motion.acceleration, motion.direction.astype(float)]
+    if tells_place_from_time(motions):
+        columns.append(motion.position)
+    if any({-1, 1} <= set(m.direction.tolist()) for m in motions):
+        columns += [np.where(since.known, x, np.nan) for x in (since.time, since.travel)]
+    return np.column_stack([*columns, *motion.further.values()])
+
+
+def _columns_of_others(motions: Sequence[Motion], with_place: Sequence[bool]) -> list[Array]:
+    """Inputs from the motions of the other joints at the same times, columns (n,).
+
+    with_place: for each joint, whether its position does not reveal the time
+    """
+    columns: list[Array] = []
+    for motion, has_place in zip(motions, with_place, strict=True):
+        columns += [motion.velocity, motion.acceleration, motion.direction.astype(float)]
+        columns += [motion.position] * has_place
+    return columns

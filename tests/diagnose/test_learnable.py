@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 
 from teleopdesign.diagnose import learnable as module
+from teleopdesign.diagnose.error import error_near_reversals
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.learnable import (
-    error_near_reversals,
-    learnable,
-)
+from teleopdesign.diagnose.learnable import learnable
 from teleopdesign.measurement.prepare import prepare
 
 
