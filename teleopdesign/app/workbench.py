@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from ..base.errors import ModelError, did_you_mean
 from ..diagnose.climb import make_next_move
-from ..diagnose.conclusion import conclude
+from ..diagnose.conclusion import end_of
 from ..diagnose.diagnosis import Diagnosis
 from ..diagnose.error import force_error
 from ..diagnose.ladder_state import LadderSearch, LadderState, begin, look, search_for
@@ -116,7 +116,7 @@ class Workbench:
         """The conclusion from the present rungs: verdict, probabilities, open questions."""
         bench = self.rank(progress)
         search = replace(self.search, progress=progress) if progress else self.search
-        return diagnosis_of(conclude(search, bench.state))
+        return diagnosis_of(end_of(search, bench.state))
 
     def errors(self, values: Mapping[str, float]) -> tuple[float, float]:
         """Fit and check error (relative) of the model with other parameter values (SI)."""

@@ -1,55 +1,38 @@
-"""The end of a diagnosis: correction of reading errors, errors on whole records, verdict.
+"""The end of a ladder: correction of reading errors, errors on whole records, doubtful effects.
 
 The final model holds exactly the effects that its ladder shows. Effects that are absent by the
-final errors are set aside before. Effects that stay but are not probable enough are called
-unexplained.
+final errors are set aside before.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
 from ..check import why_silent
-from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared
 from ..model import Model
-from .candidates import Candidate
-from .decision import select_other_helpers
-from .error import error_near_reversals, force_error, refer_to_command
+from .error import force_error, refer_to_command
 from .estimates import correct_fit
-from .evidence import is_adequate, records_differ
 from .fit import Fit, estimate
 from .free_functions import Belief, belief
 from .identifiability import doubt, explains_most
 from .ladder_state import LadderEnd, LadderSearch, LadderState
-from .learnable import learnable
-from .no_named_law import free_form
-from .noise_floor import NoiseFloor
 from .plausibility import implausible_effects
-from .probability import probable
-from .repeats import repeatability
 from .rung import Rung, estimate_without, first_rise, reorder_and_refit, undo, without_rise
 from .search_plan import EFFORTS
-from .statements import SetAside, VerdictName
-from .undetermined import find_undetermined
+from .statements import SetAside
 
 
-def conclude(
-    search: LadderSearch,
-    state: LadderState,
-    rungs: tuple[Rung, ...] | None = None,
-    *,
-    beside: Sequence[Sequence[Motion]] = (),
+def end_of(
+    search: LadderSearch, state: LadderState, rungs: tuple[Rung, ...] | None = None
 ) -> LadderEnd:
-    """What a ladder ends with.
+    """The end of a ladder: its rungs with their errors on the whole records.
 
     rungs: of the state, with the reading error removed from the last fit; None: it is removed here
-    beside: of each stretch, the motions of an arm's other joints, from which trees learn too
     """
-    prepared, floor = search.prepared, state.floor
-    estimated = state.fit
+    prepared, estimated = search.prepared, state.fit
     rungs = with_last_corrected(search, state) if rungs is None else rungs
     if prepared is not search.whole:
         search.progress("errors on the whole records")
@@ -57,46 +40,18 @@ def conclude(
         steady = without_rise(rungs)
         if len(steady) < len(rungs):
             rungs, estimated = steady, steady[-1].fit
-    last, whole = rungs[-1].fit, search.whole
-    search.progress("what could be learned")
-    timed = not whole.is_curve
-    trees = learnable(last.model, whole, beside=beside, seed=search.seed) if timed else None
-    repeats = repeatability(last.model, whole, beside=beside) if timed else None
-    end = LadderEnd(
+    accepted = {rung.added.key for rung in rungs if rung.added is not None}
+    return LadderEnd(
         search=search,
-        verdict=verdict(rungs, floor),
-        beliefs=_beliefs(rungs, prepared),
         rungs=rungs,
         last=state.ranking,
         estimated=estimated,
-        floor=floor,
-        learnable=trees,
-        near_reversals=error_near_reversals(last.model, whole) if timed else None,
-        repeats=repeats,
-        undetermined=find_undetermined(rungs, whole, estimated_on=prepared),
-        set_aside=_select_left_out(state.set_aside, rungs),
-        on_all_records=check_error_on_all(last, prepared) if records_differ(last) else None,
-        silence=why_silent(whole, rungs[0].fit.model),
+        floor=state.floor,
+        # without those that returned later, such as beside another effect
+        set_aside=tuple(one for one in state.set_aside if one.candidate.key not in accepted),
+        beliefs=_beliefs(rungs, prepared),
+        silence=why_silent(search.whole, rungs[0].fit.model),
     )
-    if end.silence:
-        return replace(end, verdict="undecided")
-    if end.more_is_missing:
-        search.progress("a force without a named law")
-        end = replace(end, free_form=free_form(rungs[-1].fit, floor, prepared))
-    named = probable(end)
-    end = replace(end, rungs=tuple(_leave_unnamed(r, named) for r in rungs))
-    if end.verdict == "effects_missing" and not named:
-        return replace(end, verdict="undecided")
-    return replace(end, named=named)
-
-
-def verdict(rungs: Sequence[Rung], floor: NoiseFloor) -> VerdictName:
-    """The verdict by the rungs alone, whatever the probabilities of their effects."""
-    added = [r for r in rungs if r.added is not None]
-    if not added:
-        adequate = is_adequate(rungs[-1].fit, floor)
-        return "model_adequate" if adequate else "undecided"
-    return "undecided" if all(r.alternatives for r in added) else "effects_missing"
 
 
 def _beliefs(rungs: Sequence[Rung], prepared: Prepared) -> dict[tuple[str, str], Belief]:
@@ -123,28 +78,6 @@ def _without_effect_of(rung: Rung, rungs: Sequence[Rung]) -> Model | None:
         if without is not None:
             return without
     return None
-
-
-def _select_left_out(set_aside: Sequence[SetAside], rungs: Sequence[Rung]) -> tuple[SetAside, ...]:
-    """The effects that were set aside and did not return later, such as beside another effect."""
-    accepted = {rung.added.key for rung in rungs if rung.added is not None}
-    return tuple(one for one in set_aside if one.candidate.key not in accepted)
-
-
-def _leave_unnamed(rung: Rung, named: Collection[Candidate]) -> Rung:
-    """A rung that is not named, with all other candidates that explain a good part of its gain.
-
-    A rung with alternatives lists already the effects that it cannot be distinguished from.
-    """
-    if rung.added is None or rung.added in named or rung.alternatives:
-        return rung
-    if rung.could_be is not None:
-        return rung
-    ranking = rung.ranking
-    best = next((r for r in ranking.ranked if r.candidate == rung.added), None) if ranking else None
-    if ranking is None or best is None:
-        return rung
-    return replace(rung, could_be=select_other_helpers(best, ranking))
 
 
 def find_doubtful_rung(

@@ -16,11 +16,10 @@ from ..effects import SIGNALS, Effect
 from ..measurement.experiment import Experiment
 from ..model import Model
 from .climb import climb
-from .conclusion import conclude
+from .conclusion import end_of
 from .cores import one_thread_of_algebra
 from .diagnosis import Diagnosis
-from .fit import Fit
-from .ladder_state import LadderEnd, LadderSearch, begin, restrict_candidates, search_for
+from .ladder_state import LadderSearch, begin, restrict_candidates, search_for
 from .narrower_band import choose_band, narrower_to_search
 from .other_motion import undetermined_coupling, with_other_motions
 from .part_search import (
@@ -35,6 +34,7 @@ from .part_search import (
 from .parts import PreparedParts, isolate_joint, prepare_parts
 from .parts_fit import PartsFit, PartsRung, as_bodies, estimate_parts
 from .parts_result import diagnosis_of_parts
+from .result import diagnosis_of
 from .search_plan import PLAN, SearchPlan
 
 
@@ -213,16 +213,20 @@ def _climb_part(
 
 def conclude_parts(
     prepared: PreparedParts, joints: dict[str, PartSearch], rungs: tuple[PartsRung, ...]
-) -> tuple[PreparedParts, tuple[PartsRung, ...], dict[str, LadderEnd]]:
-    """The end of each part's ladder, with the final links and the motions that couplings follow.
+) -> tuple[PreparedParts, tuple[PartsRung, ...], dict[str, Diagnosis]]:
+    """What each part states, with the final links and the motions that couplings follow.
 
     joints: the parts;  rungs: of all parts
-    returns: the records, the rungs, and the end of each part
+    returns: the records, the rungs, and the diagnosis of each part
     """
     prepared = with_other_motions(prepared, others_of(joints))
     last = with_shifts_of(joints, rungs[-1].fit, prepared)
     rungs = (*rungs[:-1], replace(rungs[-1], fit=last))
-    ends = {j: _conclude_part(joints[j], last.fits[j], prepared) for j in prepared.parts}
+    ends = {}
+    for j, fit in last.fits.items():
+        ladder = (*joints[j].rungs[:-1], replace(joints[j].rungs[-1], fit=fit))
+        end = end_of(joints[j].search, joints[j].state, ladder)
+        ends[j] = diagnosis_of(end, beside=prepared.beside(j))
     for rung in rungs:
         if rung.added is None or rung.follows is None:
             continue
@@ -232,9 +236,3 @@ def conclude_parts(
             more = (*ends[at].undetermined, coupling)
             ends[at] = replace(ends[at], undetermined=more)
     return prepared, rungs, ends
-
-
-def _conclude_part(part: PartSearch, fit: Fit, prepared: PreparedParts) -> LadderEnd:
-    """The end of one part's ladder, its last rung with the final links."""
-    rungs = (*part.rungs[:-1], replace(part.rungs[-1], fit=fit))
-    return conclude(part.search, part.state, rungs, beside=prepared.beside(part.name))

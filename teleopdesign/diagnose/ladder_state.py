@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,21 +16,17 @@ from ..measurement.prepare import Prepared, prepare
 from ..model import Model
 from .candidates import Candidate, restrict_to_curve
 from .decision import is_supported, worth_pursuing
-from .error import NearReversals
 from .evidence import is_adequate, is_noise, limit_noise_floor
 from .fit import Fit
 from .free_functions import Belief
-from .learnable import Learnable
-from .no_named_law import FreeForm
 from .noise_floor import NoiseFloor, noise_floor
 from .outside_tone import Tone, best_tone
 from .rank import rank_candidates
 from .ranking import Ranked, Ranking
-from .repeats import Repeatability
 from .rung import Rung
 from .search_plan import PLAN, SearchPlan, cut_to_windows
 from .stated_fit import estimate_values, with_late_hand, with_late_starts, with_paying_shift
-from .statements import SetAside, Undetermined, VerdictName
+from .statements import SetAside
 
 
 @dataclass(frozen=True)
@@ -160,29 +156,18 @@ class LadderEnd(ByValue):
 
     last: ranking after the last rung, none of which was accepted
     estimated: the last rung's fit, parameters not yet corrected for errors of the readings
+    set_aside, silence: as in `Diagnosis`
     beliefs: accepted effect (name, place) -> what it explains beside free functions
-    named: accepted effects that are probable enough to be called missing
-    free_form: a curve without a named law that leaves less than the final model
-    silence: why the records tell no effect; "": they may tell one
-    The other fields are those of `Diagnosis`.
     """
 
     search: LadderSearch
-    verdict: VerdictName
     rungs: tuple[Rung, ...]
     last: Ranking
     estimated: Fit
     floor: NoiseFloor
-    learnable: Learnable | None = None
-    near_reversals: NearReversals | None = None
-    repeats: Repeatability | None = None
-    undetermined: tuple[Undetermined, ...] = ()
-    set_aside: tuple[SetAside, ...] = ()
-    on_all_records: float | None = None
-    named: tuple[Candidate, ...] = ()
-    beliefs: Mapping[tuple[str, str], Belief] = field(default_factory=dict)
-    silence: str = ""
-    free_form: FreeForm | None = None
+    set_aside: tuple[SetAside, ...]
+    beliefs: Mapping[tuple[str, str], Belief]
+    silence: str
 
     @property
     def before(self) -> Fit:

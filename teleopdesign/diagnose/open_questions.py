@@ -10,17 +10,17 @@ from .ladder_state import LadderEnd
 from .ranking import Ranked
 from .rung import Rung
 from .search_plan import PLAN
-from .statements import Nearest, NotAccepted, OpenQuestion, OpenRival, Why, finite
+from .statements import Nearest, NotAccepted, OpenQuestion, OpenRival, VerdictName, Why, finite
 
 
-def open_questions(end: LadderEnd) -> tuple[OpenQuestion, ...]:
+def open_questions(end: LadderEnd, verdict: VerdictName) -> tuple[OpenQuestion, ...]:
     """Open questions for the next experiment, from the fits of the search alone.
 
     There is one question per accepted effect that others could replace. There is one more, on the
     effect that would be added next, where the verdict is undecided or more than noise is left.
     """
     questions = [_question_of_rung(end, rung) for rung in end.rungs if rung.added is not None]
-    if end.verdict == "undecided" or end.more_is_missing:
+    if verdict == "undecided" or end.more_is_missing:
         questions.append(OpenQuestion(None, _rivals(possible_next(end))))
     return tuple(q for q in questions if q.others)
 

@@ -9,7 +9,6 @@ from ..measurement.reading import reading_data
 from ..model import Model
 from .answer import with_recording
 from .diagnosis import Diagnosis
-from .ladder_state import LadderEnd
 from .learnable import Learnable
 from .link_knowledge import link_errors
 from .noise_floor import NoiseFloor
@@ -17,22 +16,21 @@ from .other_motion import with_other_motions
 from .parts import PreparedParts, mean_inertias, with_bodies_of
 from .parts_fit import PartsRung, error_over_joints, with_body_inertia
 from .recording import DiagnosedRecording, fingerprint_of
-from .result import diagnosis_of
 from .statements import EstimatedValue, JointErrors, LadderRow, VerdictName, finite
 
 
 def diagnosis_of_parts(
     prepared: PreparedParts,
     rungs: tuple[PartsRung, ...],
-    ends: Mapping[str, LadderEnd],
+    joints: Mapping[str, Diagnosis],
     stated: Model,
 ) -> Diagnosis:
     """What the search over all parts states.
 
-    rungs: of the whole arm;  ends: part -> the end of its ladder
+    rungs: of the whole arm;  joints: part -> its own diagnosis
     stated: the user's model
     """
-    experiment, joints = prepared.experiment, {j: diagnosis_of(end) for j, end in ends.items()}
+    experiment = prepared.experiment
     if not prepared.joints:
         (whole,) = joints.values()
         return whole

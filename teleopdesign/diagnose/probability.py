@@ -11,19 +11,21 @@ There the probability follows from what the effect explains beside free function
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .candidates import Candidate
 from .criteria import CRITERIA
-from .decision import helps_but_is_barred
+from .decision import helps_but_is_barred, select_other_helpers
 from .evidence import chance, floors_left, is_adequate, removed_share
 from .free_functions import Belief
 from .ladder_state import LadderEnd
+from .noise_floor import NoiseFloor
 from .ranking import Ranked, Ranking
 from .rung import Rung
+from .statements import VerdictName
 
 
 @dataclass(frozen=True)
@@ -188,3 +190,28 @@ def list_rarer(added: Candidate, ranking: Ranking) -> list[Candidate]:
     """Candidates at the same place whose files call the added effect the commoner one."""
     others = (r.candidate for r in ranking.ranked if r.candidate.at == added.at)
     return [c for c in others if c.effect.commoner == added.effect.name]
+
+
+def verdict(rungs: Sequence[Rung], floor: NoiseFloor) -> VerdictName:
+    """The verdict by the rungs alone, whatever the probabilities of their effects."""
+    added = [r for r in rungs if r.added is not None]
+    if not added:
+        adequate = is_adequate(rungs[-1].fit, floor)
+        return "model_adequate" if adequate else "undecided"
+    return "undecided" if all(r.alternatives for r in added) else "effects_missing"
+
+
+def leave_unnamed(rung: Rung, named: Collection[Candidate]) -> Rung:
+    """A rung that is not named, with all other candidates that explain a good part of its gain.
+
+    A rung with alternatives lists already the effects that it cannot be distinguished from.
+    """
+    if rung.added is None or rung.added in named or rung.alternatives:
+        return rung
+    if rung.could_be is not None:
+        return rung
+    ranking = rung.ranking
+    best = next((r for r in ranking.ranked if r.candidate == rung.added), None) if ranking else None
+    if ranking is None or best is None:
+        return rung
+    return replace(rung, could_be=select_other_helpers(best, ranking))

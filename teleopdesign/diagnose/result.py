@@ -2,29 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from ..check.log_reading import short_segment_lines
 from ..effects import CONTACT_ROLES, EFFECTS
 from ..measurement.bandwidth import slower_sensors
 from ..measurement.experiment import Experiment
+from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared
 from ..measurement.reading import reading_data
 from ..model import Model
 from .answer import with_recording
 from .candidates import Candidate, is_static, list_look_alikes
+from .conclusion import check_error_on_all
 from .diagnosis import Diagnosis
-from .evidence import whole_score
+from .error import error_near_reversals
+from .evidence import records_differ, whole_score
 from .fit import Fit
 from .friction_cells import all_friction_cells
 from .ladder_state import LadderEnd
+from .learnable import learnable
+from .no_named_law import free_form
 from .open_questions import nearest, not_accepted, open_questions
 from .parts import PreparedParts
-from .probability import CandidateEvidence, evidence_of
+from .probability import CandidateEvidence, evidence_of, leave_unnamed, probable, verdict
 from .ranking import Ranked
 from .record_offsets import offsets_of
 from .record_shift import shifts_of
 from .recording import DiagnosedRecording, fingerprint_of
+from .repeats import repeatability
 from .rung import Rung
 from .statements import (
     Alternative,
@@ -32,44 +41,64 @@ from .statements import (
     LadderRow,
     StepEvidence,
     StepResult,
+    Undetermined,
     estimate_of,
     finite,
 )
+from .undetermined import find_undetermined
 
 
-def diagnosis_of(end: LadderEnd) -> Diagnosis:
-    """What a search states at its end."""
-    search, whole, model = end.search, end.search.whole, end.after.model
-    experiment, rungs = search.experiment, tuple(_row(end, r) for r in end.rungs)
+def diagnosis_of(end: LadderEnd, *, beside: Sequence[Sequence[Motion]] = ()) -> Diagnosis:
+    """What a search states at its end.
+
+    Effects that stay but are not probable enough are called unexplained.
+    beside: of each stretch, the motions of an arm's other joints, from which trees learn too
+    """
+    search, whole, last = end.search, end.search.whole, end.after
+    prepared, model, experiment = search.prepared, last.model, search.experiment
+    timed = not whole.is_curve
+    search.progress("what could be learned")
+    trees = learnable(model, whole, beside=beside, seed=search.seed) if timed else None
+    curve, named = None, tuple[Candidate, ...]()
+    if not end.silence:
+        if end.more_is_missing:
+            search.progress("a force without a named law")
+            curve = free_form(last, end.floor, prepared)
+        named = probable(end)
+        end = replace(end, rungs=tuple(leave_unnamed(r, named) for r in end.rungs))
+    stated = verdict(end.rungs, end.floor)
+    if end.silence or (stated == "effects_missing" and not named):
+        stated, named = "undecided", ()
     evidence = evidence_of(end)
+    undetermined = find_undetermined(end.rungs, whole, estimated_on=prepared)
     diagnosis = Diagnosis(
-        verdict=end.verdict,
-        rungs=rungs,
+        verdict=stated,
+        rungs=tuple(_row(r, named) for r in end.rungs),
         floor=end.floor,
         candidates=_candidates(end, evidence),
-        indistinguishable=_indistinguishable(end),
+        indistinguishable=_indistinguishable(end, undetermined),
         check="records" if experiment.check_records else "blocks of fit",
         held_out=not whole.of("check"),
         kind=experiment.kind,
         bandwidth=finite(whole.bandwidth),
         bandwidth_source=_bandwidth_source(experiment, whole.bandwidth),
-        undetermined=end.undetermined,
+        undetermined=undetermined,
         set_aside=end.set_aside,
         offsets=offsets_of(model, whole.stretches),
         record_shift={shift.at: shift for shift in shifts_of(model, whole.stretches)},
-        learnable=end.learnable,
-        near_reversals=end.near_reversals,
-        repeats=end.repeats,
-        on_all_records=end.on_all_records,
-        at_bound=end.after.at_bound,
+        learnable=trees,
+        near_reversals=error_near_reversals(model, whole) if timed else None,
+        repeats=repeatability(model, whole, beside=beside) if timed else None,
+        on_all_records=check_error_on_all(last, prepared) if records_differ(last) else None,
+        at_bound=last.at_bound,
         evidence=tuple(_evidence(one) for one in evidence if one.share > 0),
         fingerprint=fingerprint_of(experiment),
         reading=tuple(reading_data(experiment.reading)),
         estimated=end.estimated.model,
-        open=open_questions(end),
+        open=open_questions(end, stated),
         not_accepted=not_accepted(end),
         nearest=nearest(end),
-        no_named_law=end.free_form,
+        no_named_law=curve,
         silence=end.silence,
         remarks=(*_without_law(model), *_of_segments(experiment)),
         left_out=(*search.plan.omissions(), *_needs_time(experiment)),
@@ -127,7 +156,7 @@ def _bandwidth_source(experiment: Experiment, used: float) -> str:
     return "stated"
 
 
-def _row(end: LadderEnd, rung: Rung) -> LadderRow:
+def _row(rung: Rung, named: Collection[Candidate]) -> LadderRow:
     fit, instead = rung.fit, rung.instead_of
     return LadderRow(
         added=rung.added,
@@ -139,7 +168,7 @@ def _row(end: LadderEnd, rung: Rung) -> LadderRow:
         blind=finite(fit.at_command.blind),
         could_be=rung.could_be,
         alternatives=tuple(_alternative(rung, other) for other in rung.alternatives),
-        named=rung.added in end.named,
+        named=rung.added in named,
     )
 
 
@@ -166,14 +195,16 @@ def _likeness(base: Fit, one: Fit, other: Fit) -> float:
     return float(a @ b) / size if size > 0 else float("nan")
 
 
-def _indistinguishable(end: LadderEnd) -> tuple[tuple[Candidate, ...], ...]:
+def _indistinguishable(
+    end: LadderEnd, undetermined: Sequence[Undetermined]
+) -> tuple[tuple[Candidate, ...], ...]:
     """Each accepted effect with those as good, and those that the travel hardly separates from it.
 
     One of the latter is the commoner by its file (`Effect.commoner`), so that it is named
     nonetheless. The links of an arm include gravity, so there are none at its joints.
     """
     groups = {r.added: list(r.alternatives) for r in end.rungs if r.added}
-    for one in () if end.search.whole.is_linked else end.undetermined:
+    for one in () if end.search.whole.is_linked else undetermined:
         more = list_look_alikes(one.candidate, end.after.model)
         groups[one.candidate] += [c for c in more if c not in groups[one.candidate]]
     return tuple((one, *others) for one, others in groups.items() if others)

@@ -8,9 +8,9 @@ from types import SimpleNamespace
 from diagnose.stand_ins import fit, floor, ranked, rung
 
 from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.conclusion import verdict
 from teleopdesign.diagnose.decision import is_better, refusal
 from teleopdesign.diagnose.evidence import is_adequate, is_noise, limit_noise_floor
+from teleopdesign.diagnose.probability import verdict
 from teleopdesign.effects import EFFECTS
 
 
