@@ -23,13 +23,13 @@ def end(experiment):
     """What the search on `stribeck_case` ends with, among effects that are quick to fit."""
     from teleopdesign import EFFECTS, Model
     from teleopdesign.diagnose.climb import climb
-    from teleopdesign.diagnose.conclusion import conclude
+    from teleopdesign.diagnose.conclusion import end_of
     from teleopdesign.diagnose.ladder_state import begin, search_for
 
     quick = ("coulomb", "viscous", "stribeck", "coulomb_asymmetry", "bias", "spring")
     known = {name: EFFECTS[name] for name in quick}
     search = search_for(experiment, Model.from_experiment(experiment, known))
-    return conclude(search, *climb(search, begin(search)))
+    return end_of(search, *climb(search, begin(search)))
 
 
 @pytest.fixture(scope="session")
