@@ -9,11 +9,11 @@ what belongs to one record.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..base.units import unit_of
 from ..blocks import Body
@@ -32,9 +32,6 @@ SLOPE = 1e-3
 #: least friction level of a record, over the model's: friction does not vanish from a machine
 LEAST = 0.05
 _LEVEL = "coulomb.level"
-
-#: (body, motion, its place among the motions) -> low-passed residual on the rows that count
-ResidualFunction = Callable[[Body, Motion, int], Array]
 
 
 @dataclass(frozen=True)
@@ -70,31 +67,32 @@ class RecordOffsets:
         return [(part[0], part[1:]) for part in np.split(rows, ends, axis=1)]
 
 
-def find_offsets(
-    body: Body, motions: Sequence[Motion], names: Collection[str], residual: ResidualFunction
+def _find_offsets(
+    body: Body, motions: Sequence[Motion], rows: Sequence[NDArray[np.intp]], steps: dict[str, float]
 ) -> RecordOffsets:
     """Estimate the offsets of one record.
 
-    motions: of the body, all of one record
-    names: some of "position_zero", "bias", "friction_level"
-    residual: low-passed residual of a body along a motion; see `ResidualFunction`
+    motions: of the body, all of one record;  rows: that count, of each motion
+    steps: as of `_steps`
     """
-    steps = _steps(body, motions, names)
+
+    def residuals(values: dict[str, float]) -> tuple[Body, tuple[Motion, ...], list[Array]]:
+        there, moved = _set_offsets(body, motions, values)
+        left = [m.lowpassed(residual_along(there, m).residual.value) for m in moved]
+        return there, moved, [np.asarray(r[keep]) for r, keep in zip(left, rows, strict=True)]
+
     values = dict.fromkeys(steps, 0.0)
-    slopes: list[Array] = []
     for turn in range(TURNS + 1):
-        corrected_body, corrected_motions = _set_offsets(body, motions, values)
-        here = [residual(corrected_body, m, k) for k, m in enumerate(corrected_motions)]
+        corrected_body, corrected_motions, here = residuals(values)
         slopes = [np.zeros((len(steps), len(r))) for r in here]
         for i, (name, step) in enumerate(steps.items()):
-            moved_body, moved = _set_offsets(body, motions, {**values, name: values[name] + step})
-            for k, motion in enumerate(moved):
-                slopes[k][i] = (residual(moved_body, motion, k) - here[k]) / step
-        if turn == TURNS or not steps:
-            break
+            _, _, there = residuals({**values, name: values[name] + step})
+            for slope, moved, left in zip(slopes, there, here, strict=True):
+                slope[i] = (moved - left) / step
         whole, left = np.concatenate(slopes, axis=1), np.concatenate(here)
-        if not (np.isfinite(whole).all() and np.isfinite(left).all()):
-            break  # a motion grew beyond all numbers: no offset can be estimated from it
+        # a motion grew beyond all numbers: no offset can be estimated from it
+        if turn == TURNS or not (np.isfinite(whole).all() and np.isfinite(left).all()):
+            break
         change = np.linalg.lstsq(whole.T, left, rcond=1e-10)[0]
         values = {n: v - float(c) for (n, v), c in zip(values.items(), change, strict=True)}
         if "friction_level" in values:
@@ -144,15 +142,10 @@ def offset_groups(
     offsets = []
     for (_, place), group in groups.items():
         rows = [stretches[i].keep for i in group]
-
-        def residual(body: Body, motion: Motion, k: int, rows: Any = rows) -> Array:
-            left = motion.lowpassed(residual_along(body, motion).residual.value)
-            return np.asarray(left[rows[k]])
-
         motions = [as_logged(model, stretches[i].motion) for i in group]
-        names, body = stretches[group[0]].offset_names, model.body(place)
-        if _steps(body, motions, names):
-            offsets.append((group, find_offsets(body, motions, names, residual)))
+        body = model.body(place)
+        if steps := _steps(body, motions, stretches[group[0]].offset_names):
+            offsets.append((group, _find_offsets(body, motions, rows, steps)))
     return offsets
 
 
@@ -219,19 +212,20 @@ class AlongRecords:
 def follow_records(model: Model, stretches: Sequence[Stretch]) -> AlongRecords:
     """The model along each stretch, with the offsets of its record."""
     groups = offset_groups(model, stretches)
-    located = apply_offset_groups(model, stretches, groups)
+    located = apply_record_offsets(model, stretches, groups)
     return AlongRecords(groups, [(b, m, residual_along(b, m)) for b, m in located])
 
 
-def apply_record_offsets(model: Model, stretches: Sequence[Stretch]) -> list[tuple[Body, Motion]]:
-    """Body and motion of each stretch, with the offsets of its record."""
-    return apply_offset_groups(model, stretches, offset_groups(model, stretches))
-
-
-def apply_offset_groups(
-    model: Model, stretches: Sequence[Stretch], groups: Sequence[tuple[list[int], RecordOffsets]]
+def apply_record_offsets(
+    model: Model,
+    stretches: Sequence[Stretch],
+    groups: Sequence[tuple[list[int], RecordOffsets]] | None = None,
 ) -> list[tuple[Body, Motion]]:
-    """Body and motion of each stretch, with the offsets of these groups (of `offset_groups`)."""
+    """Body and motion of each stretch, with the offsets of its record.
+
+    groups: of `offset_groups`; None: they are computed
+    """
+    groups = offset_groups(model, stretches) if groups is None else groups
     located = [(model.body(s.motion.body), as_logged(model, s.motion)) for s in stretches]
     for group, offsets in groups:
         for i, motion in zip(group, offsets.motions, strict=True):

@@ -21,7 +21,7 @@ from ..model import Model
 from ..realise.along_motion import Residual, residual_along
 from ..realise.tangent_columns import Probe
 from ..realise.traced import Traced, constant, filter_traced, in_rows
-from .record_offsets import AlongRecords, RecordOffsets, apply_offset_groups, offset_groups
+from .record_offsets import AlongRecords, RecordOffsets, apply_record_offsets, offset_groups
 
 
 def residuals(
@@ -144,7 +144,7 @@ def _residual_along(
         mine = [i for i, (place, _) in enumerate(located) if place == motion.body]
         return residual_along(body, motion, [located[i][1] for i in mine]), mine
 
-    each = (along(*one) for one in apply_offset_groups(model, stretches, groups))
+    each = (along(*one) for one in apply_record_offsets(model, stretches, groups))
     if forces is None:
         return _low_passed(stretches, groups, each, taking, len(wrt))
     beside = (_with_forces(*one, more, len(wrt)) for one, more in zip(each, forces, strict=True))

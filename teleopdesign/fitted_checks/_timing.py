@@ -35,7 +35,8 @@ STRAIGHT = 0.25
 #: constant lag leaves as much in each quarter; nine of twelve simulated drifts by 0.001 of the time
 #: are found. 52 bodies without a drift have none without this limit either
 LEFT = 0.8
-#: part of the force that is left unexplained, above which a shift is not the only mistake
+#: part of the force that is left unexplained, above which a shift is not the only mistake, and two
+#: columns may be swapped
 UNEXPLAINED = 0.25
 #: part of the force that is left unexplained, up to which a shift that is larger than that of a
 #: usual logger is believed

@@ -20,7 +20,7 @@ from ..measurement.experiment import Experiment
 from ..measurement.first_guess import is_first_guess
 from ..measurement.prepare import prepare
 from ._force_balance import ForceBalance, force_balances
-from ._timing import check_lateness
+from ._timing import UNEXPLAINED, check_lateness
 from ._units import FAR, NEAR, check_strengths
 
 #: a gain between 1/CALIBRATED and CALIBRATED is the calibration of a force sensor and needs no
@@ -29,9 +29,8 @@ CALIBRATED, UNSURE = 1.25, 0.05
 #: part of the force that is left unexplained, above which there is no finding on signs, units,
 #: shifts
 NOTHING = 0.9
-#: columns of two bodies may be swapped if at least UNEXPLAINED of the force is left unexplained,
-#: and swapping them leaves less than SWAPPED of this
-UNEXPLAINED, SWAPPED = 0.25, 0.5
+#: part of an unexplained force that columns of two bodies leave less of where they are swapped
+SWAPPED = 0.5
 
 
 def find_disagreements(recording: CheckedRecording) -> Iterator[Finding]:

@@ -31,9 +31,6 @@ SMOOTHNESS = np.logspace(-4, 3, 8)
 #: weight of a penalty on the size of f, relative to the data: a part that other values of the
 #: model's parameters explain as well is left to the parameters, and f is lowered by a thousandth
 SMALLNESS = 1e-3
-#: part of a gain that must also appear with the variable as the model predicts it: at steady speed
-#: the command is the force of the model plus the residual, so the command follows any residual
-NOT_ITSELF = 0.5
 #: probability that a dependence is reported for a right model, over all dependences that are tested
 ALARM = 0.01
 
@@ -172,7 +169,11 @@ def _with_smoothness(rows: Rows, beside: Columns, columns: Columns, rough: Array
 
 
 def is_not_itself(rows: Rows, beside: Columns, dependence: Dependence) -> bool:
-    """Whether a dependence on a signal that contains the residual is more than self-correlation."""
+    """Whether a dependence on a signal that contains the residual is more than self-correlation.
+
+    At steady speed the command is the force of the model plus the residual, so it follows any
+    residual: most of the gain must also appear with the variable as the model predicts it.
+    """
     variable = dependence.shape.variable
     if variable is None or not variable.expected:
         return True
@@ -180,7 +181,8 @@ def is_not_itself(rows: Rows, beside: Columns, dependence: Dependence) -> bool:
     shape = replace(dependence.shape, variable=expected)
     columns = shape_columns(rows, shape, rows.residual)
     return columns is not None and (
-        fit_dependence(rows, beside, shape, columns).explained > NOT_ITSELF * dependence.explained
+        fit_dependence(rows, beside, shape, columns).explained
+        > CRITERIA.mostly * dependence.explained
     )
 
 

@@ -37,8 +37,6 @@ FACTORS = {"friction": " sgn v", "damping": " v", "mass": " a", "lost command": 
 HOLDS = 0.95
 #: most terms
 MOST = 2
-#: least size of each coefficient, in its standard errors
-SURE = 3.0
 
 
 @dataclass(frozen=True)
@@ -189,7 +187,7 @@ def _checked_formula(
     errors = standard_errors(together.values[learnt], left, rows.blocks[learnt])[-k:]
     formula = Formula(dependence.shape, terms, value[-k:], errors, share)
     is_significant = all(
-        np.hypot.reduce(c) > SURE * np.hypot.reduce(e)
+        np.hypot.reduce(c) > CRITERIA.indistinguishable * np.hypot.reduce(e)
         for (_, c), e in zip(formula.split(), formula.split_errors(), strict=True)
     )
     # a dependence that is a sinusoid is its formula
