@@ -1,15 +1,13 @@
-"""Residuals of several bodies, computed separately; a body that hardly changed is not recomputed.
+"""Residuals of some bodies of several, with all weights.
 
 Along measured motions the bodies of a model do not interact: the residual of a body depends on its
-parameters alone. A search at one body needs no tangents of the other bodies, and in a fit the
-parameters of the other bodies soon stop changing.
+parameters alone. A search at one body needs neither residual nor tangents of the others.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +17,6 @@ from ..measurement.prepare import Stretch
 from ..model import Model
 from ..realise.tangent_columns import Probe
 from .residual import relative_residuals
-from .search_plan import EFFORTS
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +48,11 @@ def separate_bodies(stretches: Sequence[Stretch]) -> tuple[Apart, ...]:
     return tuple(_select_stretches(stretches, [name]) for name in names)
 
 
+def all_bodies(stretches: Sequence[Stretch]) -> Apart:
+    """All stretches together."""
+    return _select_stretches(stretches, [s.motion.body for s in stretches])
+
+
 def select_bodies(stretches: Sequence[Stretch], bodies: Collection[str]) -> Apart:
     """The stretches of these bodies, and of the bodies that are joined to them."""
     joined = (part.bodies for part in separate_bodies(stretches) if part.bodies & set(bodies))
@@ -61,93 +63,3 @@ def _select_stretches(stretches: Sequence[Stretch], bodies: Collection[str]) -> 
     mine = np.concatenate([np.full(len(s.keep), s.motion.body in bodies) for s in stretches])
     here = tuple(s for s in stretches if s.motion.body in bodies)
     return Apart(here, np.flatnonzero(mine), frozenset(bodies))
-
-
-@dataclass(frozen=True, eq=False)
-class _Point:
-    """A computed point of a body, in search coordinates, with its residual.
-
-    slopes: computes the Jacobian there
-    """
-
-    x: Array
-    residual: Array
-    slopes: Callable[[], Array]
-
-    @cached_property
-    def jacobian(self) -> Array:
-        """Derivatives of the residual by the coordinates, computed where they are asked for."""
-        return self.slopes()
-
-    def follow(self, x: Array, tolerance: float) -> Array | None:
-        """The residual at a point near by, along the tangents; None where they may not lead there.
-
-        tolerance: relative change of the squares that a fit resolves
-        """
-        sizes = np.maximum(np.abs(self.x), 1.0)
-        if np.any(np.abs(x - self.x) > EFFORTS.followed_within * sizes):
-            return None
-        change = self.jacobian @ (x - self.x)
-        largest = EFFORTS.followed * tolerance * float(self.residual @ self.residual)
-        return self.residual + change if float(change @ change) <= largest else None
-
-
-class BodyByBody:
-    """Residual (rows,) and Jacobian (rows, p) of all stretches, by the last points of each body.
-
-    names: the p parameters and shifts
-    tolerance: relative change of the squares that a fit resolves
-    Its functions take a model, its parameters in search coordinates (p,), and the units of these
-    coordinates (p,).
-    """
-
-    def __init__(
-        self, model: Model, names: Sequence[str], stretches: Sequence[Stretch], *, tolerance: float
-    ) -> None:
-        self._parts = separate_bodies(stretches)
-        self._names, self._tolerance = names, tolerance
-        places = [model.locate(name)[0] for name in names]
-        self._columns = [np.flatnonzero([p in b.bodies for p in places]) for b in self._parts]
-        self._rows = sum(len(part.rows) for part in self._parts)
-        self._last: dict[int, _Point] = {}
-
-    def both(self, model: Model, x: Array, units: Array) -> tuple[Array, Array]:
-        """Residual and Jacobian."""
-        residual, jacobian = np.empty(self._rows), np.zeros((len(self._names), self._rows)).T
-        for i, (part, mine) in enumerate(zip(self._parts, self._columns, strict=True)):
-            followed, point = self._at(i, model, x[mine], units[mine], slopes=True)
-            residual[part.rows] = followed
-            jacobian[np.ix_(part.rows, mine)] = point.jacobian
-        return residual, jacobian
-
-    def residual(self, model: Model, x: Array, units: Array) -> Array:
-        """The residual alone, the same as that of `both`."""
-        residual = np.empty(self._rows)
-        for i, (part, mine) in enumerate(zip(self._parts, self._columns, strict=True)):
-            residual[part.rows], _ = self._at(i, model, x[mine], units[mine], slopes=False)
-        return residual
-
-    def _at(
-        self, i: int, model: Model, x: Array, units: Array, *, slopes: bool
-    ) -> tuple[Array, _Point]:
-        """Residual of one body, and the point whose tangents hold there.
-
-        slopes: whether they are computed with the residual, at once
-        """
-        known = self._last.get(i)
-        # not for a single body, which is the whole fit
-        if known is not None and len(self._parts) > 1:
-            followed = known.follow(x, self._tolerance)
-            if followed is not None:
-                return followed, known
-        names = [self._names[int(k)] for k in self._columns[i]]
-        part = self._parts[i]
-        if slopes:
-            residual, columns = part.relative(model, names)
-            jacobian = columns * units
-            known = _Point(x, residual, lambda: jacobian)
-        else:
-            residual, _ = part.relative(model, ())
-            known = _Point(x, residual, lambda: part.relative(model, names)[1] * units)
-        self._last[i] = known
-        return residual, known

@@ -58,7 +58,7 @@ def solve_with_command(
     count = len(command.start)
 
     def problem(x: Array) -> SearchProblem:
-        return search_problem(model, prepared, effort, command.stretches(x[:count]))
+        return search_problem(model, prepared, command.stretches(x[:count]))
 
     def residual(x: Array) -> Array:
         return problem(x).residual_with_prior(x[count:])

@@ -28,14 +28,14 @@ from ..measurement.motion import Motion
 from ..measurement.prepare import Prepared, Stretch, measured_force
 from ..measurement.reversals import mark_reversals
 from ..model import Model
-from ..realise.along_motion import Residual
+from ..realise.along_motion import residual_along
 from ..realise.residual_at_command import (
     ResidualAtCommand,
     blind_share,
     is_between,
     residual_at_command,
 )
-from .record_offsets import AlongRecords, follow_records
+from .record_offsets import apply_record_offsets, offset_groups
 from .residual import residuals
 
 #: s to either side of a reversal that count as near: there presliding, gaps and lags show
@@ -119,26 +119,23 @@ class AtCommand(ByValue):
     blind: float
 
 
-def refer_to_command(
-    model: Model, stretches: Sequence[Stretch], along: AlongRecords | None = None
-) -> AtCommand:
+def refer_to_command(model: Model, stretches: Sequence[Stretch]) -> AtCommand:
     """Residual of the model as an error of the recorded forces: see `residual_at_command`.
 
     Equal to `residuals` where no effect lies between the recorded forces and the body. Where the
     model withholds a part of the interaction force from a body, the residual is scaled up
     accordingly.
-
-    along: of this model and these stretches; None: it is computed
     """
-    along = along or follow_records(model, stretches)
-    motions = [motion for _, motion, _ in along.parts]
-    command_errors = [_map_back(*part) for part in along.parts]
+    groups = offset_groups(model, stretches)
+    located = apply_record_offsets(model, stretches, groups)
+    motions = [motion for _, motion in located]
+    command_errors = [_map_back(*one) for one in located]
     values = [
         m.lowpassed(one.residual)[s.keep]
         for s, m, one in zip(stretches, motions, command_errors, strict=True)
     ]
     nothing = np.zeros((0, 0))
-    for group, offsets in along.groups:
+    for group, offsets in groups:
         bare = [(values[i], nothing.reshape(0, len(values[i]))) for i in group]
         for i, (residual, _) in zip(group, offsets.cleared(bare), strict=True):
             values[i] = residual
@@ -160,7 +157,8 @@ def refer_to_command(
     )
 
 
-def _map_back(body: Body, motion: Motion, along: Residual) -> ResidualAtCommand:
+def _map_back(body: Body, motion: Motion) -> ResidualAtCommand:
+    along = residual_along(body, motion)
     if is_between(body):
         return residual_at_command(body, motion, along)
     none = np.zeros(len(motion.time), dtype=bool)

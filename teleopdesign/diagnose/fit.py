@@ -13,13 +13,12 @@ from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from .bodies_apart import select_bodies
-from .error import AtCommand, error_of, force_error, refer_to_command, weigh_residuals
+from .error import AtCommand, force_error, refer_to_command, weigh_residuals
 from .folds import folds
 from .least_squares import column_sizes, sum_of_squares
-from .record_offsets import follow_records
-from .residual import both_residuals
+from .residual import relative_residuals
 from .search_plan import EFFORTS, Effort
-from .solve import BLOCK, Solution, model_without, solve
+from .solve import BLOCK, Solution, solve
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -138,10 +137,9 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
 
 
 def _errors_on(model: Model, stretches: Sequence[Stretch]) -> tuple[float, list[Array], AtCommand]:
-    """Force error, relative residuals and the error at the command of a model, from one run."""
-    along = follow_records(model, stretches)
-    absolute, relative = both_residuals(model, stretches, along)
-    return error_of(stretches, absolute), relative, refer_to_command(model, stretches, along)
+    """Force error, relative residuals and the error at the command of a model."""
+    relative = [r for r, _ in relative_residuals(model, stretches)]
+    return force_error(model, stretches), relative, refer_to_command(model, stretches)
 
 
 def _with_held_shifts(solution: Solution, stretches: Sequence[Stretch]) -> Solution:
@@ -187,7 +185,7 @@ def _fit_held_out(
     squares = at_commands = 0.0
     stretches = prepared.of("fit")
     for fold in folds(stretches):
-        model = model_without(solution, prepared, fold.known, ~fold.rows, EFFORTS.held_out)
+        model = solve(solution.model, prepared, EFFORTS.held_out, fold.known).model
         error, relative, at_command = _errors_on(model, fold.held_out)
         held += fold.held_out
         parts += relative

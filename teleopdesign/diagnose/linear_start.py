@@ -6,7 +6,6 @@ two where a phase turns a sine into a cosine. There are no iterations, so hundre
 can be fitted.
 
 For any other effect: the squares that one linear step by all parameters promises from each start.
-Many starts differ at one body only: the other bodies are computed once for all of them.
 
 And further starts, where a missing effect has led the model before it astray.
 """
@@ -14,7 +13,7 @@ And further starts, where a missing effect has led the model before it astray.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Hashable, Sequence
+from collections.abc import Collection, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -25,7 +24,7 @@ from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared
 from ..model import Model
 from ..realise.tangent_columns import Probe
-from .bodies_apart import Apart, select_bodies, separate_bodies
+from .bodies_apart import select_bodies, separate_bodies
 from .fit import Fit
 from .least_squares import (
     RIDGE,
@@ -146,7 +145,6 @@ class Promises:
     def __init__(self, prepared: Prepared, base: Fit) -> None:
         self._base, self._scales, self._basis = base, prepared.scales, span_of(base)
         self._parts = separate_bodies(prepared.of("fit"))
-        self._known: dict[Hashable, tuple[Array, Array]] = {}
 
     def squares(self, model: Model) -> float:
         """Sum of squares after one step from this start, by all free parameters."""
@@ -160,7 +158,7 @@ class Promises:
         for part in self._parts:
             mine = np.flatnonzero([place in part.bodies for place in places])
             if len(mine) or not wanted:
-                here = self._along(part, model, [wanted[i] for i in mine])
+                here = part.relative(model, [wanted[i] for i in mine])
                 residual[part.rows] = here[0]
                 columns[np.ix_(part.rows, mine)] = here[1] * size[mine]
         if not (np.isfinite(columns).all() and np.isfinite(residual).all()):
@@ -185,15 +183,6 @@ class Promises:
         if not np.isfinite(residual).all():
             return math.inf
         return sum_of_squares(residual - self._basis @ (self._basis.T @ residual))
-
-    def _along(self, part: Apart, model: Model, names: Sequence[str]) -> tuple[Array, Array]:
-        """Residual and derivatives of some bodies, computed once for equal parameters of theirs."""
-        values = model.parameters.items()
-        theirs = tuple((n, v.value) for n, v in values if model.locate(n)[0] in part.bodies)
-        start = (part.bodies, tuple(names), theirs)
-        if start not in self._known:
-            self._known[start] = part.relative(model, names)
-        return self._known[start]
 
 
 def _remaining_squares(columns: Array, residual: Array, unit: Array) -> float:

@@ -22,7 +22,7 @@ from ..measurement.filtering import Array
 from ..measurement.motion import Motion
 from ..measurement.prepare import Stretch
 from ..model import Model
-from ..realise.along_motion import Residual, residual_along
+from ..realise.along_motion import residual_along
 
 #: iterations of the estimate: two are exact if the force is linear in the offsets
 TURNS = 2
@@ -195,25 +195,6 @@ def as_logged(model: Model, motion: Motion) -> Motion:
         force = motion.spectrum.multiply(motion.interaction, unfiltered)
         motion = replace(motion, interaction=force, interaction_late=sensed)
     return motion if late == motion.command_late else replace(motion, command_late=late)
-
-
-@dataclass(frozen=True, eq=False)
-class AlongRecords:
-    """A model along some stretches without tangents, for several errors that are taken from it.
-
-    groups: of `offset_groups`
-    parts: of each stretch the body and motion, with the offsets of its record, and the residual
-    """
-
-    groups: Sequence[tuple[list[int], RecordOffsets]]
-    parts: Sequence[tuple[Body, Motion, Residual]]
-
-
-def follow_records(model: Model, stretches: Sequence[Stretch]) -> AlongRecords:
-    """The model along each stretch, with the offsets of its record."""
-    groups = offset_groups(model, stretches)
-    located = apply_record_offsets(model, stretches, groups)
-    return AlongRecords(groups, [(b, m, residual_along(b, m)) for b, m in located])
 
 
 def apply_record_offsets(

@@ -21,7 +21,7 @@ from ..model import Model
 from ..realise.along_motion import Residual, residual_along
 from ..realise.tangent_columns import Probe
 from ..realise.traced import Traced, constant, filter_traced, in_rows
-from .record_offsets import AlongRecords, RecordOffsets, apply_record_offsets, offset_groups
+from .record_offsets import RecordOffsets, apply_record_offsets, offset_groups
 
 
 def residuals(
@@ -51,35 +51,10 @@ def relative_residuals(
     returns: per stretch, residual (rows,) and tangents (p, rows) by `wrt`, as in `residuals`; below
         these the tangents by the factors of the forces
     """
-    parts = _residual_along(model, stretches, wrt, _bodies_that_lose_force(model), forces)
-    return _relative(model, stretches, parts)
-
-
-def both_residuals(
-    model: Model, stretches: Sequence[Stretch], along: AlongRecords
-) -> tuple[list[Array], list[Array]]:
-    """`residuals` and `relative_residuals` per stretch, without tangents.
-
-    along: of this model and these stretches
-    """
-    parts = _low_passed(
-        stretches,
-        along.groups,
-        ((residual, []) for _, _, residual in along.parts),
-        _bodies_that_lose_force(model),
-    )
-    relative = _relative(model, stretches, parts)
-    return [r.value for r, _ in parts], [r for r, _ in relative]
-
-
-def _relative(
-    model: Model,
-    stretches: Sequence[Stretch],
-    parts: Sequence[tuple[Traced, Traced | None]],
-) -> list[tuple[Array, Array]]:
-    """Residuals and tangents of `_residual_along`, scaled to the measured force."""
+    losing = _bodies_that_lose_force(model)
+    parts = _residual_along(model, stretches, wrt, losing, forces)
     scaled = clear(model.links, stretches, [(r.value, r.tangent) for r, _ in parts])
-    for place in _bodies_that_lose_force(model):
+    for place in losing:
         moving = {
             i: signal
             for i, (s, (_, signal)) in enumerate(zip(stretches, parts, strict=True))

@@ -147,8 +147,7 @@ class Efforts:
 
     #: a few real steps: enough to see which of many starts lead down
     first_steps: Effort = Effort(1e-3, 4)
-    #: blocks that are held out in turn: the step to the optimum without a block mostly is linear;
-    #: where it is not, each fit begins next to its optimum
+    #: blocks that are held out in turn: each fit begins next to its optimum
     held_out: Effort = Effort(1e-3, 5)
     #: candidates before they are ranked: closer than they differ
     rough: Effort = Effort(1e-4, 12)
@@ -161,15 +160,6 @@ class Efforts:
     fine: Effort = Effort(1e-7, 60)
     #: residuals and derivatives alone: the values stay where they are
     evaluation: Effort = Effort(1.0, 1)
-    #: squares of what a body's residual changes by, over the squares themselves and over the
-    #: tolerance, up to
-    #: which the residual follows its tangents: what they miss is of higher order. More: faster, and
-    #: fits end where the tangents lead
-    followed: float = 0.1
-    #: part of each coordinate, or of its scale, within which tangents are followed, however little
-    #: changes. Larger: faster, and along a valley of nearly equal squares a fit is led astray by
-    #: its bend (on one recording with slipping elements to 5.0 % where 3.1 % can be reached)
-    followed_within: float = 1e-3
 
 
 #: the efforts in use

@@ -13,8 +13,8 @@ from ..measurement.prepare import Prepared, Stretch
 from ..measurement.record_clock import CLOCK
 from ..measurement.shared_links import best_links
 from ..model import Model
-from .bodies_apart import BodyByBody
-from .least_squares import gauss_newton_step, minimise, sum_of_squares
+from .bodies_apart import Apart, all_bodies
+from .least_squares import minimise
 from .record_shift import RecordShifts, record_shifts
 from .residual import residuals
 from .search_plan import Effort
@@ -69,7 +69,7 @@ class SearchProblem:
     model: Model
     free: tuple[str, ...]
     shifts: RecordShifts
-    bodies: BodyByBody
+    records: Apart
     scale: Array
     decades: NDArray[np.bool_]
     lower: Array
@@ -93,15 +93,14 @@ class SearchProblem:
 
     def both(self, x: Array) -> tuple[Array, Array]:
         """Residual (rows,) and Jacobian (rows, p + k), without the prior."""
-        return self.bodies.both(self.model_at(x), x, self.units(x))
+        names = (*self.free, *self.shifts.names)
+        residual, columns = self.records.relative(self.model_at(x), names)
+        return residual, columns * self.units(x)
 
     def with_prior(self, x: Array) -> tuple[Array, Array]:
         """The same, with the k rows of the prior of the shifts; none changes by a held shift."""
-        return self.add_prior(x, *self.both(x))
-
-    def add_prior(self, x: Array, residual: Array, jacobian: Array) -> tuple[Array, Array]:
-        """A residual and its Jacobian at x, with the rows of the prior as in `with_prior`."""
         p, shifts = len(self.free), self.shifts
+        residual, jacobian = self.both(x)
         known, slope = shifts.prior(x[p:], residual, jacobian)
         both = np.vstack([jacobian, slope])
         both[:, p:][:, shifts.held] = 0.0
@@ -109,12 +108,12 @@ class SearchProblem:
 
     def residual_with_prior(self, x: Array) -> Array:
         """The residual of `with_prior` alone."""
-        r = self.bodies.residual(self.model_at(x), x, self.units(x))
+        r, _ = self.records.relative(self.model_at(x), ())
         return np.append(r, self.shifts.prior_alone(x[len(self.free) :], r))
 
 
 def search_problem(
-    model: Model, prepared: Prepared, effort: Effort, stretches: Sequence[Stretch] | None = None
+    model: Model, prepared: Prepared, stretches: Sequence[Stretch] | None = None
 ) -> SearchProblem:
     """The search for the free parameters of a model on some stretches; None: the fit records.
 
@@ -143,7 +142,7 @@ def search_problem(
         model,
         free,
         shifts,
-        BodyByBody(model, (*free, *shifts.names), stretches, tolerance=effort.tolerance),
+        all_bodies(stretches),
         scale=np.append(scale, shifts.row),
         decades=np.append(decades, none),
         lower=np.append(lower + 0.1 * AT_BOUND, np.full(len(none), -CLOCK.early)),
@@ -161,7 +160,7 @@ def solve(
     stretches: None: the fit records
     """
     stretches = prepared.of("fit") if stretches is None else stretches
-    problem = search_problem(model, prepared, effort, stretches)
+    problem = search_problem(model, prepared, stretches)
     if len(problem.start):
         minimum = minimise(
             problem.with_prior,
@@ -189,38 +188,6 @@ def solve(
         residual=residual,
         jacobian=jacobian,
     )
-
-
-def model_without(
-    solution: Solution,
-    prepared: Prepared,
-    known: Sequence[Stretch],
-    rows: NDArray[np.bool_],
-    effort: Effort,
-) -> Model:
-    """The model of a solution, estimated on some of its rows alone.
-
-    One step by the derivatives of the solution leads there, if the residual is as linear as the
-    effort resolves; if not, the search goes on.
-
-    known: the stretches with these rows;  rows: which of the solution's rows these are
-    """
-    problem = search_problem(solution.model, prepared, effort, known)
-    lower, upper = problem.lower, problem.upper
-    if any(s.shared is not None for s in known) or not len(lower):
-        return solve(solution.model, prepared, effort, known).model
-    r, j = problem.add_prior(problem.start, solution.residual[rows], solution.jacobian[rows])
-    x = np.clip(problem.start, lower, upper)
-    step = gauss_newton_step(j, r, lower - x, upper - x)
-    if not np.isfinite(step).all():
-        return solution.model
-    there = np.clip(x + step, lower, upper)
-    promised = sum_of_squares(r + j @ (there - x))
-    reached = sum_of_squares(problem.residual_with_prior(there))
-    near = problem.model_at(there) if reached < sum_of_squares(r) else solution.model
-    if reached <= (1.0 + effort.tolerance) * promised:
-        return near
-    return solve(near, prepared, effort, known).model
 
 
 def settle_links(model: Model, stretches: Sequence[Stretch]) -> Model:
