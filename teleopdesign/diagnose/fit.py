@@ -12,11 +12,10 @@ from ..base.frozen import ByValue
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
-from .bodies_apart import select_bodies
 from .error import AtCommand, force_error, refer_to_command, weigh_residuals
 from .folds import folds
 from .least_squares import column_sizes, sum_of_squares
-from .residual import relative_residuals
+from .residual import relative_residuals, weighted_residuals
 from .search_plan import EFFORTS, Effort
 from .solve import BLOCK, Solution, solve
 
@@ -151,9 +150,11 @@ def _with_held_shifts(solution: Solution, stretches: Sequence[Stretch]) -> Solut
     shifts = solution.shifts
     if not shifts.held.any():
         return solution
-    here = select_bodies(stretches, shifts.bodies)
-    p, columns = len(solution.free), np.zeros((len(solution.residual), len(shifts.logs)))
-    columns[here.rows] = here.relative(solution.model, shifts.names)[1] * shifts.row
+    p, (_, columns) = (
+        len(solution.free),
+        weighted_residuals(solution.model, stretches, shifts.names),
+    )
+    columns = columns * shifts.row
     return replace(solution, jacobian=np.hstack([solution.jacobian[:, :p], columns]))
 
 

@@ -24,7 +24,6 @@ from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared
 from ..model import Model
 from ..realise.tangent_columns import Probe
-from .bodies_apart import select_bodies, separate_bodies
 from .fit import Fit
 from .least_squares import (
     RIDGE,
@@ -34,6 +33,7 @@ from .least_squares import (
     span,
     sum_of_squares,
 )
+from .residual import weighted_residuals
 from .search_plan import PLAN
 from .solve import Solution, free_parameters, spans_decades
 
@@ -73,8 +73,8 @@ def linear_starts(
     starts = []
     edges = list(range(0, len(probes), AT_ONCE)) + [len(probes)]
     for first, last in pairwise(edges):
-        slopes = _slopes(absent, probes[first:last], prepared)
-        slopes -= (slopes @ basis) @ basis.T
+        slopes = weighted_residuals(absent, prepared.of("fit"), probes[first:last])[1].T
+        slopes = slopes - (slopes @ basis) @ basis.T
         for i in range(0, last - first, len(phases)):
             start = models[(first + i) // len(phases)]
             starts.append(_start(start, effect, at, left, slopes[i : i + len(phases)]))
@@ -94,16 +94,6 @@ def _other_values(
     if effect.phase:
         values[symbols[effect.phase]] = phase
     return values
-
-
-def _slopes(model: Model, probes: list[Probe], prepared: Prepared) -> Array:
-    """Derivatives (probes, rows) of the residual by each probe, with contiguous rows."""
-    stretches = prepared.of("fit")
-    moved = select_bodies(stretches, {model.holder(probe.at) for probe in probes})
-    _, slopes = moved.relative(model, probes)
-    whole = np.zeros((len(probes), sum(len(s.keep) for s in stretches)))
-    whole[:, moved.rows] = slopes.T
-    return whole
 
 
 def _start(
@@ -144,23 +134,16 @@ class Promises:
 
     def __init__(self, prepared: Prepared, base: Fit) -> None:
         self._base, self._scales, self._basis = base, prepared.scales, span_of(base)
-        self._parts = separate_bodies(prepared.of("fit"))
+        self._stretches = prepared.of("fit")
 
     def squares(self, model: Model) -> float:
         """Sum of squares after one step from this start, by all free parameters."""
         base, values, before = self._base, model.parameters, self._base.model.parameters
         same = all(values[n].value == before[n].value for n in base.free)
         wanted = [n for n in free_parameters(model) if not (same and n in base.free)]
-        places = [model.locate(n)[0] for n in wanted]
         size = np.array([self._scales[model.declared(n).quantity] for n in wanted])
-        residual = base.fit_residual.copy()
-        columns = np.zeros((len(wanted), len(residual))).T
-        for part in self._parts:
-            mine = np.flatnonzero([place in part.bodies for place in places])
-            if len(mine) or not wanted:
-                here = part.relative(model, [wanted[i] for i in mine])
-                residual[part.rows] = here[0]
-                columns[np.ix_(part.rows, mine)] = here[1] * size[mine]
+        residual, columns = weighted_residuals(model, self._stretches, wanted)
+        columns = columns * size
         if not (np.isfinite(columns).all() and np.isfinite(residual).all()):
             return math.inf
         unit = column_sizes(columns)
@@ -174,12 +157,7 @@ class Promises:
 
         returns: inf where a motion grows beyond all numbers
         """
-        new = set(model.effects) - set(self._base.model.effects)
-        changed = {model.holder(place) for _, place in new}
-        residual = self._base.fit_residual.copy()
-        for part in self._parts:
-            if part.bodies & changed:
-                residual[part.rows], _ = part.relative(model, ())
+        residual, _ = weighted_residuals(model, self._stretches)
         if not np.isfinite(residual).all():
             return math.inf
         return sum_of_squares(residual - self._basis @ (self._basis.T @ residual))

@@ -19,13 +19,13 @@ from ..measurement.shared_links import Knowledge, share, weighted_columns
 from ..model import Model
 from ..realise.along_motion import residual_along
 from ..realise.tangent_columns import LinkParameter
-from .bodies_apart import select_bodies
 from .error import force_error
 from .fit import block_numbers, standard_errors
 from .least_squares import span
 from .parts import PreparedParts, remove_links
 from .record_offsets import apply_record_offsets
 from .record_shift import record_shifts
+from .residual import weighted_residuals
 from .solve import BLOCK, free_parameters
 
 #: least residual, as a part of the measured force, that sets the weight of a joint: below it the
@@ -126,8 +126,7 @@ def _linear(
     plain, free = remove_links(add_links(model, stretches)), _list_inner_parameters(model)
     lasts = sum(s.counted_time for s in plain)
     shifts = record_shifts(plain, round(lasts / BLOCK), model)
-    here = select_bodies(plain, model.bodies)
-    residual, slopes = here.relative(model, (*free, *shifts.names))
+    residual, slopes = weighted_residuals(model, plain, (*free, *shifts.names))
     slopes = slopes * np.append(np.ones(len(free)), shifts.row)
     samples = shifts.start(model)
     known, slope = shifts.prior(samples, residual, slopes)

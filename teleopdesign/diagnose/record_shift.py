@@ -75,11 +75,6 @@ class RecordShifts:
             f"{body}.{INTERACTION_SHIFT if hand else RECORD_SHIFT}" for body, _, hand in parts
         )
 
-    @property
-    def bodies(self) -> frozenset[str]:
-        """The bodies of the logs."""
-        return frozenset(log.partition(".")[0] for log in self.logs)
-
     def start(self, model: Model) -> Array:
         """The model's shifts, in samples (k,)."""
         shifts = (model.record_shift.get(log) for log in self.logs)

@@ -67,6 +67,17 @@ def relative_residuals(
     return scaled
 
 
+def weighted_residuals(
+    model: Model, stretches: Sequence[Stretch], names: Sequence[str | Probe] = ()
+) -> tuple[Array, Array]:
+    """`relative_residuals` of all stretches (rows,) and derivatives (rows, p), with all weights."""
+    parts = relative_residuals(model, stretches, names)
+    roots = [np.sqrt(s.weight) for s in stretches]
+    residual = np.concatenate([w * r for w, (r, _) in zip(roots, parts, strict=True)])
+    slopes = np.concatenate([w * d for w, (_, d) in zip(roots, parts, strict=True)], axis=1)
+    return residual, slopes.T
+
+
 def _scale(
     scaled: list[tuple[Array, Array]],
     moving: Mapping[int, Traced],

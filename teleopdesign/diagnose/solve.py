@@ -13,10 +13,9 @@ from ..measurement.prepare import Prepared, Stretch
 from ..measurement.record_clock import CLOCK
 from ..measurement.shared_links import best_links
 from ..model import Model
-from .bodies_apart import Apart, all_bodies
 from .least_squares import minimise
 from .record_shift import RecordShifts, record_shifts
-from .residual import residuals
+from .residual import residuals, weighted_residuals
 from .search_plan import Effort
 
 #: seconds over which residuals count as one observation in standard errors and tests
@@ -69,7 +68,7 @@ class SearchProblem:
     model: Model
     free: tuple[str, ...]
     shifts: RecordShifts
-    records: Apart
+    stretches: Sequence[Stretch]
     scale: Array
     decades: NDArray[np.bool_]
     lower: Array
@@ -94,7 +93,7 @@ class SearchProblem:
     def both(self, x: Array) -> tuple[Array, Array]:
         """Residual (rows,) and Jacobian (rows, p + k), without the prior."""
         names = (*self.free, *self.shifts.names)
-        residual, columns = self.records.relative(self.model_at(x), names)
+        residual, columns = weighted_residuals(self.model_at(x), self.stretches, names)
         return residual, columns * self.units(x)
 
     def with_prior(self, x: Array) -> tuple[Array, Array]:
@@ -108,7 +107,7 @@ class SearchProblem:
 
     def residual_with_prior(self, x: Array) -> Array:
         """The residual of `with_prior` alone."""
-        r, _ = self.records.relative(self.model_at(x), ())
+        r, _ = weighted_residuals(self.model_at(x), self.stretches)
         return np.append(r, self.shifts.prior_alone(x[len(self.free) :], r))
 
 
@@ -142,7 +141,7 @@ def search_problem(
         model,
         free,
         shifts,
-        all_bodies(stretches),
+        stretches,
         scale=np.append(scale, shifts.row),
         decades=np.append(decades, none),
         lower=np.append(lower + 0.1 * AT_BOUND, np.full(len(none), -CLOCK.early)),
