@@ -1,21 +1,11 @@
 """What a user leaves out of a search, and what is shown while it runs."""
 
-import io
 import json
 
 import pytest
 
 from teleopdesign.cli import main
-from teleopdesign.commands import _terminal
-from teleopdesign.commands._terminal import PrintableStream, print_styled
 from teleopdesign.diagnose.search_plan import QUICK
-
-
-class Terminal(io.StringIO):
-    encoding = "utf-8"
-
-    def isatty(self):
-        return True
 
 
 def effects_in(path):
@@ -66,16 +56,3 @@ def test_a_folder_behind_only_is_asked_to_stand_before_it(rod, refused):
 
 
 # colours
-
-
-def styled(stream, monkeypatch):
-    monkeypatch.setattr("sys.stdout", PrintableStream(stream))
-    print_styled("plain\nverdict", lambda line: "good" if line == "verdict" else "")
-    return stream.getvalue()
-
-
-def test_a_terminal_is_given_colours(monkeypatch):
-    monkeypatch.delenv("NO_COLOR", raising=False)
-    monkeypatch.setenv("TERM", "xterm")
-    expected = f"plain\n\033[{_terminal.STYLES['good']}mverdict\033[0m\n"
-    assert styled(Terminal(), monkeypatch) == expected

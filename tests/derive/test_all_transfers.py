@@ -15,7 +15,6 @@ from teleopdesign.controllers import controller
 from teleopdesign.derive import (
     all_transfers,
     block_symbol,
-    counterexample,
     insert_matrices,
     proved_equal,
     return_difference,
@@ -224,11 +223,3 @@ def test_the_return_difference_is_that_of_the_opened_loop():
     Z_M, Z_H, H = map(block_symbol, ("Z_M", "Z_H", "H"))
     expected = 1 + H * Z_H * (Z_M + Z_H) ** -1
     assert proved_equal(return_difference(diagram, "H"), expected)
-
-
-def test_numbers_alone_are_recognised_on_matrices_of_a_given_size():
-    assert counterexample(sp.S(1), sp.S(2)) == {}
-    assert counterexample(sp.S(1), sp.S(1)) is None
-    assert insert_matrices(sp.S(3), {}, size=2) == 3 * sp.eye(2)
-    with pytest.raises(ModelError, match="no block is given, expected a size"):
-        insert_matrices(sp.S(3), {})

@@ -1,7 +1,5 @@
 """The level that a cancellation may count on within the reach, and rounding to the safe side."""
 
-import math
-
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -33,41 +31,6 @@ def body(level=1.0, stderr=0.0, **effects):
 
 def least(device, errors=0.0):
     return friction_interval(device, REACH, errors=errors).lowest.low
-
-
-def test_coulomb_friction_is_its_level_less_the_errors():
-    assert least(body(1.0, 0.01), errors=2.0) == pytest.approx(0.98)
-    assert friction_interval(body(1.0, 0.01), REACH, errors=2.0).highest.high == pytest.approx(1.02)
-
-
-def test_stribeck_friction_is_least_in_fast_motion():
-    device = body(1.0, stribeck={"extra_static_level": 0.4, "stribeck_velocity": 0.02})
-    interval = friction_interval(device, REACH, errors=0.0)
-    assert interval.lowest.estimate == pytest.approx(1.0)
-    assert interval.highest.estimate == pytest.approx(1.4)
-
-
-def test_friction_of_two_levels_is_the_lower_one():
-    assert least(body(1.0, coulomb_asymmetry={"half_difference": 0.3})) == pytest.approx(0.7)
-    assert least(body(1.0, coulomb_asymmetry={"half_difference": -0.3})) == pytest.approx(0.7)
-
-
-def test_friction_along_the_travel_is_least_within_the_recorded_travel():
-    wave = {"amplitude": 0.2, "period": 0.05, "phase": 0.3}
-    assert least(body(1.0, position_dependent_friction=wave)) == pytest.approx(0.8, rel=1e-4)
-    slope = {"amplitude": 0.2, "period": 10.0, "phase": 0.0}
-    assert least(body(1.0, position_dependent_friction=slope)) == pytest.approx(
-        1 - 0.2 * math.sin(2 * math.pi * 0.05 / 10), rel=1e-9
-    )
-
-
-def test_friction_that_warms_up_is_that_of_a_warm_machine():
-    drift = {"fraction": 0.3, "time_constant": 5.0}
-    assert least(body(1.0, friction_drift=drift)) == pytest.approx(0.7)
-
-
-def test_friction_that_grows_with_the_load_is_that_without_load():
-    assert least(body(1.0, load_dependent_friction={"coefficient": 0.1})) == pytest.approx(1.0)
 
 
 @pytest.mark.slow

@@ -52,20 +52,3 @@ def test_a_spring_with_a_rest_position_is_a_spring_and_a_constant(tmp_path, stif
 def test_a_pendulum_whose_bend_is_visible_stays_one(tmp_path):
     diagnosis = diagnosed(tmp_path / "pendulum", lambda x: 0.8 * np.sin(x + 0.4))
     assert [c.effect.name for c in diagnosis.missing] == ["gravity"]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("there", "place_force"),
-    [
-        (("spring", "bias"), lambda x: 0.8 * np.sin(x + 0.4)),
-        (("hardening_spring",), lambda x: 0.6 * (x - 0.35)),
-    ],
-    ids=["pendulum", "line"],
-)
-def test_whatever_force_of_the_place_a_user_has_the_ladder_goes_down(tmp_path, there, place_force):
-    user = "\n".join([USER, *(f"{name} = {{}}" for name in there)])
-    diagnosis = diagnosed(tmp_path, place_force, user)
-    errors = [r.check_error for r in diagnosis.rungs]
-    assert errors == sorted(errors, reverse=True)
-    assert errors[-1] < 0.02

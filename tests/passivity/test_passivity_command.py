@@ -129,14 +129,6 @@ def test_the_limit_of_an_undecided_answer_is_that_of_its_cells_and_says_so(
     assert claims_of(out)["95 % interval"]["status"] == "refuted"
 
 
-def test_an_undecided_answer_without_covered_cells_has_no_limit(answer, capsys):
-    content = without_presliding(json.loads(answer.read_text()), 12.8)
-    content |= {"friction_cells": {"device": [cell(0.0, 1, 3.0, None)]}}
-    code, text = text_of(answer, content, capsys, "--dahl", "0.35", "1.5e4")
-    assert code == 0 and "none is certain" in text.out.splitlines()[0]
-    assert "largest compensator level" not in text.out and "proved" not in text.out
-
-
 def test_a_sampled_wall_and_the_z_width_need_a_period(answer, tmp_path, capsys):
     assert main(["passivity", str(answer), "--wall", "1000", "0"]) == 2
     assert "need --period" in capsys.readouterr().err

@@ -17,7 +17,7 @@ from teleopdesign.passivity import (
 )
 
 MASS, DAMPING = 0.15, 2.0
-BANDWIDTHS = (1, 2, 5, 10, 20, 50, 100)  # Hz
+BANDWIDTHS = (1, 10, 100)  # Hz
 
 
 def observer(bandwidth, as_matrices=False):

@@ -17,7 +17,6 @@ from teleopdesign.passivity import claim_over_intervals
 from teleopdesign.passivity.diagram_claims import composed_claim
 from teleopdesign.passivity.friction_pairs import friction_pairs
 from teleopdesign.passivity.identified import identify_device
-from teleopdesign.passivity.intervals.late import slowest_decay
 from teleopdesign.passivity.law_facts import ANY_TIME, law_facts
 from teleopdesign.passivity.ports import ports
 from teleopdesign.passivity.theorems import Question, Wall, settle
@@ -178,12 +177,6 @@ def test_a_stated_transfer_function_holds_at_the_values_that_run():
         loop_gain(loop(20.0), controller="P")
 
 
-def test_the_decay_of_a_late_loop_is_a_number_where_no_search_converges():
-    for inertia, decay in ((0.1, 5.64057), (0.15, 4.17731), (0.2, 3.29353)):  # spectral method
-        terms = {0.0: [inertia, 2.0, 0.0], 0.1: [5.0]}
-        assert slowest_decay(terms) == pytest.approx(decay, rel=2e-3)
-
-
 def test_a_damper_elsewhere_keeps_a_law_of_velocity_from_being_refuted():
     device = body(coulomb__level=0.5, viscous__damping=1.0)
     damper = controller("spring_damper", {"stiffness": 0.0, "damping": 10.0})
@@ -240,13 +233,12 @@ def test_a_cycle_at_the_least_level_refutes_no_friction_whose_level_varies(more)
     assert claim_over_intervals(diagram, {"Z_M.inertia": (0.1, 0.2)}).status == "unknown"
 
 
-@pytest.mark.parametrize(("damping", "status"), [(10.0, "evidence"), (0.01, "refuted")])
-def test_a_study_tells_a_law_of_velocity_that_releases_energy(damping, status):
+def test_a_study_tells_a_law_of_velocity_that_releases_energy():
     whole = haptic_interface(
-        body(coulomb__level=0.5, viscous__damping=damping), cancellation=smoothed()
+        body(coulomb__level=0.5, viscous__damping=0.01), cancellation=smoothed()
     )
     made = td.study(whole, {"Z_M.inertia": [0.15]}, measures="passivity", duration=0.01, workers=1)
-    assert str(made.data["passivity_status"].values.item()) == status
+    assert str(made.data["passivity_status"].values.item()) == "refuted"
 
 
 def test_two_laws_at_two_ports_are_refuted_by_a_motion_of_one():

@@ -1,7 +1,6 @@
 """Where and how often a study is stopped, killed or spread changes its time, never its numbers."""
 
 import subprocess
-import time
 
 import numpy as np
 import pytest
@@ -21,18 +20,6 @@ def test_simulations_in_processes_give_the_data_set_of_one(no_process_is_left):
     one = td.study(models.interface(), side_by_side, workers=1, **arguments)
     two = td.study(models.interface(), side_by_side, workers=2, **arguments)
     xarray.testing.assert_identical(one.data, two.data)
-
-
-@pytest.mark.slow
-def test_workers_end_with_a_process_that_is_killed(tmp_path):
-    out = tmp_path / "s.nc"
-    code = study_code(out, points=100_000, workers=2)
-    with in_a_process(code, stderr=subprocess.PIPE) as process:
-        wait_for_points(out, 1)
-        process.kill()
-        begin = time.monotonic()
-        process.stderr.read()  # until the last process that may write has ended
-        assert time.monotonic() - begin < 30
 
 
 @pytest.mark.slow
@@ -180,35 +167,3 @@ def test_two_processes_do_not_write_into_one_file(tmp_path):
                 td.study(models.slow_product, axes, measures=models.value, out=out)
         finally:
             process.kill()
-
-
-@pytest.mark.slow
-def test_a_full_disk_ends_in_one_line_and_keeps_every_finished_point(tmp_path):
-    """The system refuses files over 4 kB, as a full disk refuses more: in the middle of a line."""
-    out = tmp_path / "s.nc"
-    limit = (
-        "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n"
-        "sys.dont_write_bytecode = True"  # Python 3.11 would leave it half, for all who follow
-    )
-    code = (
-        "from teleopdesign.base.errors import TeleopDesignError\n"
-        "try:\n    " + "\n    ".join(study_code(out, "product", 500).splitlines()) + "\n"
-        "except TeleopDesignError as error:\n    print(error)\n"
-    )
-    with in_a_process(code, limit=limit, stdout=subprocess.PIPE, text=True) as process:
-        output, _ = process.communicate(timeout=300)
-    assert "cannot be written" in output and output.count("\n") == 1
-    kept = int(output.split(" of 500 points are kept")[0].split()[-1])
-    assert kept > 10
-    first = []
-    dataset = td.study(
-        models.product,
-        {"x": np.arange(500.0), "y": 0.5},
-        measures=models.value,
-        out=out,
-        progress=first.append,
-    )
-    assert first[-1].kept == kept
-    np.testing.assert_array_equal(
-        dataset["value"].values, [models.product(x, 0.5) for x in np.arange(500.0)]
-    )

@@ -9,7 +9,6 @@ from teleopdesign.blocks import Value
 from teleopdesign.diagnose.answer import with_recording
 from teleopdesign.diagnose.by_simulation import simulated_if_possible
 from teleopdesign.diagnose.recording import DiagnosedRecording
-from teleopdesign.diagnose.statements import Alternative
 from teleopdesign.show.report.cannot_tell import cannot_tell
 from teleopdesign.show.report.motion import simulated_motions
 from teleopdesign.show.report.parameter_table import parameter_rows
@@ -23,11 +22,6 @@ def with_experiment(diagnosis, experiment):
 
 def topics(diagnosis):
     return {f.topic for f in cannot_tell(diagnosis)}
-
-
-def test_the_rungs_are_those_of_the_diagnosis(page, diagnosis):
-    assert [r.check_error for r in page.ladder] == [r.check_error for r in diagnosis.rungs]
-    assert page.left == pytest.approx(page.after / page.floor)
 
 
 def test_the_rms_of_each_step_is_its_error_times_the_measured_force(page, diagnosis):
@@ -84,17 +78,6 @@ def test_a_parameter_at_its_bound_or_left_open_is_reported_as_such(diagnosis):
     unsure = cannot_tell(with_value(diagnosis, name, Value(0.1, stderr=1.0)))
     finding = next(f for f in unsure if f.topic == "a parameter left open")
     assert "device.viscous.damping is not determined: 0.1 ± 1.0 N·s/m" in finding.sentence
-
-
-def test_look_alikes_come_with_the_reason(diagnosis):
-    other = diagnosis.candidates[-1].candidate
-    for one in (Alternative(other, 0.011, apart=0.5, likeness=0.99), Alternative(other)):
-        alike = replace(diagnosis.rungs[1], alternatives=(one,))
-        finding = cannot_tell(replace(diagnosis, rungs=(diagnosis.rungs[0], alike)))[0]
-        assert finding.concern == "warning" and str(other) in finding.sentence
-        if one.apart == one.apart:  # an older answer does not say it
-            assert finding.numbers["correlation"] == 0.99
-            assert finding.numbers["standard_deviations_apart"] == 0.5
 
 
 def test_records_come_with_the_digest_of_their_files(page, diagnosis):

@@ -5,8 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.base.finding import Series
-from teleopdesign.show.figures.graph import extremes, thin_series
-from teleopdesign.show.report.figures import picture
+from teleopdesign.show.figures.graph import thin_series
 
 
 @given(st.integers(1, 2000), st.integers(2, 300))
@@ -17,12 +16,3 @@ def test_a_thinned_series_keeps_its_extremes_and_its_order(n, most):
     assert series.y.min() == y.min() and series.y.max() == y.max()
     assert np.all(np.diff(series.x) > 0)
     assert np.array_equal(series.low, series.y - 1)
-
-
-def test_gaps_do_not_hide_an_extreme():
-    y = np.array([np.nan, 3.0, np.nan, -2.0])
-    assert {1, 3} <= set(extremes(y, 1).tolist())
-
-
-def drawn(draw):
-    return picture(draw, size=(3, 2), alt='a "figure" & more')
