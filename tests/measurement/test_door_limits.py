@@ -13,10 +13,8 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.measurement.column_names import bare_name, unit_in_name
 from teleopdesign.measurement.doors import _stray_lines, text
 from teleopdesign.measurement.doors._cells import is_number
-from teleopdesign.measurement.doors._log import LONGEST_NAME
 from teleopdesign.measurement.doors.text import open_text
 from teleopdesign.measurement.tables import open_log, read_columns
 
@@ -168,15 +166,6 @@ def test_a_name_that_no_logger_writes_is_refused_at_once(tmp_path, head):
     with takes_less_than(1):
         message = refused(path, "t")
     assert "characters, expected at most 1000" in message and len(message) < 300
-
-
-@pytest.mark.parametrize("length", [1, LONGEST_NAME])
-@pytest.mark.parametrize("head", ["/a", "(", "( ", "a_", "1/", "#1 "])
-def test_a_name_of_any_length_that_is_read_tells_its_unit_at_once(head, length):
-    name = (head * length)[:length]
-    with takes_less_than(0.5):
-        assert bare_name(f"{name}!"[:length]) is not None
-        unit_in_name(f"{name}!"[:length])
 
 
 def test_twelve_thousand_columns_are_refused_at_once(tmp_path):

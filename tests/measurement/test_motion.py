@@ -1,10 +1,8 @@
 """Smoothing and directions of a motion, against what their definitions say."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from teleopdesign.measurement.motion import TRAVEL, direction_of, motion_of, play
@@ -83,31 +81,3 @@ def test_position_other_position_and_their_rates_are_those_of_the_sine_that_was_
     assert not motion.interaction.any()
     turns = np.abs(np.cos(w * there)) < 0.05
     assert np.array_equal(motion.direction[inner][~turns], np.sign(np.cos(w * there))[~turns])
-
-
-@settings(max_examples=20)
-@given(delays=st.lists(st.sampled_from([0.0, 1e-3, -4e-4]), min_size=1, max_size=5))
-def test_a_command_at_the_rows_depends_on_its_delay_alone_not_on_what_was_asked_before(delays):
-    motion = made_motion()
-    for late in delays:
-        shifted = replace(motion, command_late=late)
-        other = replace(shifted, command=-motion.command)
-        anew = shifted.at_rows(motion.command.copy())
-        np.testing.assert_allclose(shifted.at_rows(shifted.command), anew, atol=1e-12)
-        np.testing.assert_allclose(other.at_rows(other.command), -anew, atol=1e-12)
-
-
-def made_motion():
-    time = np.arange(700) * 1e-3
-    return motion_of(
-        body="device",
-        file="a.csv",
-        time=time,
-        position=0.01 * np.sin(9 * time),
-        command=np.sign(np.sin(30 * time)),
-        interaction=None,
-        sample_time=1e-3,
-        rows=slice(0, 700),
-        bandwidth=40.0,
-        resolution=1e-5,
-    )

@@ -10,9 +10,7 @@ from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.survey import (
     Choices,
     longest_trial,
-    spans_of,
     survey_log,
-    trial_column,
 )
 
 H, ROWS = 2e-3, 1500
@@ -49,26 +47,6 @@ def test_pauses_between_trials_are_no_trials():
     stamps = T + 50.0 * (TRIAL - 1)
     survey = look({"t_s": stamps, "trial": TRIAL, "angle_rad": Q, "tau_Nm": U})
     assert survey.trials == pytest.approx([53.0, 106.0, 159.0], abs=0.1)
-
-
-@pytest.mark.parametrize(
-    ("name", "values"),
-    [
-        ("trial", np.sin(T)),  # a signal
-        ("trial", np.arange(len(T)) // 10),  # a counter of rows
-        ("run", np.ones(len(T))),  # one trial
-        ("gain", TRIAL),  # another name
-        ("trial", np.where(T < 1, np.nan, TRIAL)),
-    ],
-)
-def test_what_does_not_number_trials_is_none(name, values):
-    assert trial_column({"t": T, name: np.asarray(values, dtype=float)}) is None
-
-
-def test_a_log_is_cut_between_two_trials():
-    """The cut at 60 % lay in a trial, of which a millisecond was left on one side."""
-    assert spans_of(12.0, (2.4, 4.8, 7.2, 9.6)) == ((0.0, 7.2), (7.2, 13.0))
-    assert spans_of(12.0, (1.0, 11.5)) == spans_of(12.0)
 
 
 def test_arrays_of_several_trials_start_anew_at_each():
