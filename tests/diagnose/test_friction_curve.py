@@ -183,10 +183,10 @@ def test_new_reads_a_table_of_speeds_and_torques(tmp_path, monkeypatch):
     assert "kind" in curve.guesses
 
 
-@pytest.mark.parametrize("points", [4, 5, 7, 9])
+@pytest.mark.parametrize("points", [4, 9])
 def test_few_speeds_name_no_effect_beside_the_parameters_that_follow_them(points):
     """Coulomb and viscous friction are all that is there; a law through all points says nothing."""
-    for seed in range(4):
+    for seed in range(2):
         rng = np.random.default_rng(seed)
         one_way = np.geomspace(0.003, 0.3, points - points // 2)
         v = np.r_[-one_way[: points // 2][::-1], one_way]

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from teleopdesign.diagnose import learnable as module
-from teleopdesign.diagnose.error import error_near_reversals
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.learnable import learnable
+from teleopdesign.diagnose.learnable import (
+    learnable,
+)
 from teleopdesign.measurement.prepare import prepare
 
 
@@ -64,13 +65,3 @@ def test_a_force_that_does_not_repeat_is_not_learned(diagnosis, prepared):
     stretches = tuple(map(noisy, prepared.stretches))
     learned = learnable(diagnosis.after.model, replace(prepared, stretches=stretches))
     assert learned.part < 0.1 * learned.left
-
-
-def test_the_error_near_reversals_is_that_of_the_rows_there(diagnosis, prepared):
-    near = error_near_reversals(diagnosis.before.model, prepared)
-    assert 0.0 < near.share < 1.0 and near.error > 0.0
-    still = tuple(
-        replace(s, motion=replace(s.motion, direction=np.ones_like(s.motion.direction)))
-        for s in prepared.stretches
-    )
-    assert error_near_reversals(diagnosis.before.model, replace(prepared, stretches=still)) is None
