@@ -9,14 +9,12 @@ from check.made_channels import (
     ask,
     channel,
     strange_velocity,
-    swing,
 )
 from clock import takes_less_than
 from shared_data import shared_folder
 
 from teleopdesign import example, load_experiment
 from teleopdesign.check import CheckedRecording, findings_of
-from teleopdesign.check.velocity import factor_cause, shift_and_factor
 
 RATE = 1000.0
 T = np.arange(12_000) / RATE
@@ -296,15 +294,6 @@ def test_segments_and_what_is_too_short_to_be_compared_are_counted(rod):
     assert finding.concern == "note"  # a fortieth of the record
 
 
-@pytest.mark.parametrize(("factor", "shift"), [(1.0, 0.0), (0.999, 0.004), (57.3, -0.011)])
-def test_factor_and_lag_of_a_velocity_channel_are_reported(factor, shift):
-    rng = np.random.default_rng(6)
-    velocity = factor * np.interp(T - shift, T, np.gradient(motion(), T))
-    estimate = shift_and_factor(read(motion()), velocity + 1e-3 * rng.standard_normal(len(T)), 1e-3)
-    assert estimate[0] == pytest.approx(shift, abs=2e-4)  # a fifth of a sample
-    assert estimate[1] == pytest.approx(factor, rel=2e-3)
-
-
 @pytest.mark.slow
 def test_an_hour_at_a_kilohertz_is_checked_in_bounded_time(rod):
     n = 3_600_000
@@ -347,29 +336,6 @@ def test_simulated_measurements_raise_no_warning():
 def test_a_body_that_rests_is_not_held_against_its_velocity_channel():
     position = channel(np.zeros(2000))
     assert strange_velocity(position, channel(np.sin(np.arange(2000)), "velocity")) == []
-
-
-@pytest.mark.parametrize(
-    ("axis", "factor", "cause"),
-    [
-        ("prismatic", 1000.0, "the time is in ms"),
-        ("prismatic", 1000.0, "the velocity is in mm/s"),
-        ("prismatic", 1e6, "the time is in us"),
-        ("prismatic", 0.001, "the position is in mm"),
-        ("revolute", 2 * np.pi, "the position is in turns"),
-        ("revolute", np.pi / 180, "the position is in deg"),
-        ("revolute", 180 / np.pi, "the velocity is in deg/s"),
-        ("revolute", 30 / np.pi, "the velocity is in rpm"),
-        ("revolute", -30 / np.pi, "the velocity is in rpm"),
-        ("prismatic", -1.0, "one of the two is turned"),
-        ("prismatic", 3.0, "units, sign or clock disagree"),
-    ],
-)
-def test_a_factor_of_a_velocity_names_the_unit_that_makes_it(rod, axis, factor, cause):
-    position = replace(channel(swing()), axis=axis)
-    sentence = factor_cause(factor, position, replace(position, name="velocity"))
-    assert cause in sentence
-    assert ("sign = -1" in sentence) == (factor < 0)
 
 
 def test_what_is_in_order_is_reported_beside_what_is_not_and_never_of_the_same(rod, tmp_path):

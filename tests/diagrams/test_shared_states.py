@@ -18,9 +18,8 @@ from teleopdesign.diagrams import (
 from teleopdesign.passivity import ports
 from teleopdesign.passivity.linear.family import family_at
 from teleopdesign.realise.iosystem import to_iosystem
-from teleopdesign.simulate import Sampling, simulate
+from teleopdesign.simulate import simulate
 
-PERIOD = 1e-3
 MASSES, DAMPINGS = (0.1, 0.2), (3.0, 3.0)
 FORCES = np.array([0.5, -0.3])
 #: two rods, positions and velocities, as python-control has them
@@ -92,30 +91,6 @@ def test_a_loop_with_a_controller_that_grows_by_itself_decays_as_its_matrices_sa
     assert system.nstates == len(a)
     rates = (np.sort_complex(np.linalg.eigvals(m)) for m in (linear.A, a))
     np.testing.assert_allclose(*rates, rtol=1e-5)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("discrete", [True, False])
-@pytest.mark.parametrize("pole", [0.0, 3.0])
-def test_a_computer_steps_the_states_together(pole, discrete):
-    """Exact for readings held over a sample, against the matrices of python-control; 1e-6."""
-    k = stabilising(pole)
-    sampled, rods = (control.sample_system(one, PERIOD, "zoh") for one in (k, RODS))
-    simulation = simulate(
-        two_rods(sampled if discrete else k, analog=False),
-        duration=0.3,
-        inputs={"f1": FORCES[0], "f2": FORCES[1]},
-        computer=Sampling(period=PERIOD),
-        step=PERIOD,
-        jit=False,
-    )
-    x, z, expected = np.zeros(4), np.zeros(6), []
-    for _ in simulation["time"].values:
-        y = rods.C @ x
-        expected.append(y)
-        x, z = rods.A @ x + rods.B @ (sampled.C @ z + FORCES), sampled.A @ z + sampled.B @ y
-    for name, theirs in zip(("x1", "x2"), np.transpose(expected), strict=True):
-        assert np.abs(simulation[name].values - theirs).max() < 1e-6 * np.ptp(theirs)
 
 
 def test_what_no_output_shows_is_there_all_the_same():

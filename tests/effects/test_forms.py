@@ -171,27 +171,6 @@ def test_noise_that_swings_a_lightly_damped_tip_is_led_out_of_it(monkeypatch):
     assert relative(residual_along(wrong, motion), motion) > 3 * led
 
 
-@pytest.mark.parametrize("frequency", [20.0, 50.0])
-def test_a_tip_swings_as_its_transfer_function_says_at_ten_samples_a_cycle(frequency):
-    """A straight line between samples would be 3 % too weak at a tenth of the sample rate."""
-    rate, w = 500.0, 2 * np.pi * frequency
-    stiff = {"transmission_compliance.stiffness": 8e3}
-    body = unled(body_of("transmission_compliance", values=stiff))
-    effect, values = body.effects[0], body.numbers()
-    m, k, c = (values[s] for s in effect.symbols().values())
-    t = np.arange(2000) / rate
-    wave = np.exp(1j * w * t)
-    motion = {"position": wave, "velocity": 1j * w * wave, "acceleration": -(w**2) * wave}
-    none = np.zeros((0, len(t)))
-    signals = {SIGNALS[n]: Traced(y.real, none) for n, y in motion.items()}
-    signals[SIGNALS["interaction_force"]] = Traced(np.zeros(len(t)), none)
-    hidden = coupled_scan(effect, Along(signals, values, (), 1 / rate))
-    tip = hidden[effect.state_symbols()["tip_position"]].value
-    expected = ((k + 1j * w * c) / (k + 1j * w * c - m * w**2) * wave).real
-    steady_rows = slice(1000, None)  # 2 s; the resonance rings for 0.1 s
-    assert np.abs(tip - expected)[steady_rows].max() < 2e-3 * np.abs(expected).max()
-
-
 def test_the_direction_of_motion_is_known_within_a_few_steps_of_every_reversal():
     motion = simulated("coulomb")
     moving = np.abs(motion.velocity) > 0.02  # m/s; 20 steps a sample

@@ -8,13 +8,12 @@ from effects.along import NAMES, body_of, with_needs
 
 from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller, scheduled_force_feedback
-from teleopdesign.diagrams import four_cases, haptic_interface, world_haptics_2005
+from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
 from teleopdesign.frequency import (
     closed_forms,
     describing_function,
     measured_impedance,
-    quasi_linear_impedance,
 )
 from teleopdesign.frequency.describing_function import driven_gain
 
@@ -110,23 +109,3 @@ def test_a_scheduled_gain_depends_on_the_phase_of_what_drives_it():
     # at rest the whole gain; 1e-3 m/s of 0.08 lets it fall by 1 %
     slow = driven_gain(law, amplitude=3e-5, frequency=5.0)
     assert slow(1.0) == pytest.approx(5.0, rel=0.02)
-
-
-#: each case is a loop of its own to compile; hybrid holds the laws of the two that are slow
-CASES = ["none", *(pytest.param(c, marks=pytest.mark.slow) for c in ("MBC", "FF")), "hybrid"]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("case", CASES)
-def test_quasi_linear_and_simulated_impedance_agree(case):
-    """Within 1 dB and 3 degrees; without a driven controller 0.1 dB and 1 degree, for the simulated
-    contact gives by 1e-5 of the amplitude, which turns what cancellation leaves by 0.6 degrees.
-    """
-    diagram = four_cases(world_haptics_2005())[case]
-    grid = {"amplitude": [5e-4, 2e-2], "frequency": [2.0, 5.0, 20.0]}
-    simulated = measured_impedance(diagram, computer="continuous", **grid)
-    predicted = quasi_linear_impedance(diagram, **grid)
-    ratio = simulated.data["impedance"] / predicted.data["impedance"]
-    driven = case in ("FF", "hybrid")  # by a force error whose harmonics are left out
-    assert float(np.abs(20 * np.log10(np.abs(ratio))).max()) < (1.0 if driven else 0.1)
-    assert float(np.degrees(np.abs(np.angle(ratio))).max()) < (3.0 if driven else 1.0)

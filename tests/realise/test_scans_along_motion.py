@@ -55,38 +55,6 @@ def test_a_tip_starts_where_the_body_is_and_swings_as_another_solver_says(offset
     assert np.abs(tip - here).max() > 0.1 * 0.01
 
 
-COMBINED = {
-    "bristle, damping and a tip": ("coulomb", "presliding", "viscous", "transmission_compliance"),
-    "slipping elements behind a lag": ("coulomb", "maxwell_slip", "actuator_lag"),
-    "a gap and a hand": ("coulomb", "backlash", "bias"),
-    "film and a late command": ("coulomb", "stribeck", "friction_memory", "actuation_delay"),
-    "load and asymmetry": ("coulomb", "coulomb_asymmetry", "load_dependent_friction", "stribeck"),
-    "a tip that rubs": ("coulomb", "transmission_compliance", "tip_friction", "spring"),
-}
-VALUES = {"spring.stiffness": 200.0, "backlash.tip_inertia": 0.03}
-
-
-@pytest.mark.parametrize("name", COMBINED)
-def test_tangents_are_slopes_for_all_parameters_of_a_body_together(name):
-    """Those of each parameter are in its row, whatever else is asked for and in any order."""
-    motion, names = recorded(), COMBINED[name]
-    body = body_of(*names, values={n: v for n, v in VALUES.items() if n.split(".")[0] in names})
-    inside = slice(100, None)
-    selection = [n for n, _ in body.declared() if body.parameters[n].value != 0.0][::-1]
-    along = residual_along(body, motion, selection).residual.tangent[:, inside]
-    for full, tangent in zip(selection, along, strict=True):
-        value = body.parameters[full].value
-        sides = [
-            residual_along(body.with_values({full: value * (1 + e)}), motion).residual.value[inside]
-            for e in (1e-6, -1e-6)
-        ]
-        slope = (sides[0] - sides[1]) / (2e-6 * value)
-        assert np.linalg.norm(slope) > 0
-        assert np.linalg.norm(tangent - slope) < 2e-3 * np.linalg.norm(slope), full
-        alone = residual_along(body, motion, [full]).residual.tangent[0, inside]
-        np.testing.assert_allclose(alone, tangent, rtol=0, atol=1e-9 * np.abs(tangent).max())
-
-
 def test_elements_that_slip_in_turn_are_those_of_a_loop_by_hand():
     """Each follows the travel up to its level and stays there; the first has what is left."""
     level, stiffness, part = 0.5, (3e3, 800.0, 200.0, 60.0), (0.12, 0.08, 0.05)

@@ -1,16 +1,14 @@
 """Many simulations at once: the same numbers as one by one, and what fails stays by itself."""
 
-import time
-
 import numpy as np
 import pytest
-from devices import DAHL, LINK, body, coupled
+from devices import body, coupled
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import teleopdesign as td
 from teleopdesign.base.errors import ModelError
-from teleopdesign.diagrams import haptic_interface, teleoperator
+from teleopdesign.diagrams import haptic_interface
 from teleopdesign.simulate import Sampling, simulate, simulate_many
 
 #: two loops that differ by rounding in one exp: 1e-9 of the largest value, as golden/ allows
@@ -23,7 +21,6 @@ def push(t):
 
 RUN = dict(duration=0.1, inputs={"F_u": push})
 NAMES = ("X_m", "X_s_velocity", "F_m", "F_P", "Z_m_presliding_bristle", "U_m")
-END = {"end": ("X_s", "final")}
 FIGURES = {
     "last": ("X_e", "final"),
     "least": ("X_e", "minimum"),
@@ -131,33 +128,6 @@ def test_delays_are_grouped_and_one_that_no_step_divides_is_reported():
     expected = [0.045**2 / 4, 0.048**2 / 4, np.nan, 0.045**2 / 4]
     np.testing.assert_allclose(many["end"], expected, rtol=1e-10)
     assert "delay" in str(many["reason"].values[2]) and list(many["reason"].values[:2]) == ["", ""]
-
-
-@pytest.mark.slow
-def test_a_step_works_on_several_lanes_at_once_in_large_structures_too():
-    """Four bristles in continuous time: a compiler that must check arrays for overlap gives up.
-
-    Lanes one after the other took 1.1 of single simulations each, by vector instructions 0.3.
-    """
-    friction = {"coulomb__level": 0.5, "presliding__stiffness": 2e4}
-    one = body(0.15, **friction, viscous__damping=0.4)
-    both = {"slave_cancellation": DAHL, "master_cancellation": DAHL}
-    diagram = teleoperator(one, one, coupling=LINK, **both)
-    run = {"inputs": {"F_u": push}, "computer": "continuous", "duration": 0.5}
-    values = {"P.spring_damper.damping": np.linspace(2.0, 4.0, 128)}
-
-    def least_time(call):
-        call()
-        times = []
-        for _ in range(5):
-            start = time.process_time()
-            call()
-            times.append(time.process_time() - start)
-        return min(times)
-
-    together = least_time(lambda: simulate_many(diagram, values, **run, reduce=END)) / 128
-    alone = least_time(lambda: simulate(diagram, **run))
-    assert together < 0.6 * alone
 
 
 def test_a_case_that_fails_is_nan_with_its_reason_and_kills_no_other():
