@@ -111,13 +111,14 @@ def test_an_unknown_effect_page_and_recording_are_one_line(tmp_path, capsys):
 
 
 def test_a_diagnosis_prints_the_ladder_and_writes_what_was_asked_for(
-    short_rod, few, tmp_path, capsys, monkeypatch
+    short_rod, tmp_path, capsys, monkeypatch
 ):
     # a line of progress comes after a time, however fast the machine
     monkeypatch.setattr("teleopdesign.commands._terminal.BETWEEN_LINES", float("inf"))
     names = ("answer.json", "predictions.csv", "figure.png", "report.html")
     files = [tmp_path / n for n in names]
     options = [
+        *("--only", "stribeck"),
         *("--json", str(files[0])),
         *("--predictions", str(files[1])),
         *("--figure", str(files[2])),
