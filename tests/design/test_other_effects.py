@@ -66,7 +66,10 @@ COGGING = {"amplitude": 0.1, "period": 0.57, "phase": 0.3}
     "effects",
     [
         {"position_dependent_friction": PLACE},
-        {"stribeck": {"extra_static_level": 0.2, "stribeck_velocity": 0.2}},
+        pytest.param(
+            {"stribeck": {"extra_static_level": 0.2, "stribeck_velocity": 0.2}},
+            marks=pytest.mark.slow,
+        ),
         {"coulomb_asymmetry": {"half_difference": 0.1}},
     ],
 )

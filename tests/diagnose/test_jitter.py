@@ -21,9 +21,8 @@ def adequate(tmp_path_factory):
     )
 
 
-@pytest.mark.parametrize("rows", [0.1, 0.3])
-def test_a_right_model_lies_at_its_floor_though_the_clock_jitters(adequate, rows):
-    prepared = prepare(jittered(adequate, rows))
+def test_a_right_model_lies_at_its_floor_though_the_clock_jitters(adequate):
+    prepared = prepare(jittered(adequate, 0.3))
     model = Model.from_experiment(adequate)
     fit = estimate_from_starts(model, prepared)
     floor = noise_floor(fit.model, prepared, np.random.default_rng(0))
@@ -34,7 +33,7 @@ def test_a_right_model_lies_at_its_floor_though_the_clock_jitters(adequate, rows
     assert 0.7 < fit.check_error / floor.value < 1.4
 
 
-@pytest.mark.parametrize("share", [0.02, 0.05, 0.1])
+@pytest.mark.parametrize("share", [0.02, 0.1])
 def test_a_fast_motion_without_jitter_shows_none(share):
     """A tenth of the sample rate: few rows a period, and slow and fast stretches in turn."""
     t = np.arange(8000.0)
@@ -42,10 +41,9 @@ def test_a_fast_motion_without_jitter_shows_none(share):
     assert sampling_jitter(x, 1e-6, 1.0) < 0.01
 
 
-@pytest.mark.parametrize("rows", [0.1, 0.3])
-def test_the_share_of_jitter_is_what_newly_drawn_readings_add_to_the_acceleration(adequate, rows):
+def test_the_share_of_jitter_is_what_newly_drawn_readings_add_to_the_acceleration(adequate):
     """`jitter_share` is computed from gains; here the readings are drawn again."""
-    jitters = jittered(adequate, rows)
+    jitters = jittered(adequate, 0.1)
     prepared, still = prepare(jitters), prepare(adequate)
     pairs = zip(prepared.of("fit"), still.of("fit"), strict=True)
     added = whole = 0.0

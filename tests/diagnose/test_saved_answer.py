@@ -69,6 +69,7 @@ def test_what_is_read_back_is_what_was_written(path, diagnosis, experiment):
     assert load_answer(path, FEW).experiment == experiment, "by the folder that the answer names"
 
 
+@pytest.mark.slow
 def test_the_report_and_the_predictions_are_the_same_from_memory_and_from_the_answer(
     path, diagnosis, tmp_path
 ):

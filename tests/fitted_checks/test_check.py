@@ -251,9 +251,9 @@ def test_a_long_record_is_judged_on_windows_of_itself(rod):
     assert excerpt(rod) is rod
 
 
-def test_the_command_prints_findings_and_writes_them(tmp_path, capsys):
+def test_the_command_prints_findings_and_writes_them(short_rod, tmp_path, capsys):
     path = tmp_path / "findings.json"
-    assert main(["check", str(example("rod")), "--json", str(path)]) == 0
+    assert main(["check", str(short_rod), "--json", str(path)]) == 0
     printed = capsys.readouterr().out
     assert "no warnings." in printed
     assert printed.index("note ") < printed.index("fine ")

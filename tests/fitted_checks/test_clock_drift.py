@@ -30,7 +30,10 @@ def findings_with(experiment, quantity, moments):
     return [f for f in findings if f.topic in ("clock drift", "time shift")]
 
 
-@pytest.mark.parametrize(("quantity", "rate"), [("actuator_force", -2e-3), ("position", 2e-3)])
+@pytest.mark.parametrize(
+    ("quantity", "rate"),
+    [("actuator_force", -2e-3), pytest.param("position", 2e-3, marks=pytest.mark.slow)],
+)
 def test_a_channel_with_another_clock_is_named_with_the_rate(rod, quantity, rate):
     (finding,) = findings_with(rod, quantity, lambda t: (1.0 + rate) * t)
     assert (finding.topic, finding.concern) == ("clock drift", "warning")
@@ -44,10 +47,9 @@ def test_a_channel_with_another_clock_is_named_with_the_rate(rod, quantity, rate
     assert not [f for f in left if f.topic == "clock drift"]
 
 
-@pytest.mark.parametrize("quantity", ["actuator_force", "position"])
-def test_a_constant_lag_is_no_drift(rod, quantity):
-    (finding,) = findings_with(rod, quantity, lambda t: t - 5e-3)
+def test_a_constant_lag_is_no_drift(rod):
+    (finding,) = findings_with(rod, "actuator_force", lambda t: t - 5e-3)
     assert finding.topic == "time shift"
     # nor is one that jumps in the middle, as where a logger lost rows
-    jumps = findings_with(rod, quantity, lambda t: t - 8e-3 * (t > t[-1] / 2))
+    jumps = findings_with(rod, "actuator_force", lambda t: t - 8e-3 * (t > t[-1] / 2))
     assert not [f for f in jumps if f.topic == "clock drift"]
