@@ -28,8 +28,7 @@ def test_without_the_command_the_compensator_and_the_device_are_listed_together(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("way", WAYS[1:])
-@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize(("fault", "way"), list(zip(FAULTS, 4 * WAYS[1:], strict=True)))
 def test_a_planted_fault_is_in_a_group_where_the_command_was_not_recorded(fault, way):
     assert is_right(fault, named(fault, 1, way))
 

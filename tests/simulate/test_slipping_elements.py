@@ -10,7 +10,7 @@ LEVELS = np.array([0.2, 0.15, 0.1, 0.05])  # N
 AMPLITUDE, RATE = 0.012, 2 * np.pi * 1.3  # m, rad/s
 
 
-@pytest.mark.parametrize("stiffest", [4e4, 2e5, 1e7])
+@pytest.mark.parametrize("stiffest", [4e4, 1e7])
 def test_the_force_is_that_of_springs_that_are_clipped_along_the_travel(stiffest):
     stiffness = np.array([3e3, 1e4, 4e4, stiffest])
     later = {f"maxwell_slip__stiffness_{i}": k for i, k in enumerate(stiffness, 1)}

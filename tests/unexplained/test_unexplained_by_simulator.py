@@ -19,13 +19,9 @@ WORDS = {
     "stribeck": ("friction over speed",),
     "bias": ("force",),
     "spring": ("force over position",),
-    "hardening_spring": ("force over position",),
     "actuation_delay": ("lateness",),
-    "actuator_lag": ("lateness",),
-    "quadratic_drag": ("friction over speed",),
     "viscous_asymmetry": ("force over speed", "force over velocity"),
     "position_dependent_friction": ("friction over position", "friction repeating over position"),
-    "cogging": ("force over position", "force repeating over position"),
     "load_dependent_friction": ("friction over load",),
     "friction_drift": ("friction over time",),
     "actuator_saturation": ("force over actuator_force",),
@@ -44,7 +40,7 @@ def test_what_the_independent_simulator_hides_is_reported(tmp_path, effect):
 
 @pytest.mark.slow
 def test_where_the_independent_simulator_hides_nothing_nothing_is_reported(tmp_path):
-    for seed in range(1000, 1006):
+    for seed in range(1000, 1003):
         folder = write_simulated(tmp_path / str(seed), None, seed=seed)
         prepared = prepare(load_experiment(folder))
         fit = estimate_from_starts(Model.from_experiment(prepared.experiment), prepared)
@@ -52,7 +48,7 @@ def test_where_the_independent_simulator_hides_nothing_nothing_is_reported(tmp_p
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_force_outside_the_catalogue_is_described_written_and_named(tmp_path, seed):
     folder = write_simulated(tmp_path / "case", None, seed=300 + seed, level="outside")
     experiment = load_experiment(folder)

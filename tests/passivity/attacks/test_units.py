@@ -114,7 +114,7 @@ def written(ratio):
     return above / below
 
 
-@attacked(0, 12)
+@attacked(0, 6)
 def test_impedances_in_other_units_have_the_same_claim(seed, number):
     rng, small = np.random.default_rng(seed), random.Random(seed)
     counts = Counter()
