@@ -1,6 +1,5 @@
 """A claim about a device counts every effect that the device has, and says over which reach."""
 
-
 import pytest
 
 import teleopdesign as td

@@ -2,7 +2,10 @@
 
 import dataclasses
 import json
+import os
 import re
+import subprocess
+import sys
 from base64 import b64decode
 from xml.etree import ElementTree
 
@@ -18,7 +21,8 @@ from teleopdesign.base.finding import Finding, Graph, Series
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.show.report import write_report
 from teleopdesign.show.report.figures import graph_figure
-from teleopdesign.show.report.write import Figures, embedded_json, figure_script, render
+from teleopdesign.show.report.page import page_of
+from teleopdesign.show.report.write import FIGURES, embedded_json, figure_script, render
 
 HOSTILE = (
     '</script><script>alert(1)</script>"><img src=x onerror=alert(1)>',
@@ -90,19 +94,45 @@ def test_the_data_hold_the_answer(html, diagnosis):
     assert html.data["report"]["views"][0]["steps"][0]["check_error"] == pytest.approx(0.0707, 1e-2)
 
 
-@pytest.fixture(scope="module")
-def bare(page):
-    """Empty figures, to be drawn in no time."""
-    empty = Markup("<b></b>")
-    steps = tuple(tuple(empty for _ in v.steps) for v in page.views)
-    each = tuple(empty for _ in page.views)
-    return Figures(empty, each, steps, each, each, (), each, {}, ())
+@pytest.mark.slow
+def test_a_figure_is_the_same_in_a_process_with_another_hash_seed():
+    code = (
+        "from teleopdesign.show.report.figures import picture\n"
+        "def draw(f):\n    a = f.subplots(); a.plot([0, 1, 2], [1, 0, 2], 'o'); a.imshow([[1.0]])\n"
+        "print(picture(draw, size=(2, 1), alt='y'))"
+    )
+    runs = [
+        subprocess.run(
+            [sys.executable, "-c", code],
+            capture_output=True,
+            text=True,
+            check=True,
+            env={**os.environ, "PYTHONHASHSEED": seed},
+        ).stdout
+        for seed in ("1", "2")
+    ]
+    assert runs[0] == runs[1] and "data:image/svg+xml" in runs[0]
+
+
+def test_a_page_stays_small_however_much_the_findings_hold(page, written, diagnosis):
+    n = 200_000
+    x = np.linspace(0, 1, n)
+    graph = Graph("time (s)", "force (N)", (Series("measured", x, np.sin(1e4 * x)),) * 3)
+    many = [finding(graph=graph) for _ in range(20)]
+    full = page_of(diagnosis, soundness=many)
+    drawn = graph_figure(full.soundness[0].graph, "force")
+    data = len(embedded_json(make_plain(full))) - len(embedded_json(make_plain(page)))
+    assert len(written) + data + 20 * len(drawn) < 2e6
+
+
+#: empty figures, drawn in no time
+BARE = dict.fromkeys(FIGURES, lambda *_: Markup("<b></b>"))
 
 
 @pytest.fixture(scope="module")
-def page_with(page, bare):
+def page_with(page):
     """The page, its figures left empty, with a text wherever one can come from a file."""
-    return lambda text: HtmlPage(render(with_text(page, text), bare, {"text": text}))
+    return lambda text: HtmlPage(render(with_text(page, text), {"text": text}, BARE))
 
 
 @pytest.fixture(scope="module")
@@ -154,17 +184,17 @@ def test_no_text_changes_the_elements_of_the_page(text, page_with, harmless):
 
 
 @pytest.mark.parametrize("text", HOSTILE)
-def test_findings_are_escaped_in_text_names_and_figures(text, page, bare):
+def test_findings_are_escaped_in_text_names_and_figures(text, page):
     graph = Graph(text, text, (Series(text, np.arange(3.0), np.arange(3.0)),) * 2)
-    one = Finding(text, "warning", text, {text: 1.5}, text, graph)
-    full = dataclasses.replace(page, soundness=(one,), unexplained=(one,), next_steps=(one,))
-    drawn = {("next", 0): graph_figure(graph, text)}
-    figures = dataclasses.replace(bare, findings=drawn)
-    read = HtmlPage(render(full, figures, {"report": make_plain(full)}))
+    one = Finding(text, "warning", text, {text: 1.5}, text)
+    drawn = dataclasses.replace(one, graph=graph)
+    full = dataclasses.replace(page, soundness=(one,), unexplained=(one,), next_steps=(drawn,))
+    figures = {**BARE, "graph": graph_figure}
+    read = HtmlPage(render(full, {"report": make_plain(full)}, figures))
     assert [e.attributes.get("type") for e in read.all("script")] == ["application/json", None]
     assert read.all("script")[1].text == figure_script()
     (shown,) = read.all("img")
-    assert shown.attributes["alt"] == text
+    assert shown.attributes["alt"] == f"{text}: {text}"
     assert read.data["report"]["soundness"][0]["numbers"] == {text: 1.5}
     svg = b64decode(shown.attributes["src"].partition(",")[2]).decode("utf-8")
     labels = [e for e in ElementTree.fromstring(svg).iter() if e.text == text]
