@@ -16,7 +16,7 @@ import numpy as np
 from ...base.errors import ExperimentError, quote
 
 #: of an array: the index of a column, the name of a field, "" for the whole, None for a vector
-Part = int | str | None
+ArrayPart = int | str | None
 _NUMBER = re.compile(r" #\d+$")
 
 #: rows above which a file is refused before it is read: fourteen hours at 1 kHz, 0.4 GB a column
@@ -123,20 +123,20 @@ def bare_column(name: str) -> str:
     return _NUMBER.sub("", name)
 
 
-def parts_of(name: str, shape: Sequence[int]) -> dict[str, tuple[str, Part]]:
+def parts_of(name: str, shape: Sequence[int]) -> dict[str, tuple[str, ArrayPart]]:
     """Columns of an array: "x" of a vector, "x(:,1)" ... of a matrix.
 
     What is no column is listed too, so that a message can say what is wrong with it.
     returns: column -> (name of the array, index of the column from 0, "" for the whole array)
     """
-    parts: dict[str, tuple[str, Part]] = {}
+    parts: dict[str, tuple[str, ArrayPart]] = {}
     if len(shape) == 2 and 2 <= shape[1] <= MOST_SIGNALS and shape[0] > shape[1]:
         parts = {f"{name}(:,{k + 1})": (name, k) for k in range(shape[1])}
     return parts | {name: (name, "" if len(shape) == 2 and 1 not in shape else None)}
 
 
 def log_of_arrays(
-    columns: Mapping[str, tuple[str, Part]],
+    columns: Mapping[str, tuple[str, ArrayPart]],
     load: Callable[[Sequence[str]], Mapping[str, Any]],
     file: str,
     *,
@@ -165,7 +165,7 @@ def log_of_arrays(
     return Log(tuple(columns), read, units or {}, tuple(f"{n}; it is left out" for n in notes))
 
 
-def _part(values: Any, part: Part) -> Any:
+def _part(values: Any, part: ArrayPart) -> Any:
     """A part of an array: a column by its index, a field by its name, or all of a vector."""
     if isinstance(part, str):
         return values[part] if part else values

@@ -16,7 +16,16 @@ from typing import Any
 
 import numpy as np
 
-from ._log import DEPTH, MOST_PARTS, Log, Part, log_of_arrays, parts_of, refuse_damage, refuse_size
+from ._log import (
+    DEPTH,
+    MOST_PARTS,
+    ArrayPart,
+    Log,
+    log_of_arrays,
+    parts_of,
+    refuse_damage,
+    refuse_size,
+)
 from .typed_arrays import open_hdf5
 
 #: how an HDF5 file begins, at its first byte or behind a head of so many bytes
@@ -53,7 +62,7 @@ def open_matlab(path: Path, file: str) -> Log:
             content = dict(loadmat(path, variable_names=structs)) if structs else {}
         except NotImplementedError:  # version 7.3 is an HDF5 file
             return open_hdf5(path, file)
-    columns: dict[str, tuple[str, Part]] = {}
+    columns: dict[str, tuple[str, ArrayPart]] = {}
     arrays: dict[str, Any] = {}
     units: dict[str, str] = {}
     for name, shape, kind in listed:

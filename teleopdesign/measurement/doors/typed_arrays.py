@@ -19,8 +19,8 @@ from ..column_names import unit_of_text
 from ._log import (
     MOST_BYTES,
     MOST_COLUMNS,
+    ArrayPart,
     Log,
-    Part,
     log_of_arrays,
     optional,
     parts_of,
@@ -42,7 +42,7 @@ def open_arrays(path: Path, file: str) -> Log:
 
     `Log.read` raises ExperimentError for an array of Python objects.
     """
-    columns: dict[str, tuple[str, Part]] = {}
+    columns: dict[str, tuple[str, ArrayPart]] = {}
     with refuse_damage(".npz file", file), zipfile.ZipFile(path) as packed:
         for entry in packed.infolist():
             shape = _shape(packed, entry)
@@ -85,7 +85,7 @@ def _shape(packed: zipfile.ZipFile, entry: zipfile.ZipInfo) -> tuple[int, ...] |
 def open_hdf5(path: Path, file: str) -> Log:
     """Open an HDF5 file, or a MAT file of version 7.3."""
     h5py = optional("h5py", file)
-    columns: dict[str, tuple[str, Part]] = {}
+    columns: dict[str, tuple[str, ArrayPart]] = {}
     units: dict[str, str] = {}
     with path.open("rb") as stream:
         turned = stream.read(len(_MATLAB)) == _MATLAB
