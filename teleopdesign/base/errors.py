@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 _LONGEST_QUOTE = 60  # characters of a user's text that a message repeats
+_MOST_NAMED = 20  # names that a message lists
 
 
 class TeleopDesignError(Exception):
@@ -77,7 +78,9 @@ def unknown(kind: str, name: object, known: Iterable[object]) -> str:
     kind: of what the name stands for
     """
     names = [str(one) for one in known]
-    return f"no {kind} {quote(str(name))}, has {', '.join(names)}{did_you_mean(str(name), names)}"
+    more = f", ... ({len(names)} in all)" if len(names) > _MOST_NAMED else ""
+    listed = f"{', '.join(names[:_MOST_NAMED])}{more}" or "none"
+    return f"no {kind} {quote(str(name))}, has {listed}{did_you_mean(str(name), names)}"
 
 
 def quote(text: str) -> str:

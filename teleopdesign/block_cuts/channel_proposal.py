@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.errors import ExperimentError, quote, unknown
 from ..base.files import write_text
 from ..base.sentences import percent
 from ..base.toml import comment_text, string_text, toml_text
@@ -122,10 +122,7 @@ def _require(names: Iterable[str], present: Sequence[str], kind: str, file: str)
     """Refuse names of signals or columns that are not there."""
     for name in names:
         if name not in (*present, NONE):
-            raise ExperimentError(
-                f"{file}: no {kind} {quote(name)}, found {join_names(present)}"
-                f"{did_you_mean(name, present)}"
-            )
+            raise ExperimentError(f"{file}: {unknown(kind, name, present)}")
 
 
 def _require_fit(search: ChannelSearch, best: Mapping[str, ColumnChoice], file: str) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..base.arguments import check_types
-from ..base.errors import ExperimentError, did_you_mean, quote
+from ..base.errors import ExperimentError, did_you_mean, quote, unknown
 from ..base.toml import Table, read_toml
 from ..base.units import measures, to_si
 from ..diagrams import Diagram, read_diagram
@@ -114,10 +114,8 @@ def _experiment(table: Table, diagram: Diagram, folder: Path) -> DiagramExperime
         if name == "sample_rate":
             continue
         if name != "time" and name not in diagram.signals:
-            raise ExperimentError(
-                f"{channels.where()}: no signal {quote(name)} in {diagram.name}, has "
-                f"{', '.join(diagram.signals)}{did_you_mean(name, diagram.signals)}"
-            )
+            wrong = unknown(f"signal of {diagram.name}", name, diagram.signals)
+            raise ExperimentError(f"{channels.where()}: {wrong}")
         entry = channels.table(name)
         if not entry.flag("read_by_computer", True):
             not_read.add(name)
@@ -167,10 +165,8 @@ def _channel_of(experiment: DiagramExperiment, name: str) -> Channel:
 def _zero(table: Table, diagram: Diagram, recorded: Mapping[str, Table]) -> tuple[str, ...]:
     for name in table.content:
         if name not in diagram.outside:
-            raise ExperimentError(
-                f"{table.where()}: no signal {quote(name)} from outside, has "
-                f"{', '.join(diagram.outside)}{did_you_mean(name, diagram.outside)}"
-            )
+            wrong = unknown("signal from outside", name, diagram.outside)
+            raise ExperimentError(f"{table.where()}: {wrong}")
         if table.number(name) != 0:
             raise ExperimentError(
                 f"{table.where(name)}: found {table.number(name):g}, expected 0 (record the signal)"

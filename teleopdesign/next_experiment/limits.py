@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, unknown
 from ..measurement.prepare import Prepared, Stretch
 
 #: part of the samples that may exceed a limit that is read from a record: single samples are noise
@@ -47,9 +47,7 @@ class Limits:
         known = [f.name for f in fields(self)]
         for name in values:
             if name not in known:
-                raise ModelError(
-                    f'limits: no limit "{name}", has {", ".join(known)}{did_you_mean(name, known)}'
-                )
+                raise ModelError(f"limits: {unknown('limit', name, known)}")
         return replace(self, **values)
 
     def widen(self, factor: float) -> Limits:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..base.errors import ExperimentError, ModelError, did_you_mean
+from ..base.errors import ExperimentError, ModelError, unknown
 from ..base.shown import Shown
 from ..base.units import si_factor
 from ..diagnose.diagnosis import Diagnosis
@@ -112,9 +112,7 @@ def _merge_limits(diagnosis: Diagnosis, stated: Mapping[str, Limits]) -> dict[st
     shown = shown_limits(diagnosis.prepared)
     for body in stated:
         if body not in shown:
-            raise ModelError(
-                f'limits: no body "{body}", has {", ".join(shown)}{did_you_mean(body, shown)}'
-            )
+            raise ModelError(f"limits: {unknown('body', body, shown)}")
     return {**shown, **stated}
 
 

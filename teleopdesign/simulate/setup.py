@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..base.errors import ModelError, UnknownSignal, did_you_mean, unknown
+from ..base.errors import ModelError, UnknownSignal, unknown
 from ..diagrams import Diagram, with_shared_states
 from ..realise.signal_symbols import delay_in_samples, is_whole
 from ..realise.simulated import prepare_for_simulation, realise_in_computer, refuse_massless
@@ -58,10 +58,8 @@ def prepare(
     inputs = with_recorded(inputs or {}, duration)
     for name in inputs:
         if name not in diagram.outside:
-            raise UnknownSignal(
-                f'{diagram.name}: "{name}" is not from outside, inputs are '
-                f"{', '.join(diagram.outside)}{did_you_mean(name, diagram.outside)}"
-            )
+            wrong = unknown("signal from outside", name, diagram.outside)
+            raise UnknownSignal(f"{diagram.name}: {wrong}")
     refuse_results(diagram, inputs, motion)
     positive = {"duration": duration, "step": step, "give": give}
     for name, value in positive.items():

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, unknown
 from ..base.files import write_beside, write_netcdf
 from ..base.frozen import ByName, ByValue
 from ..base.shown import Shown, figure_of
@@ -63,10 +63,7 @@ class Simulation(Shown, ByName, ByValue):
                 "result, unless it is the force that a prescribed motion needs"
             )
         if name not in self.data:
-            raise ModelError(
-                f'simulation: no signal "{name}", has {", ".join(map(str, self.data))}'
-                f"{did_you_mean(name, [str(n) for n in self.data])}"
-            )
+            raise ModelError(f"simulation: {unknown('signal', name, self.data)}")
         return self.data[name]
 
     def plot(self, *names: str) -> matplotlib.figure.Figure:

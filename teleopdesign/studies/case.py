@@ -17,7 +17,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, unknown
 from ..base.frozen import ByValue
 from ..base.units import unit_of
 from ..diagrams import Diagram
@@ -30,8 +30,6 @@ from ..simulate.units import signal_units
 _COMPUTER = {"period": "s", "delay": "s", "encoder_step": "", "velocity_bandwidth": "Hz"}
 _SINE = {"amplitude": "", "frequency": "Hz", "phase": "rad"}
 _OF_SIMULATION = {"duration": "s", "step": "s", "give": ""}
-#: most parameters that a message lists
-_MOST_NAMED = 12
 
 
 @check_types
@@ -82,9 +80,7 @@ class SimulatedCase(ByValue):
                     raise ModelError(f'"{name}": the motion of {motion} is none of `sine`')
             if stem == "computer" and isinstance(self.computer, str):
                 raise ModelError(f'"{name}": the computer is "continuous"')
-            raise ModelError(
-                f'no parameter "{name}", has {_join_names(known)}{did_you_mean(name, known)}'
-            )
+            raise ModelError(unknown("parameter", name, known))
 
     def with_values(self, values: Mapping[str, Any]) -> SimulatedCase:
         """The case with other values, by the names of `names`."""
@@ -170,8 +166,3 @@ def _is_sine(motion: Trajectory) -> bool:
 def _sine_parts(motion: Trajectory) -> dict[str, float]:
     made: Any = motion.position
     return {"amplitude": made.size, "frequency": made.rate / (2 * np.pi), "phase": made.phase}
-
-
-def _join_names(known: tuple[str, ...]) -> str:
-    more = f", ... ({len(known)} in all)" if len(known) > _MOST_NAMED else ""
-    return ", ".join(known[:_MOST_NAMED]) + more

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.errors import ModelError, UnknownSignal, did_you_mean, unknown
+from ..base.errors import ModelError, UnknownSignal, unknown
 from ..base.expectations import describe_value, number_check
 from ..base.frozen import ByValue
 from ..simulate import Setup
@@ -64,11 +64,7 @@ def measure(name: str, **options: Any) -> Measure:
     kind = MEASURES[name]
     for option in options:
         if option not in kind.options:
-            listed = ", ".join(kind.options) or "none"
-            raise ModelError(
-                f'measure {name}: no option "{option}", has {listed}'
-                f"{did_you_mean(option, kind.options)}"
-            )
+            raise ModelError(f"measure {name}: {unknown('option', option, kind.options)}")
     for option, default in kind.options.items():
         if default is ... and option not in options:
             raise ModelError(f'measure {name}: option "{option}" has no value')

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.errors import GrowsWithoutBound, ModelError, TeleopDesignError, did_you_mean
+from ..base.errors import GrowsWithoutBound, ModelError, TeleopDesignError, unknown
 from ..diagrams import Diagram
 from ..simulate import Simulation, simulate_many
 from .case import SimulatedCase
@@ -116,10 +116,7 @@ def check_parameters(model: Callable[..., Any], points: Points) -> None:
     name = getattr(model, "__name__", "model")
     for parameter in points.names:
         if parameter not in takes and not anything:
-            raise ModelError(
-                f'study: {name} takes no parameter "{parameter}", has {", ".join(takes) or "none"}'
-                f"{did_you_mean(parameter, takes)}"
-            )
+            raise ModelError(f"study: {name} takes {unknown('parameter', parameter, takes)}")
     for parameter, declared in takes.items():
         if declared.default is declared.empty and parameter not in points.names:
             raise ModelError(f'study: {name}: parameter "{parameter}" has no axis and no value')

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.arguments import check_types
-from ..base.errors import ExperimentError, ModelError, did_you_mean
+from ..base.errors import ExperimentError, ModelError, unknown
 from ..base.files import write_beside
 from ..base.frozen import ByName, ByValue
 from ..base.shown import Shown
@@ -60,11 +60,8 @@ class Study(Shown, ByName, ByValue):
             if not self.measures:
                 most = next(iter(self.failures), "the measures give no value")
                 raise ModelError(f"study: every point failed, most: {most}")
-            known = self._names()
-            raise ModelError(
-                f'study: no measure or parameter "{name}", has {", ".join(known)}'
-                f"{did_you_mean(name, without_reason(known))}"
-            )
+            known = without_reason(self._names())
+            raise ModelError(f"study: {unknown('measure or parameter', name, known)}")
         return self.data[name]
 
     @property

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.errors import ModelError, did_you_mean
+from ..base.errors import ModelError, unknown
 from ..base.frozen import ByValue
 from ..base.shown import Shown
 from ..measurement import Record
@@ -42,10 +42,7 @@ class MeasuredSignals:
     def column(self, name: str) -> np.ndarray:
         """The samples of a column; raises ModelError: no such column."""
         if name not in self.columns:
-            raise ModelError(
-                f'fit_simulation: data: no "{name}", has {", ".join(self.columns)}'
-                f"{did_you_mean(name, self.columns)}"
-            )
+            raise ModelError(f"fit_simulation: data: {unknown('column', name, self.columns)}")
         return self.columns[name]
 
     def course(self, name: str) -> MeasuredCourse:

@@ -71,7 +71,7 @@ def test_the_device_of_a_diagnosis_moves_in_a_hand(answer, capsys):
         (["--motion", "L", "10N", "2Hz"], '--motion L: found "N", expected a length'),
         (["--motion", "L", "10mm", "two"], "--motion L: found 'two', expected a number"),
         (["--motion", "R_V", "1N", "2Hz"], '"R_V" is no motion, has L'),
-        (["--input", "L", "1mm", "2Hz"], '"L" is not from outside, inputs are R_V, L_D'),
+        (["--input", "L", "1mm", "2Hz"], 'no signal from outside "L", has R_V, L_D'),
         (["--value", "Z_M.inertia"], "--value: found 'Z_M.inertia', expected NAME=VALUE"),
         (["--value", "Z_M.inertai=1kg"], 'did you mean "Z_M.inertia"?'),
         (

@@ -37,7 +37,7 @@ def on_interface(axes=None, measures="force_error", **changes):
         ({"measures": {"failure": "force_error"}}, "expected another name"),
         ({"measures": {AXIS: "force_error"}}, "is a parameter: name it otherwise"),
         ({"initial": {"Q": 1.0}}, 'initial: no state "Q"'),
-        ({"inputs": {"Q": 1.0}}, '"Q" is not from outside'),
+        ({"inputs": {"Q": 1.0}}, 'no signal from outside "Q"'),
         ({"seed": -1}, "seed: found -1"),
         ({"units": {"force_error": "mN"}}, 'force_error is in N, found "mN"'),
         ({"units": {AXIS: "mN"}}, f'{AXIS} is in N, found "mN"'),

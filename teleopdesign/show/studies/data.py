@@ -66,10 +66,7 @@ class StudyData:
             raise ModelError("study: every point failed: there is nothing to draw")
         if name in listed or not name:
             raise ModelError(f"study: {name or ', '.join(listed)}: found texts, expected numbers")
-        raise ModelError(
-            f'study: no measure "{name}" in numbers, has {", ".join(known) or "none"}'
-            f"{did_you_mean(name, known)}"
-        )
+        raise ModelError(f"study: {unknown('measure in numbers', name, known)}")
 
     def at(self, values: xarray.DataArray, at: Mapping[str, float] | None) -> xarray.DataArray:
         """The values nearest to the point `at`, without axes that have only one value left."""
