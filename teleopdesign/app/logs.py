@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError
 from ..check import look_at, stopping_findings
@@ -137,7 +137,7 @@ def preview(folder: Path, name: str, answers: Answers | None = None) -> Preview:
 
 def _with_units(choices: Choices, units: Mapping[str, str], survey: Survey, file: str) -> Choices:
     """Choices with the units of channels as units of columns; these columns are then fixed."""
-    columns: dict[str, str] = {}
+    columns: dict[str, Any] = {}
     for key in units:
         column = survey.channels.get(key, {}).get("column")
         if column is None:
@@ -145,14 +145,7 @@ def _with_units(choices: Choices, units: Mapping[str, str], survey: Survey, file
             raise ExperimentError(f"{file}: {shown} unit: choose the column of the {shown} as well")
         columns[key] = column
     named = {columns[key]: unit for key, unit in units.items()}
-    return replace(
-        choices,
-        units=named,
-        time=columns.get("time", choices.time),
-        position=columns.get("position", choices.position),
-        actuator_force=columns.get("actuator_force", choices.actuator_force),
-        interaction_force=columns.get("interaction_force", choices.interaction_force),
-    )
+    return replace(choices, units=named, **columns)
 
 
 def spans_of_sliders(fit: Sequence[float], check: Sequence[float], shown: Preview) -> FitAndCheck:
@@ -191,21 +184,15 @@ def choices_of(answers: Answers) -> Choices:
         arm" with their units
     raises ExperimentError: a constant that is no number
     """
-    column = {key: answers.get(name) or None for name, key in QUANTITIES.items()}
-    number = {key: _number(answers, name) for name, key in NUMBERS.items()}
+    stated: dict[str, Any] = {key: answers.get(name) or None for name, key in QUANTITIES.items()}
+    stated |= {key: _number(answers, name) for name, key in NUMBERS.items()}
     constant = (answers.get("torque constant") or "").strip()
     arm = (answers.get("lever arm") or "").strip()
     return Choices(
         axis=answers.get("axis") or None,
-        time=column["time"],
-        position=column["position"],
-        actuator_force=column["actuator_force"],
-        interaction_force=column["interaction_force"],
         torque_constant=motor_constant(constant, where="torque constant") if constant else None,
         lever_arm=lever_arm(arm, where="lever arm") if arm else None,
-        gear_ratio=number["gear_ratio"],
-        counts_per_turn=number["counts_per_turn"],
-        sample_rate=number["sample_rate"],
+        **stated,
     )
 
 

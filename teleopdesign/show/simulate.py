@@ -16,10 +16,17 @@ if TYPE_CHECKING:
     import xarray
 
     from ..simulate import ForceDisplacement, ForceVelocity, Simulation
+    from ..simulate.on_grid import TableOverTime
 
 #: colours (Okabe and Ito) and lines by case, in order
 LINES = (("#000000", "-"), ("#0072B2", "-"), ("#D55E00", "-"), ("#009E73", "-"))
 ENVIRONMENT = "#BFBFBF"
+
+
+@shows("text")
+def course_text(course: TableOverTime) -> str:
+    """The number of samples of an input."""
+    return f"course of {len(course.time)} samples"
 
 
 @shows("text")

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     import matplotlib.figure
 
     from ..tuning import CheckedLimit, ParetoFront, SimulationFit, Tuned, TuningLimit
-    from ..tuning.measured_signals import MeasuredCourse
 
 #: evaluated points that are further from the front than this many of its lengths are not drawn
 _BESIDE = 1.5
@@ -27,12 +26,6 @@ _BESIDE = 1.5
 GREY, BEST, BEFORE = "#BFBFBF", "#0072B2", "#D55E00"
 #: colour of measured points
 DIM = "#9A9A9A"
-
-
-@shows("text")
-def course_text(course: MeasuredCourse) -> str:
-    """The number of samples of a measured input."""
-    return f"course of {len(course.time)} samples"
 
 
 @shows("text")

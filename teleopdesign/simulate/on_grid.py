@@ -10,6 +10,8 @@ import numpy as np
 
 from ..base.errors import ModelError
 from ..base.expectations import describe_value
+from ..base.frozen import ByValue
+from ..base.shown import Shown
 from ..diagrams import Diagram
 from ..realise.signal_symbols import is_whole
 
@@ -86,8 +88,8 @@ def input_table(
 
 
 @dataclass(frozen=True, eq=False)
-class TableOverTime:
-    """Samples (n,) of an input at times (n,), s, linear in between: the same on any finer grid."""
+class TableOverTime(Shown, ByValue):
+    """Samples (n,) of an input at times (n,), s: linear in between, constant beyond both ends."""
 
     time: np.ndarray
     samples: np.ndarray

@@ -9,27 +9,15 @@ from typing import Any
 import numpy as np
 
 from ..base.errors import ModelError, unknown
-from ..base.frozen import ByValue
-from ..base.shown import Shown
 from ..measurement import Record
 from ..measurement.from_arrays import log_of
 from ..simulate import Simulation, Trajectory, sampled_motion
+from ..simulate.on_grid import TableOverTime
 
 #: fewest instants from which anything is fitted
 _FEWEST = 10
 #: durations of the data before them that nobody means to simulate: stamps of a clock
 _LATE = 10.0
-
-
-@dataclass(frozen=True, eq=False)
-class MeasuredCourse(Shown, ByValue):
-    """A measured input: linear between samples (n,), constant beyond both ends."""
-
-    time: np.ndarray
-    values: np.ndarray
-
-    def __call__(self, t: np.ndarray) -> np.ndarray:
-        return np.asarray(np.interp(t, self.time, self.values))
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +33,12 @@ class MeasuredSignals:
             raise ModelError(f"fit_simulation: data: {unknown('column', name, self.columns)}")
         return self.columns[name]
 
-    def course(self, name: str) -> MeasuredCourse:
+    def course(self, name: str) -> TableOverTime:
         """The samples of a column as an input; raises ModelError: a sample that is no number."""
         values = self.column(name)
         if not np.isfinite(values).all():
             raise ModelError(f'fit_simulation: "{name}" has samples that are no numbers')
-        return MeasuredCourse(self.time, values)
+        return TableOverTime(self.time, values)
 
     def motion(self, name: str) -> Trajectory:
         """The samples of a column as a prescribed motion."""
