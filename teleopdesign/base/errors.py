@@ -107,27 +107,26 @@ LONGEST = 100
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
 
 
-def check_name(name: object, *, where: str, dotted: bool = False) -> str:
+def check_name(name: object, *, where: str) -> str:
     """The name unchanged, if it is made of ASCII letters, digits and underscores, no digit first.
 
-    where: beginning of a message;  dotted: accept words joined by dots, such as "coulomb.level"
+    where: beginning of a message
     raises ModelError: the name is too long, has other characters or is a keyword of Python; the
         message proposes a valid name where there is one
     """
     if not isinstance(name, str):
         raise ModelError(f"{where}: found {type(name).__name__}, expected a name")
-    words = name.split(".") if dotted else [name]
     if len(name) > LONGEST:
         raise ModelError(
             f"{where}: found the name {quote(name)} of {len(name)} characters, "
             f"expected at most {LONGEST}"
         )
-    if not all(_WORD.fullmatch(word) for word in words):
+    if not _WORD.fullmatch(name):
         raise ModelError(
             f"{where}: found the name {quote(name)}, expected letters (a to z), digits and "
             f"underscores, no digit first{did_you_mean(name, [_mend(name)])}"
         )
-    if any(keyword.iskeyword(word) for word in words):
+    if keyword.iskeyword(name):
         raise ModelError(
             f"{where}: found the name {quote(name)}, a word of Python that no expression can "
             f'hold; did you mean "{name}_"?'

@@ -137,18 +137,16 @@ class Refit:
         return error_of(self.check, apart) / self.floor
 
 
-def refit(
-    rivals: Sequence[Rival], new: Sequence[Record], bench: Bench, *, best: int = 0, seed: int = 0
-) -> Refit:
+def refit(rivals: Sequence[Rival], new: Sequence[Record], bench: Bench, *, seed: int = 0) -> Refit:
     """Fit rivals to the present records and new ones, and compare them on the new check record.
 
-    new: records with the names `FIT` and `CHECK`;  best: number of the rival for the noise floor
+    rivals: the first one for the noise floor;  new: records with the names `FIT` and `CHECK`
     """
     prepared = prepare(with_records(bench.experiment, new), bandwidth=bench.bandwidth)
     check = tuple(s for s in prepared.stretches if s.motion.file == CHECK)
     fits = tuple(estimate(r.model, prepared) for r in rivals)
     generator = np.random.default_rng(seed)
-    check_floor = noise_floor(fits[best].model, replace(prepared, stretches=check), generator).value
+    check_floor = noise_floor(fits[0].model, replace(prepared, stretches=check), generator).value
     floor = max(check_floor, bench.floor / rms_measured(check))
     # relative to what acts by each model: one whose actuator passes less has gained nothing by that
     left = [[r for r, _ in relative_residuals(f.model, check)] for f in fits]

@@ -152,9 +152,9 @@ class Sums:
         return float(np.sqrt(max(left, 0.0) / max(noise, 1e-300)))
 
 
-def normal_matrix(rival: Rival, prepared: Prepared, use: str = "fit") -> Array:
-    """J'J of a model by its free parameters on the records of one use."""
-    stretches = prepared.of(use)
+def normal_matrix(rival: Rival, prepared: Prepared) -> Array:
+    """J'J of a model by its free parameters on the fit records."""
+    stretches = prepared.of("fit")
     parts = relative_residuals(rival.model, stretches, rival.fit.free)
     p = len(rival.fit.free)
     return sum(
