@@ -62,12 +62,6 @@ class SampledLoop:
         more = Fraction(time)
         return replace(self, above=tuple((t + more, p) for t, p in self.above))
 
-    def with_gain(self, factor: float) -> SampledLoop:
-        """The loop with its gain multiplied by a factor."""
-        above, below = self.law
-        law = tuple(c * Fraction(factor) for c in above), below
-        return replace(self, law=law)
-
     @property
     def samples(self) -> int:
         """Whole samples in the longest dead time of the loop."""
