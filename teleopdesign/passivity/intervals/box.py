@@ -22,7 +22,7 @@ from ...diagrams import Diagram
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim, NotTrueOrFalse
 from ..linear.family import Family
-from ..linear.matrices import coefficient, degree
+from ..linear.signs import coefficient, degree
 from ..linear.sweep import least_over, margin_of
 from ..ports import drop_absent_effects, nonlinear_parts
 

@@ -34,7 +34,7 @@ from ...controllers import exact_decimal
 from ...derive.effort import try_within_effort
 from ...derive.polynomials import is_hurwitz
 from ...frequency.late_zeros import Terms, count_growing, exact_terms, terms_of
-from ..linear.matrices import evaluate_at_middle
+from ..linear.signs import Signs
 from .box import IntervalClaim, Status, ValueBox, interval_claim, search_worst
 from .late_cells import is_zero_free
 
@@ -74,7 +74,7 @@ def judge_late(
     cells = None
     # without dead times, in the middle of the box
     together = p.evaluate([(x, 1) for x in p.ring.gens[1 + len(box.names) :]])
-    if is_hurwitz(evaluate_at_middle(together, box.exact)):
+    if is_hurwitz(Signs(box.exact).middle(together)):
         cells = try_within_effort(lambda: is_zero_free(p, times, box), None)
     status: Status = "evidence" if cells is None else "proved"
     how = "no proof over the whole box: not stable from no dead time on, or not shown part by part"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -14,15 +13,15 @@ from sympy.polys.polyerrors import PolynomialError
 
 from ...base.errors import ModelError
 from ...derive.all_states import AllStates, all_states, is_well_posed
-from ...derive.effort import TooMuchEffort
+from ...derive.effort import TooMuchEffort, try_within_effort
 from ...derive.polynomials import is_hurwitz
 from ...derive.responses import Responses
 from ...diagrams import Diagram
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim
-from ..linear.conditions import certificates_over_box, stability_certificate
-from ..linear.family import family_of_states
-from ..linear.matrices import evaluate_at_middle
+from ..linear.conditions import impedance_certificate, is_shown, stability_certificate, take_damping
+from ..linear.family import Family, family_of_states
+from ..linear.signs import Signs
 from ..linear_diagrams import linear_claims
 from ..ports import drop_absent_effects, ports
 from .box import (
@@ -97,10 +96,11 @@ def normalise(p: Any) -> Any:
 
 
 def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) -> IntervalClaim:
+    signs = Signs(box.exact)
     worst = search_worst(pole_margin(p), box, points=points, seed=seed)
     there = tuple(map(float, worst.point))
     point = ValueBox(box.names, there, there).exact  # a box without width
-    if worst.margin <= 0 and not is_hurwitz(evaluate_at_middle(p, point)):
+    if worst.margin <= 0 and not is_hurwitz(Signs(point).middle(p)):
         how = (
             f"a pole with real part {-worst.margin:.4g} 1/s; not Hurwitz by Routh's scheme, exactly"
         )
@@ -108,10 +108,13 @@ def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) 
 
     def certificates(bound: Fraction) -> tuple[Certificate, ...]:
         title = f"{name}: every pole has a real part below -{bound} 1/s, s counted from there"
-        return (stability_certificate(title, _move_axis(p, bound), box.names, box.exact),)
+        moved = _move_axis(p, bound)
+        return (stability_certificate(title, moved, names=box.names, ends=box.exact, signs=signs),)
 
     return _prove(
         interval_claim(_STABLE, "evidence", worst, box, "1/s", ""),
+        signs,
+        lambda bound: signs.is_hurwitz(_move_axis(p, bound)),
         certificates,
         "its characteristic polynomial is nowhere zero on the axis",
     )
@@ -138,7 +141,7 @@ def judge_linear(
     family = family_of_states(states, ports(alone), box.names, box.exact)
     worst = search_worst(port_margin(family, claim), box, points=points, seed=seed)
     exact = _settle(alone.with_values(box.named(worst.point)), claim)
-    unit = CLAIMS[claim]
+    unit, signs = CLAIMS[claim], Signs(box.exact)
     if exact.status == "refuted":
         worst = worst if worst.margin < 0 else replace(worst, margin=-np.inf)
         how = str(exact.verdict)
@@ -154,7 +157,9 @@ def judge_linear(
     title = f"{alone.name}: {statement}"
     return _prove(
         made,
-        lambda bound: certificates_over_box(title, family, claim, bound),
+        signs,
+        lambda bound: is_shown(signs, family, claim, bound),
+        lambda bound: _certificates(signs, family, claim, bound, title),
         "its conditions are polynomials of one sign",
         shares=_SHARES if claim == "passive" else (),
     )
@@ -162,33 +167,55 @@ def judge_linear(
 
 def _prove(
     made: IntervalClaim,
+    signs: Signs,
+    is_shown: Callable[[Fraction], bool],
     certificates: Callable[[Fraction], tuple[Certificate, ...]],
     what: str,
     shares: Sequence[float] = _SHARES,
 ) -> IntervalClaim:
-    """The claim, proved where the checker accepts its certificates.
+    """The claim, proved where it is shown for the whole box and the checker accepts that.
 
     made: the claim as evidence;  what: is shown, in words
-    certificates: with a margin that is taken away, in the unit of the claim; raises ModelError
-        where the checker refuses one
+    is_shown, certificates: with a margin that is taken away, in the unit of the claim
     shares: of the worst margin that are tested as a proved bound
     """
-    try:
-        accepted, bound = certificates(Fraction(0)), Fraction(0)
-    except ModelError as problem:
-        return replace(made, how=f"no proof over the whole box: {problem}")
-    for share in shares if np.isfinite(made.margin) else ():
-        less = Fraction(made.margin * share).limit_denominator(10**6)
-        if 0 < less <= made.margin:
-            with suppress(ModelError):
-                accepted, bound = certificates(less), less
-                break
+
+    def shown(margin: Fraction) -> bool:
+        return try_within_effort(lambda: is_shown(margin), False)
+
+    if not shown(Fraction(0)):
+        why = f"not shown on {signs.cells} parts of it, or modes that no port shows"
+        return replace(made, how=f"no proof over the whole box: {why}")
     how = (
-        f"{what}, by Bernstein coefficients over the box in exact arithmetic; {len(accepted)} "
-        f"certificate{'s' * (len(accepted) > 1)}"
+        f"{what}: {signs.polynomials} shown by Bernstein coefficients on "
+        f"{signs.cells} parts of the box, in exact arithmetic"
     )
+    shares = shares if np.isfinite(made.margin) else ()
+    margins = (Fraction(made.margin * share).limit_denominator(10**6) for share in shares)
+    bound = next((c for c in margins if 0 < c <= made.margin and shown(c)), Fraction(0))
+    try:
+        accepted = certificates(bound)
+    except ModelError:
+        how = f"{how}; a certificate would ask for more work than its checker does"
+        return replace(made, how=how)
+    how = f"{how}; {len(accepted)} certificate{'s' * (len(accepted) > 1)}"
     margin = float(bound)
     return replace(made, status="proved", proved_margin=margin, how=how, certificates=accepted)
+
+
+def _certificates(
+    signs: Signs, family: Family, claim: str, bound: Fraction, title: str
+) -> tuple[Certificate, ...]:
+    """One for the ports, and one for all modes, where the ports do not show all of them."""
+    kept = take_damping(family, bound)
+    first = impedance_certificate(title, family, kept, claim, signs)
+    if not family.hides:
+        return (first,)
+    more = "every mode decays with dampers at the ports"
+    modes = stability_certificate(
+        more, family.held, names=family.names, ends=family.ends, signs=signs
+    )
+    return first, modes
 
 
 def margin_over(diagram: Diagram, box: ValueBox, claim: str) -> MarginFunction | None:

@@ -35,9 +35,10 @@ from ..friction_pairs import (
     refuting,
     without_pair,
 )
-from ..linear.conditions import certificates_over_box
+from ..linear.conditions import is_shown
 from ..linear.family import family_of_states
 from ..linear.impedance import decimal, exact
+from ..linear.signs import Signs
 from ..ports import drop_absent_effects, nonlinear_parts, ports, without_holders
 from .box import IntervalClaim, ValueBox, Worst, box_of, interval_claim, nonlinear_within
 from .linear import CLAIMS, judge_at_points, judge_linear, judge_stability, states_over
@@ -218,8 +219,4 @@ def _rest_is_passive(middle: Diagram, box: ValueBox) -> bool:
     if states is None or states.times:
         return False
     family = family_of_states(states, ports(rest), within.names, within.exact)
-    try:
-        certificates_over_box("the linear rest is passive", family, "passive")
-    except ModelError:
-        return False
-    return True
+    return is_shown(Signs(within.exact), family, "passive")

@@ -1,4 +1,4 @@
-"""Claims about a family of linear systems as conditions on polynomials, and their certificates.
+"""Claims about a family of linear systems as signs of polynomials over a box.
 
 Stable: the determinant of all states is Hurwitz in the whole box.
 
@@ -9,16 +9,14 @@ then analytic for Re s >= 0 and at most 1 on the axis, so also in between (maxim
 
 Absolutely stable, two ports: `held` is Hurwitz, what passes between dampers grows at most like s
 far out, and on the axis Re z11, Re z22 >= 0 and Llewellyn's inequality hold, where Z is finite.
-`checker/matrices.py` has the proof.
-
-At a point the conditions are decided here, too. Over a box a claim is proved where the checker
-accepts its certificates: the checker alone looks for signs over a box.
+`checker/matrices.py` has the proof. What is shown is written as a certificate in the form that the
+checker reads; a point is a box, too.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
 from typing import Any, Literal
@@ -29,7 +27,8 @@ from ...derive.polynomials import X, as_poly, cross, is_hurwitz, is_non_negative
 from ...realise.lti import S
 from ..claims.certificate import Certificate, checker_text, seal
 from .family import Family
-from .matrices import Ends, Matrix, close, dampers, degree, determinant, evaluate_at_middle, hold
+from .matrices import Matrix, close, dampers, determinant, hold
+from .signs import Ends, Signs, axis_unit, coefficient, degree
 
 
 def holds_exactly(family: Family, claim: str, margin: Fraction = Fraction(0)) -> bool:
@@ -49,6 +48,59 @@ def holds_exactly(family: Family, claim: str, margin: Fraction = Fraction(0)) ->
         and is_hurwitz(as_poly(held, S))
         and all(is_non_negative(as_poly(p, X)) for p in axis_conditions(n, d, claim))
     )
+
+
+def is_shown(signs: Signs, family: Family, claim: str, margin: Fraction = Fraction(0)) -> bool:
+    """Whether a claim is shown for the whole box; dead times are not covered.
+
+    claim: "passive" or "absolutely stable";  margin: damping that Z may lose at each port, N s/m
+    """
+    n = take_damping(family, margin)
+    if not _modes_decay(signs, family, n, claim):
+        return False
+    unit = axis_unit(signs.middle(family.held))
+    tests = axis_conditions(n, family.d, claim)
+    return all(signs.is_non_negative(p, unit) for p in tests)
+
+
+def _modes_decay(signs: Signs, family: Family, n: Matrix, claim: str) -> bool:
+    """Whether all modes are shown to decay with dampers at the ports; n: less a margin.
+
+    Where springs or masses vanish at an end of the box, the modes that the ports do not show are
+    shown to decay, and the poles of Z to be passive ones.
+    """
+    held = family.held if n is family.n else close(n, family.d, dampers(n, family.d))
+    # what passes from port to port between dampers is to grow at most like s far out
+    is_slow = claim == "passive" or (
+        degree(family.d) + max(degree(n[0][1]), degree(n[1][0]))
+        <= degree(determinant(hold(n, family.d, dampers(n, family.d)))) + 1
+    )
+    decays = is_slow and signs.is_hurwitz(held)
+    if decays and (n is family.n or signs.is_hurwitz(family.held)):
+        return True
+    if not signs.ends or len(n) > 2:
+        return False
+    shown = close(family.n, family.d, dampers(family.n, family.d))
+    (hidden,), rest = family.held.div([shown])
+    if rest or not signs.is_hurwitz(hidden):
+        return False
+    return _has_passive_residues(signs, n, family.d, symmetric=claim == "passive")
+
+
+def _has_passive_residues(signs: Signs, n: Matrix, d: Any, *, symmetric: bool) -> bool:
+    """Whether the poles of N/d are shown to lie on the left, or at 0 and infinity and passive."""
+    has_zero = not coefficient(d, 0)
+    rest = d.exquo(d.ring.gens[0]) if has_zero else d
+    if not signs.is_hurwitz(rest) or max(degree(e) for row in n for e in row) > degree(d) + 1:
+        return False
+    sign = 1 if signs.middle(rest).LC() > 0 else -1
+    for power in (degree(d) + 1, *((0,) if has_zero else ())):
+        k = [[coefficient(e, power) * sign for e in row] for row in n]
+        if symmetric and len(k) == 2 and k[0][1] != k[1][0]:
+            return False
+        if not all(map(signs.is_non_negative, (*(k[i][i] for i in range(len(k))), determinant(k)))):
+            return False
+    return True
 
 
 def take_damping(family: Family, margin: Fraction) -> Matrix:
@@ -109,85 +161,62 @@ KINDS: dict[str, Literal["positive real", "absolute stability"]] = {
 }
 #: most characters of a name that the checker reads
 _LONGEST = 60
-#: terms of a polynomial of which factors are looked for: of a larger one this takes longer than the
-#: proof
-_MOST_TERMS = 600
 
 
 def stability_certificate(
-    title: str, p: Any, names: Sequence[str] = (), ends: Ends = ()
+    title: str, p: Any, *, names: Sequence[str] = (), ends: Ends = (), signs: Signs | None = None
 ) -> Certificate:
     """Certificate that a polynomial in s and the values has no root with Re s >= 0, over the box.
 
     raises ModelError: the checker does not accept it
     """
     plain = _plain_names(p.ring, names)
-    return _certify("stable over a box", title, plain, ends, (), polynomial=_text(p, plain))
+    fields: dict[str, object] = {"polynomial": _text(p, plain)}
+    return _certify("stable over a box", title, fields, plain, ends, signs)
 
 
-def certificates_over_box(
-    title: str, family: Family, claim: str, margin: Fraction = Fraction(0)
-) -> tuple[Certificate, ...]:
-    """Certificates that a family of one or two ports is passive or absolutely stable over the box.
+def impedance_certificate(
+    title: str, family: Family, n: Matrix, claim: str, signs: Signs
+) -> Certificate:
+    """Certificate that N/d, of one or two ports, is passive or absolutely stable over the box.
 
-    One is for the ports, and one for the modes that the ports do not show, where there are any.
-
-    claim: "passive" or "absolutely stable";  margin: damping that Z may lose at each port, N s/m
-    raises ModelError: the checker does not accept them
+    raises ModelError: the checker does not accept it
     """
-    n, d, plain = take_damping(family, margin), family.d, _plain_names(family.d.ring, family.names)
+    plain = _plain_names(family.d.ring, family.names)
     fields: dict[str, object] = {
         "numerators": [[_text(e, plain) for e in row] for row in n],
-        "denominator": _text(d, plain),
+        "denominator": _text(family.d, plain),
     }
     if claim == "passive":
-        *rows, below = (
-            [d.ring.from_expr(evaluate_at_middle(e, family.ends).as_expr()) for e in row]
-            for row in (*n, [d])
-        )
-        fields["scale"] = str(max(dampers(rows, *below)))
-    tests = axis_conditions(n, d, claim)
-    kind = f"{KINDS[claim]} over a box"
-    made = [_certify(kind, title, plain, family.ends, tests, **fields)]
-    (hidden,), rest = family.held.div([close(family.n, d, dampers(family.n, d))])
-    hidden = family.held if rest else hidden
-    if not hidden.is_ground:
-        more = "every mode that no port shows decays"
-        made.append(stability_certificate(more, hidden, family.names, family.ends))
-    return tuple(made)
+        middle = [[_middle_of(signs, e) for e in row] for row in n]
+        fields["scale"] = str(max(dampers(middle, _middle_of(signs, family.d))))
+    return _certify(f"{KINDS[claim]} over a box", title, fields, plain, family.ends, signs)
+
+
+def _middle_of(signs: Signs, p: Any) -> Any:
+    return p.ring.from_expr(signs.middle(p).as_expr())
 
 
 def _certify(
     kind: str,
     title: str,
+    fields: dict[str, object],
     plain: dict[sp.Symbol, sp.Symbol],
     ends: Ends,
-    tests: Iterable[Any],
-    **fields: object,
+    signs: Signs | None,
 ) -> Certificate:
-    """A certificate that the checker accepts.
-
-    plain: symbols of the ring -> plain names;  tests: polynomials whose signs the checker decides
-    """
     pairs = zip(list(plain.values())[1:], ends, strict=False)
-    on_axis = {**plain, next(iter(plain)): sp.Symbol("x")}
-    made = seal(
-        {
-            "kind": kind,
-            "title": title,
-            "box": {x.name: [str(low), str(high)] for x, (low, high) in pairs},
-            "squares": [_text(p, on_axis) for p in _repeated_factors(tests)],
-            **fields,
-        }
-    )
+    content = {
+        "kind": kind,
+        "title": title,
+        "box": {x.name: [str(low), str(high)] for x, (low, high) in pairs},
+        "squares": [_text(p, {**plain, next(iter(plain)): sp.Symbol("x")})
+                    for p in (signs.squares if signs else ())],
+        **fields,
+    }  # fmt: skip
+    made = seal(content)
     made.check()
     return made
-
-
-def _repeated_factors(tests: Iterable[Any]) -> list[Any]:
-    """Factors of which polynomials have a square: the checker divides by it."""
-    lists = (p.factor_list()[1] for p in tests if len(p) <= _MOST_TERMS)
-    return list(dict.fromkeys(f for one in lists for f, k in one if k > 1 and not f.is_ground))
 
 
 def _plain_names(ring: Any, names: Sequence[str]) -> dict[sp.Symbol, sp.Symbol]:

@@ -31,18 +31,8 @@ from ...diagrams import Diagram
 from ...frequency.late_zeros import count_growing, terms_of, zeros_at_origin
 from ...realise.lti import S
 from .impedance import Impedance, exact, impedance_of
-from .matrices import (
-    Ends,
-    Matrix,
-    close,
-    cofactors,
-    damper,
-    dampers,
-    degree,
-    determinant,
-    divide_out,
-    hold,
-)
+from .matrices import Matrix, close, cofactors, damper, dampers, determinant, divide_out, hold
+from .signs import Ends, degree
 from .unseen import not_decaying
 
 if TYPE_CHECKING:

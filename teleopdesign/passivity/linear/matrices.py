@@ -15,29 +15,8 @@ import numpy as np
 import sympy as sp
 
 from ...derive.effort import spend
-from ...derive.polynomials import as_poly
-from ...realise.lti import S
 
 Matrix = Sequence[Sequence[Any]]
-#: intervals of the values, the generators of the ring after the first one
-Ends = Sequence[tuple[Fraction, Fraction]]
-
-
-def degree(p: Any) -> int:
-    """The highest power of the first generator; -1 for zero."""
-    return max((k[0] for k in p), default=-1)
-
-
-def coefficient(p: Any, power: int) -> Any:
-    """Coefficient of a power of the first generator, in the same ring."""
-    return p.ring({(0, *k[1:]): c for k, c in p.items() if k[0] == power})
-
-
-def evaluate_at_middle(p: Any, ends: Ends) -> sp.Poly:
-    """The polynomial at the middle of the box, in `S`."""
-    middle = [sp.QQ(*((a + b) / 2).as_integer_ratio()) for a, b in ends]
-    at = list(zip(p.ring.gens[1:], middle, strict=True))
-    return as_poly(p.evaluate(at) if at else p, S)
 
 
 def divide_out(n: Matrix, d: Any) -> tuple[Matrix, Any]:
