@@ -12,7 +12,7 @@ each parameter changes much, but a product of their powers hardly changes.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -272,21 +272,3 @@ def explain_open_width(fit: Fit, candidate: Candidate, prepared: Prepared) -> st
                     "records do not determine it"
                 )
     return ""
-
-
-@dataclass(frozen=True)
-class OpenWidths:
-    """The sentences of `explain_open_width` on the fits of one ranking; each is computed once."""
-
-    prepared: Prepared
-    #: by the fit's identity, which holds while the fit stands beside it
-    known: dict[int, tuple[Fit, str]] = field(default_factory=dict)
-
-    def explain(self, fit: Fit, candidate: Candidate) -> str:
-        """The sentence on a fit; "" where the records determine its essential parameters."""
-        if not any(p.search.essential for p in candidate.effect.parameters.values()):
-            return ""
-        if id(fit) not in self.known:
-            sentence = explain_open_width(fit, candidate, self.prepared)
-            self.known[id(fit)] = (fit, sentence)
-        return self.known[id(fit)][1]

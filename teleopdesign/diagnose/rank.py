@@ -21,7 +21,7 @@ from .decision import find_superfluous_effect, lowers_check_squares, rank_key, r
 from .draws import explain_records, search_among_draws
 from .evidence import check_score, check_squares, whole_score
 from .fit import Fit, estimate, fit_squares
-from .identifiability import OpenWidths, is_identifiable
+from .identifiability import explain_open_width, is_identifiable
 from .linear_start import Promises
 from .plausibility import implausible_effects
 from .ranking import Ranked, Ranking
@@ -130,11 +130,9 @@ def _contenders_refined(
     base: Fit,
     worthless: float,
     prepared: Prepared,
-    *,
-    widths: OpenWidths,
 ) -> list[tuple[Candidate, Fit]]:
     """The attempts, with fine fits of the best ones."""
-    most = (1.0 + PLAN.contending) * _least_squares_that_count(attempts, base, widths)
+    most = (1.0 + PLAN.contending) * _least_squares_that_count(attempts, base, prepared)
     chosen = [i for i, (_, fit) in enumerate(attempts) if fit_squares(fit) <= most]
     finer = map_on_cores(lambda i: _refine_candidate(attempts[i], worthless, prepared), chosen)
     made = dict(zip(chosen, finer, strict=True))
@@ -142,7 +140,7 @@ def _contenders_refined(
 
 
 def _least_squares_that_count(
-    attempts: Collection[tuple[Candidate, Fit]], base: Fit, widths: OpenWidths
+    attempts: Collection[tuple[Candidate, Fit]], base: Fit, prepared: Prepared
 ) -> float:
     """Least squares of an attempt that counts; of all attempts where none counts.
 
@@ -154,8 +152,8 @@ def _least_squares_that_count(
             not refusal(base, fit)
             and is_identifiable(fit, base)
             and check_squares(fit) < check_squares(base)
-            and not _implausible(base, candidate, fit, widths.prepared)
-            and not widths.explain(fit, candidate)
+            and not _implausible(base, candidate, fit, prepared)
+            and not explain_open_width(fit, candidate, prepared)
         ):
             return fit_squares(fit)
     return min((fit_squares(f) for _, f in attempts), default=0.0)
@@ -200,10 +198,9 @@ def rank_candidates(
         fits = search_among_draws(fits, start, prepared)
     fits = [_absent_if_it_runs_away(cf, base) for cf in fits]
     worthless = (1.0 - worth) * fit_squares(base)
-    widths = OpenWidths(prepared)
-    fits = _contenders_refined(fits, base, worthless, prepared, widths=widths)
+    fits = _contenders_refined(fits, base, worthless, prepared)
     fits = [_absent_if_it_runs_away(cf, base) for cf in fits]
-    results = sorted((_ranked_best(base, cf, widths) for cf in fits), key=rank_key)
+    results = sorted((_ranked_best(base, cf, prepared) for cf in fits), key=rank_key)
     entries = [
         replace(r, behind=whole_score(r.fit, results[0].fit) if i else 0.0)
         for i, r in enumerate(results)
@@ -218,18 +215,18 @@ def make_ranked(
     *,
     prepared: Prepared,
     instead_of: Candidate | None = None,
-    widths: OpenWidths | None = None,
+    has_open_width: bool = True,
 ) -> Ranked:
     """A candidate that was added to a base, as the first of a ranking.
 
     instead_of: effect of the base that the fitted model lacks
-    widths: checks parameters whose values stay open, if the gain is large enough; None: no such
-        check
+    has_open_width: whether it may have a parameter whose value stays open; asked if the gain is
+        large enough
     """
     implausible = _implausible(base, candidate, fit, prepared)
     gains = lowers_check_squares(base, fit)
-    if widths is not None and gains and not implausible:
-        implausible = widths.explain(fit, candidate)
+    if has_open_width and gains and not implausible:
+        implausible = explain_open_width(fit, candidate, prepared)
     return Ranked(
         candidate=candidate,
         fit=fit,
@@ -255,11 +252,10 @@ def _implausible(base: Fit, candidate: Candidate, fit: Fit, prepared: Prepared) 
     return next((f"with it, {key[0]} is implausible: {stands_for[key]}" for key in new), "")
 
 
-def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], widths: OpenWidths) -> Ranked:
+def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], prepared: Prepared) -> Ranked:
     """The candidate added to the base, or in place of an effect that it makes superfluous."""
     candidate, fit = fitted
-    prepared = widths.prepared
-    beside = make_ranked(base, candidate, fit, prepared=prepared, widths=widths)
+    beside = make_ranked(base, candidate, fit, prepared=prepared)
     gains = lowers_check_squares(base, fit)
     if candidate.key in fit.model.absent or beside.refused or not gains:
         return beside
@@ -274,6 +270,4 @@ def _ranked_best(base: Fit, fitted: tuple[Candidate, Fit], widths: OpenWidths) -
     alone = estimate(less, prepared)
     if check_squares(alone) > (1.0 + CRITERIA.relative_improvement) * check_squares(fit):
         return beside
-    return make_ranked(
-        base, candidate, alone, prepared=prepared, instead_of=superfluous, widths=widths
-    )
+    return make_ranked(base, candidate, alone, prepared=prepared, instead_of=superfluous)

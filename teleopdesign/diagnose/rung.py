@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 
 from ..base.errors import ModelError
@@ -173,14 +174,15 @@ def ranking_alone(
     rung: that of the candidate before, with the effect that it replaced and its look-alikes
     """
     instead_of = None if rung is None else rung.instead_of
-    ranked = [make_ranked(base, candidate, fit, prepared=prepared, instead_of=instead_of)]
+    rank = partial(make_ranked, prepared=prepared, has_open_width=False)
+    ranked = [rank(base, candidate, fit, instead_of=instead_of)]
     for other in () if rung is None else rung.alternatives:
         try:
             model = base.model.with_effect(other.effect, at=other.at)
         except ModelError:  # it is there already, or needs an effect that comes later
             continue
         best = estimate_from_starts(model, prepared, base, worth=0.0)
-        ranked.append(make_ranked(base, other, best, prepared=prepared))
+        ranked.append(rank(base, other, best))
     return Ranking(base, tuple(ranked))
 
 

@@ -23,7 +23,6 @@ from .decision import is_better, is_supported, objection
 from .draws import best_draws
 from .evidence import check_squares, explained_share, is_adequate
 from .fit import Fit, estimate
-from .identifiability import OpenWidths
 from .ladder_state import LadderSearch, LadderState
 from .outside_tone import best_tone
 from .rank import make_ranked
@@ -172,7 +171,7 @@ def _as_rungs(
     if alone is None:
         return []
     alone = min((alone, ranked_alone.get(transmission.key, alone)), key=check_squares)
-    rank = partial(make_ranked, prepared=search.prepared, widths=OpenWidths(search.prepared))
+    rank = partial(make_ranked, prepared=search.prepared)
     # alone, a transmission explains little and may have no gap: it is judged together with friction
     first = replace(rank(base, transmission, both), fit=alone)
     rungs = (

@@ -9,7 +9,7 @@ from teleopdesign import Body, Effect, FitSearch, Model, Parameter, load_experim
 from teleopdesign.diagnose import identifiability as module
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.fit import estimate
-from teleopdesign.diagnose.identifiability import OpenWidths, explain_open_width
+from teleopdesign.diagnose.identifiability import explain_open_width
 from teleopdesign.diagnose.rank import make_ranked
 from teleopdesign.measurement.prepare import prepare
 
@@ -68,8 +68,8 @@ def test_a_candidate_of_any_width_does_not_count(tmp_path):
     fit, prepared = fit_at_truth(recorded(tmp_path, 0.1))
     base = estimate(fit.model.without_effect(EFFECT.name, at="device"), prepared)
     candidate = Candidate(EFFECT, "device")
-    unasked = make_ranked(base, candidate, fit, prepared=prepared)
-    entry = make_ranked(base, candidate, fit, prepared=prepared, widths=OpenWidths(prepared))
+    unasked = make_ranked(base, candidate, fit, prepared=prepared, has_open_width=False)
+    entry = make_ranked(base, candidate, fit, prepared=prepared)
     assert "determine" not in unasked.implausible
     assert "determine" in entry.note and not entry.counts
 
