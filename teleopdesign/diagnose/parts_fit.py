@@ -20,7 +20,7 @@ from .error import force_error, refer_to_command
 from .fit import Fit, estimate
 from .link_knowledge import common_links, joint_knowledge, with_others
 from .parts import PreparedParts, mean_inertias, remove_links, with_inertias
-from .search_plan import EFFORTS, Effort
+from .search_plan import EFFORTS
 from .solve import solve
 from .stated_fit import estimate_values
 
@@ -105,12 +105,11 @@ def estimate_parts(
     prepared: PreparedParts,
     *,
     rounds: int = ROUNDS,
-    effort: Effort = EFFORTS.fine,
 ) -> PartsFit:
     """Estimate all joints' parameters and the base parameters on the fit records.
 
     models: joint -> the model of that joint alone
-    rounds: how often all joints are estimated;  effort: of each estimate
+    rounds: how often all joints are estimated
     """
     models, fits, records = dict(models), {}, dict(prepared.parts)
     for k in range(rounds):
@@ -123,11 +122,7 @@ def estimate_parts(
             records = {j: with_others(p, known, sizes[j], models[j]) for j, p in records.items()}
         for j, model in models.items():
             start = bool(model.absent) and k == 0
-            fits[j] = (
-                estimate_values(model, records[j])
-                if start
-                else estimate(model, records[j], effort=effort)
-            )
+            fits[j] = (estimate_values if start else estimate)(model, records[j])
             models[j] = fits[j].model
     return with_common_links(fits, records, prepared)
 

@@ -41,19 +41,15 @@ class Course:
     velocity: Array
     command: Array
 
-    def stays_near(self, motion: Motion, *, travels: float = 100.0, least: float = 0.1) -> bool:
-        """Whether the travel is between a part and a multiple of the record's travel; no for NaN.
+    def stays_near(self, motion: Motion) -> bool:
+        """Whether the travel is between a tenth and 100 times the record's travel; no for NaN.
 
         The spring that leads a body does not hold every model: one that is held stays within a part
         of the record's travel, any other soon exceeds every bound. A body that sticks where the
-        record moved says nothing about its readings.
-
-        travels: upper limit, over the record's travel
-        least: lower limit, over the record's travel: of two bodies that were stuck, both covered
-            1e-4
+        record moved says nothing about its readings: two bodies that were stuck covered 1e-4.
         """
         travel = np.ptp(motion.position)
-        return bool(least * travel <= np.ptp(self.position) < travels * travel)
+        return bool(0.1 * travel <= np.ptp(self.position) < 100.0 * travel)
 
 
 @dataclass(frozen=True)
