@@ -12,10 +12,10 @@ from ..base.frozen import ByValue
 from ..measurement.filtering import Array
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
-from .error import AtCommand, force_error, refer_to_command, weigh_residuals
+from .error import AtCommand, force_error, refer_to_command
 from .folds import folds
 from .least_squares import column_sizes, sum_of_squares
-from .residual import relative_residuals, weighted_residuals
+from .residual import weighted_residuals
 from .search_plan import EFFORTS, Effort
 from .solve import BLOCK, Solution, solve
 
@@ -115,9 +115,9 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
     fitted = with_errors(_with_held_shifts(solution, stretches), blocks).canonical()
     check = prepared.of("check")
     if check:
-        check_error, parts, command_error = _errors_on(fitted, check)
+        check_error, check_residual, command_error = _errors_on(fitted, check)
     else:
-        check, parts, check_error, command_error = _fit_held_out(solution, prepared)
+        check, check_residual, check_error, command_error = _fit_held_out(solution, prepared)
     return Fit(
         model=fitted,
         free=free,
@@ -125,7 +125,7 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
         check_error=check_error,
         at_bound=tuple(n for n, b in zip(free, solution.at_bound[:p], strict=True) if b),
         fit_residual=solution.residual,
-        check_residual=weigh_residuals(check, parts),
+        check_residual=check_residual,
         at_command=command_error,
         fit_blocks=blocks,
         check_blocks=block_numbers(check),
@@ -135,9 +135,9 @@ def fit_of(solution: Solution, prepared: Prepared) -> Fit:
     )
 
 
-def _errors_on(model: Model, stretches: Sequence[Stretch]) -> tuple[float, list[Array], AtCommand]:
-    """Force error, relative residuals and the error at the command of a model."""
-    relative = [r for r, _ in relative_residuals(model, stretches)]
+def _errors_on(model: Model, stretches: Sequence[Stretch]) -> tuple[float, Array, AtCommand]:
+    """Force error, weighted relative residual and the error at the command of a model."""
+    relative, _ = weighted_residuals(model, stretches)
     return force_error(model, stretches), relative, refer_to_command(model, stretches)
 
 
@@ -178,8 +178,8 @@ def with_errors(solution: Solution, blocks: NDArray[np.intp]) -> Model:
 
 def _fit_held_out(
     solution: Solution, prepared: Prepared
-) -> tuple[tuple[Stretch, ...], list[Array], float, AtCommand]:
-    """Residuals and errors of blocks of the fit records, each from a fit without that block."""
+) -> tuple[tuple[Stretch, ...], Array, float, AtCommand]:
+    """Weighted residual and errors of blocks of the fit records, each from a fit without it."""
     held: list[Stretch] = []
     parts: list[Array] = []
     command_errors: list[AtCommand] = []
@@ -189,7 +189,7 @@ def _fit_held_out(
         model = solve(solution.model, prepared, EFFORTS.held_out, fold.known).model
         error, relative, at_command = _errors_on(model, fold.held_out)
         held += fold.held_out
-        parts += relative
+        parts.append(relative)
         command_errors.append(at_command)
         measured = sum(s.measured for s in fold.held_out)
         squares += error**2 * measured
@@ -201,7 +201,7 @@ def _fit_held_out(
         float(np.sqrt(at_commands / whole)),
         float(np.mean([one.blind for one in command_errors])),
     )
-    return tuple(held), parts, float(np.sqrt(squares / whole)), together
+    return tuple(held), np.concatenate(parts), float(np.sqrt(squares / whole)), together
 
 
 def standard_errors(jacobian: Array, residual: Array, blocks: NDArray[np.intp]) -> Array:

@@ -6,22 +6,20 @@ for the model first, and removed.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
 from ..blocks import Body
 from ..effects import SIGNALS
 from ..measurement.filtering import Array
-from ..measurement.motion import Motion
 from ..measurement.prepare import Stretch
 from ..measurement.shared_links import clear
 from ..model import Model
-from ..realise.along_motion import Residual, residual_along
+from ..realise.along_motion import residual_along
 from ..realise.tangent_columns import Probe
 from ..realise.traced import Traced, constant, filter_traced, in_rows
-from .record_offsets import RecordOffsets, apply_record_offsets, offset_groups
+from .record_offsets import apply_record_offsets, offset_groups
 
 
 def residuals(
@@ -125,56 +123,29 @@ def _residual_along(
     """
     located = [_place_of_probe(model, name) for name in wrt]
     groups = offset_groups(model, stretches)
-
-    def along(body: Body, motion: Motion) -> tuple[Residual, list[int]]:
-        mine = [i for i, (place, _) in enumerate(located) if place == motion.body]
-        return residual_along(body, motion, [located[i][1] for i in mine]), mine
-
-    each = (along(*one) for one in apply_record_offsets(model, stretches, groups))
-    if forces is None:
-        return _low_passed(stretches, groups, each, taking, len(wrt))
-    beside = (_with_forces(*one, more, len(wrt)) for one, more in zip(each, forces, strict=True))
-    return _low_passed(stretches, groups, beside, taking, len(wrt) + len(forces[0]))
-
-
-def _with_forces(
-    along: Residual, places: list[int], forces: Array, parameters: int
-) -> tuple[Residual, list[int]]:
-    """A residual with further tangents: by the factors of forces (c, n) that act besides."""
-    residual, moving, count = along.residual, along.moving, len(forces)
-    nothing = np.zeros((count, len(moving.value)))
-    more = replace(
-        along,
-        residual=Traced(residual.value, np.vstack([residual.tangent, forces])),
-        moving=Traced(moving.value, np.vstack([moving.tangent, nothing])),
-    )
-    return more, [*places, *range(parameters, parameters + count)]
-
-
-def _low_passed(
-    stretches: Sequence[Stretch],
-    groups: Sequence[tuple[list[int], RecordOffsets]],
-    each: Iterable[tuple[Residual, list[int]]],
-    taking: Collection[str],
-    parameters: int = 0,
-) -> list[tuple[Traced, Traced | None]]:
-    """Residual per stretch, as `_residual_along` returns it.
-
-    each: residual of each stretch, and the places of its tangents among those of all parameters
-    """
+    whole = len(wrt) + (len(forces[0]) if forces else 0)
     signals: list[tuple[Traced, Traced | None]] = []
-    for s, (along, places) in zip(stretches, each, strict=True):
+    each = zip(stretches, apply_record_offsets(model, stretches, groups), strict=True)
+    for k, (s, (body, motion)) in enumerate(each):
+        places = [i for i, (place, _) in enumerate(located) if place == motion.body]
+        along = residual_along(body, motion, [located[i][1] for i in places])
+        residual = along.residual
+        acting = along.moving + constant(s.motion.interaction, len(places))
+        if forces is not None:  # further tangents, by the factors of the forces
+            more = forces[k]
+            residual = Traced(residual.value, np.vstack([residual.tangent, more]))
+            acting = Traced(acting.value, np.vstack([acting.tangent, np.zeros_like(more)]))
+            places += range(len(wrt), whole)
 
         def shown(traced: Traced, s: Stretch = s, places: list[int] = places) -> Traced:
             here = filter_traced(lambda y: s.motion.lowpassed(y, s.keep), traced)
-            return in_rows(here.value, here.tangent, places, parameters)
+            return in_rows(here.value, here.tangent, places, whole)
 
-        acting = along.moving + constant(s.motion.interaction, len(places))
-        signals.append((shown(along.residual), shown(acting) if s.motion.body in taking else None))
+        signals.append((shown(residual), shown(acting) if s.motion.body in taking else None))
     for group, offsets in groups:
         bare = [(signals[i][0].value, signals[i][0].tangent) for i in group]
-        for i, (residual, tangent) in zip(group, offsets.cleared(bare), strict=True):
-            signals[i] = (Traced(residual, tangent), signals[i][1])
+        for i, (left, tangent) in zip(group, offsets.cleared(bare), strict=True):
+            signals[i] = (Traced(left, tangent), signals[i][1])
     return signals
 
 
