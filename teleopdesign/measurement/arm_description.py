@@ -146,7 +146,7 @@ def _link(table: Table) -> Link:
     zero = (0.0,) * 3
     mass = table.number("mass") if "mass" in table.content else 0.0
     if mass < 0:
-        raise table.error("mass", "0 or more")
+        raise table.error("mass", "0 or more", f"{mass:g}")
     about = tensor(np.array(table.numbers("inertia", 6, (0.0,) * 6)))
     return Link(
         name=table.text("name", f"{joint}_link"),

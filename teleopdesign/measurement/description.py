@@ -180,7 +180,7 @@ def value_from(table: Table, key: str) -> ModelValue:
     unit = entry.text("unit") if "unit" in entry.content else None
     number, error = entry.number("value"), entry.number_or_none("stderr")
     if error is not None and error < 0:
-        raise entry.error("stderr", "0 or more")
+        raise entry.error("stderr", "0 or more", f"{error:g}")
     return ModelValue(number, unit, entry.flag("fixed", False), table.where(key), error)
 
 

@@ -44,9 +44,11 @@ def classes():
 
 @pytest.mark.parametrize("kind", sorted(classes(), key=lambda k: k.__qualname__))
 def test_a_result_has_the_looks_that_it_asks_for(kind):
+    if kind.__name__.startswith("Abstract"):
+        return
     if issubclass(kind, Shown):
         assert look_of("text", kind) or look_of("table", kind)
-    if hasattr(kind, "plot") and not isinstance(vars(kind)["plot"], property):
+    if hasattr(kind, "plot") and not isinstance(inspect.getattr_static(kind, "plot"), property):
         assert look_of("figure", kind)
 
 
