@@ -247,7 +247,7 @@ def test_a_shape_of_logs_is_one_file_and_its_line_in_the_list(copy, add_file, tm
     listing = copy / ROOT.name / "measurement/doors/shapes/__init__.py"
     before = listing.read_text(encoding="utf-8")
     line = "from .throw_away import throw_away\n"
-    added = before.replace("from .two_part_time", f"{line}from .two_part_time")
+    added = before.replace("from .several_clocks", f"{line}from .several_clocks")
     try:
         added = added.replace(
             "    reading_in_each_row,\n)", "    reading_in_each_row, throw_away,\n)"

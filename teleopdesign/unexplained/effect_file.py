@@ -99,8 +99,9 @@ def effect_text(part: BodyResidual, described: DescribedDependence, prepared: Pr
             f"{lacks}; see `teleopdesign effects` for those with a memory, such as presliding"
         )
     unit = scales([s.motion for s in prepared.of("fit")], prepared.bandwidth)
-    law = _law_of_points(described.dependence, part.axis, unit)
-    if variable is not None and formula is not None:
+    if variable is None or formula is None:
+        law = _law_of_points(described.dependence, part.axis, unit)
+    else:
         law = _law_of_formula(formula, part.axis, unit)
     text, parameters, strengths, equation = law
     sentence = described.sentence

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from ...base.sentences import percent_on_page as percent
@@ -77,12 +78,26 @@ class CandidateStep:
 
 
 @dataclass(frozen=True)
+class NumberColumn:
+    """A column with one number a candidate;  least: what is smaller is shown as less than this."""
+
+    heading: str
+    value: Callable[[CandidateResult], float | None]
+    least: float = 0.0
+
+
+#: columns between the effect and the steps: a column is a line here
+COLUMNS = (NumberColumn("probability", lambda one: one.probability, least=0.005),)
+
+
+@dataclass(frozen=True)
 class CandidateRow:
-    """A candidate, its probability, and its result on each step (None: none)."""
+    """A candidate, its number in each of `COLUMNS`, and its result on each step (None: none)."""
 
     effect: str
     at: str
     probability: float
+    numbers: tuple[float | None, ...]
     steps: tuple[StepResult | None, ...]
 
 
@@ -123,6 +138,7 @@ def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
             c.candidate.effect.name,
             c.candidate.at,
             c.probability,
+            tuple(column.value(c) for column in COLUMNS),
             c.steps[:count] if c.steps else (_best_step(diagnosis, c),),
         )
         for c in diagnosis.candidates

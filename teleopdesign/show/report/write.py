@@ -24,6 +24,7 @@ from ...base.sentences import typeset
 from ...base.sentences import unit_on_page as unit_text
 from ...base.sentences import with_error_on_page as with_error
 from ...diagnose import Diagnosis, SimulationComparison
+from .candidate_table import COLUMNS
 from .figures import WIDE, colour_scale, graph_figure, impedance_figure, ladder_figure, step_figure
 from .page import Page, Unexplained, page_data, page_of
 
@@ -111,6 +112,7 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.globals["columns"] = COLUMNS
     environment.filters |= {
         "number": number,
         "short": short,
