@@ -26,7 +26,7 @@ def element(i):
     def slip(now, p):
         others = sum(getattr(p, f"level_{j}") for j in MORE)
         slips = getattr(p, f"level_{i}") if i in MORE else Max(COULOMB - others, 0)
-        return now.level * slips / Max(COULOMB, others, NO_LEVEL)
+        return slips * now.level / Max(COULOMB, NO_LEVEL)
 
     return State("force", lambda now, p: getattr(p, f"stiffness_{i}") * now.velocity, stop=slip)
 
