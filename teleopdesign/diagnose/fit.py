@@ -150,12 +150,9 @@ def _with_held_shifts(solution: Solution, stretches: Sequence[Stretch]) -> Solut
     shifts = solution.shifts
     if not shifts.held.any():
         return solution
-    p, (_, columns) = (
-        len(solution.free),
-        weighted_residuals(solution.model, stretches, shifts.names),
-    )
-    columns = columns * shifts.row
-    return replace(solution, jacobian=np.hstack([solution.jacobian[:, :p], columns]))
+    _, by_shift = weighted_residuals(solution.model, stretches, shifts.names)
+    by_parameter = solution.jacobian[:, : len(solution.free)]
+    return replace(solution, jacobian=np.hstack([by_parameter, by_shift * shifts.row]))
 
 
 def with_errors(solution: Solution, blocks: NDArray[np.intp]) -> Model:

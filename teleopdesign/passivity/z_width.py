@@ -19,7 +19,7 @@ import sympy as sp
 from ..base.errors import ModelError
 from ..base.finding import Graph, Series
 from ..base.frozen import ByValue
-from .linear.conditions import holds_exactly
+from .linear.conditions import is_exactly_passive
 from .linear.family import family_of_impedance
 from .linear.impedance import exact
 from .search.growing_wave import Z
@@ -143,7 +143,7 @@ def _agrees(law: sp.Expr, b: sp.Expr, late: sp.Expr, x: sp.Expr, k: float) -> bo
     def passive(stiffness: float) -> bool:
         wall = law.subs({WALL_STIFFNESS: exact(stiffness), WALL_DAMPING: x})
         operator = travel_operator(wall, b, late, sp.S(0))
-        return holds_exactly(family_of_impedance(operator), "passive")
+        return is_exactly_passive(family_of_impedance(operator))
 
     margin = _AGREE * float(b / late)
     return passive(max(k - margin, 0.0)) and not passive(k + margin)

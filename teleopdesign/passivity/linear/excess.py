@@ -16,7 +16,7 @@ from ...derive.polynomials import (
     positive_roots,
     value,
 )
-from .conditions import holds_exactly
+from .conditions import is_exactly_passive
 from .family import family_of_impedance
 from .impedance import Impedance, MotionKind, exact, impedance
 
@@ -94,7 +94,7 @@ def _verify_bounds(z: Impedance, lowest: float) -> tuple[Fraction | float, Fract
     family = family_of_impedance(z)
 
     def is_passive(less: Fraction) -> bool:
-        return holds_exactly(family, "passive", less)
+        return is_exactly_passive(family, less)
 
     if is_passive(middle) and not is_passive(middle + _step(middle, 1e-12)):
         return middle, middle + _step(middle, 1e-12)
