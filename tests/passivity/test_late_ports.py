@@ -112,6 +112,10 @@ NAMED = {
     "a resonance that one port has": (
         [1, E_T / 4 + S / (S**2 + 4), E_T / 4 + S / (S**2 + 4), 1], False,
     ),
+    # a whole turn of the mode, less 3e-7
+    "a mode whose force is late by a turn": (
+        [1 + S * sp.exp(-S * sp.Rational(6283185, 10**6)) / (S**2 + 1), 0, 0, 1], False,
+    ),
 }  # fmt: skip
 
 

@@ -29,7 +29,7 @@ from .family import Family, family_of_impedance
 from .impedance import Impedance, MotionKind, impedance, readable
 from .matrices import parts_of, round_point, value
 from .signs import Signs
-from .sweep import fails_at_ends, holds_at, least_over, margin_of, resonances, zeros_and_poles
+from .sweep import fails_in_a_limit, holds_at, least_over, margin_of, resonances, zeros_and_poles
 from .unseen import explain_unseen, unseen_modes
 
 _METHODS = {
@@ -43,7 +43,7 @@ _SWEEP, _IN_A_DECADE = (1e-4, 1e4), 500
 _BEYOND = 30.0
 _SWEPT = (
     "margin over {} frequencies from {:g} to {:g} Hz and across resonances, refined at the "
-    "lowest; every mode with dampers at the ports, and the ends of the axis"
+    "lowest; every mode with dampers at the ports, the ends of the axis and its poles"
 )
 #: relative change of a coefficient that may be rounding: some operations on floats, 2^-53 each
 NEARBY = 2.0**-50
@@ -226,7 +226,7 @@ def _judge_late(family: Family, claim: str, statement: str) -> Verdict:
             why = "with its dead times a mode does not decay between dampers"
     except ModelError as problem:
         why = str(problem)
-    if not why and (ends := fails_at_ends(family, claim)):
+    if not why and (ends := fails_in_a_limit(family, claim)):
         why, frequencies = f"the inequality fails {ends[0]}", [*frequencies, ends[1]]
     if not why:
         return Evidence(True, _SWEPT.format(len(swept), swept[0], swept[-1]), least, unit)

@@ -3,9 +3,10 @@
 Nonnegative margins on the axis are necessary and not sufficient: they show neither poles in the
 right half plane nor residues at poles on the axis.
 
-At the ends of the axis a sweep shows nothing. Towards s = 0 two dead times leave differences of
-numbers that agree in tens of digits, so the inequality is evaluated with many digits. Far out each
-dead time has every phase, whatever the frequency: phases are drawn.
+At the ends of the axis and beside its poles a sweep shows nothing. Towards s = 0 two dead times
+leave differences of numbers that agree in tens of digits, so the inequality is evaluated with many
+digits. Far out each dead time has every phase, whatever the frequency: phases are drawn. A pole on
+the axis whose residue a dead time turns by a hair makes the inequality fail in a hair beside it.
 """
 
 from __future__ import annotations
@@ -17,8 +18,10 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from ...derive.polynomials import roots_of
+from ...derive.polynomials import as_poly, roots_of
+from ...realise.lti import S
 from .family import Family
+from .signs import degree
 
 #: places across a resonance, in half widths from its frequency: the real part of an entry changes
 #: its sign within the first half width
@@ -77,6 +80,10 @@ def least_over(
     return at, least, values
 
 
+#: damping of a pole, over its frequency, that double precision hardly resolves
+_NO_WIDTH = 1e-12
+#: decades by which the inequality is evaluated closer and closer to a pole without width
+_BESIDE = (2, 4, 6, 8, 10, 12, 16, 20, 30, 40)
 #: decimal digits, and decades beyond the roots and dead times at either end
 _DIGITS, _DECADES = 200, (1, 2, 4, 6, 9)
 #: phases that are drawn far out, at each decade
@@ -85,8 +92,11 @@ _DRAWN = 40
 _ROUNDING = 1e-60
 
 
-def fails_at_ends(family: Family, claim: str) -> tuple[str, float] | None:
-    """Where the inequality of a claim fails at an end of the axis: in words, and at which Hz."""
+def fails_in_a_limit(family: Family, claim: str) -> tuple[str, float] | None:
+    """Where the inequality of a claim fails at an end of the axis or beside one of its poles.
+
+    returns: in words, and at which Hz
+    """
     zeros, poles = zeros_and_poles(family)
     sizes = np.abs([r for r in (*zeros, *poles) if r != 0] or [1.0])
     times = [float(t) for t in family.times.values()]
@@ -103,7 +113,23 @@ def fails_at_ends(family: Family, claim: str) -> tuple[str, float] | None:
                 late = [mpmath.expj(float(x)) for x in rng.uniform(0, 2 * np.pi, len(times))]
                 if not _holds(family.precisely(mpmath.mpc(0, w), late), claim):
                     return "in the limit of high frequency", float(w) / (2 * np.pi)
+        for pole in _poles_at_axis(family, poles):
+            for apart in (side * mpmath.mpf(10) ** -k for k in _BESIDE for side in (-1, 1)):
+                at = pole * (1 + apart)
+                if not _holds(family.precisely(mpmath.mpc(0, at)), claim):
+                    hertz = float(at / (2 * mpmath.pi))
+                    return f"beside the pole at {hertz:.4g} Hz", hertz
     return None
+
+
+def _poles_at_axis(family: Family, poles: np.ndarray) -> list[mpmath.mpf]:
+    """Frequencies, rad/s, of the poles that have no width in double precision, by many digits."""
+    near = np.abs(poles.real) <= _NO_WIDTH * np.abs(poles)
+    if not np.any(near & (poles.imag > 0)):
+        return []
+    parts = (as_poly(q, S).sqf_part() for q in _parts(family.d) if degree(q))
+    pairs = (r.as_real_imag() for p in parts for r in p.nroots(n=60))
+    return [mpmath.mpf(w) for a, w in pairs if w > 0 and abs(a) <= _NO_WIDTH * w]
 
 
 def holds_at(family: Family, frequency: float, claim: str) -> bool:
@@ -159,10 +185,12 @@ def _parts(p: Any) -> list[Any]:
 def resonances(family: Family) -> np.ndarray:
     """Frequencies across the width of each resonance, Hz, (n,): a grid alone may miss one.
 
-    Poles on the axis have no width and are left out.
+    A pole on the axis has no width: closer and closer to it instead.
     """
     _, poles = zeros_and_poles(family)
-    poles = poles[poles.real < -1e-12 * np.abs(poles)]
-    across = poles.imag[:, None] + poles.real[:, None] * np.array(_ACROSS)
-    f = across.ravel() / (2 * np.pi)
+    wide = poles.real < -_NO_WIDTH * np.abs(poles)
+    apart = [side * 10.0**-k for k in _BESIDE[:5] for side in (-1, 1)]
+    across = poles[wide].imag[:, None] + poles[wide].real[:, None] * np.array(_ACROSS)
+    beside = np.abs(poles[~wide])[:, None] * (1.0 + np.array(apart))
+    f = np.concatenate([across.ravel(), beside.ravel()]) / (2 * np.pi)
     return np.asarray(f[(f > 0) & np.isfinite(f)])
