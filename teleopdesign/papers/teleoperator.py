@@ -21,17 +21,22 @@ FRICTION = 1.0  # N, at the slave
 STIFFNESS = 1000.0  # P, N/m
 SLAVE_DAMPING = 2.0  # N s/m; settles the slave on the coupling spring
 AMPLITUDE, FREQUENCY = 5e-3, 0.1  # of the master: up to 3 mm/s, inertial forces below 1 mN
-BRISTLE = 1e-5  # m: deflection before sliding, which stands for ideal Coulomb friction
+BRISTLE = 1e-5  # m: deflection before sliding, short against the travel
 
 
 def two_sides(*, cancelled: float, environment: float = 0.0) -> Diagram:
-    """Master without friction; slave with damping, Coulomb friction and a Dahl compensator.
+    """Master without friction; slave with damping, Dahl friction and a Dahl compensator.
+
+    Friction that does not give stays below its level while the compensator's bristle bends, so that
+    a slave with the same compensator sticks and slips.
 
     cancelled: f_D (N);  environment: stiffness that holds the slave (N/m)
     """
     master = Body("prismatic", {"inertia": Value(0.1)})
     slave = master.with_effect(EFFECTS["coulomb"], {"level": FRICTION})
     slave = slave.with_effect(EFFECTS["viscous"], {"damping": SLAVE_DAMPING})
+    bristle = EFFECTS["presliding"].without("bristle_damping")
+    slave = slave.with_effect(bristle, {"stiffness": FRICTION / BRISTLE})
     held = Body("prismatic", {"inertia": Value(0.0)})
     cancelled = max(cancelled, 1e-9)  # a level of zero leaves the bristle without a length
     # as soft as the plant's presliding: (sigma_D/sigma_p)^2 = (f_D/f_C)^2 <= f_D/f_C
@@ -52,7 +57,6 @@ def slow_cycle(*, cancelled: float, environment: float = 0.0) -> Simulation:
         duration=2 / FREQUENCY,
         motion={"X_m": sine(amplitude=AMPLITUDE, frequency=FREQUENCY)},
         computer="continuous",
-        give=BRISTLE,
     )
     kept = simulation.data["time"].values >= 1 / FREQUENCY
     return Simulation(simulation.diagram, simulation.data.isel(time=np.flatnonzero(kept)))

@@ -15,7 +15,7 @@ from ..blocks import Body, MatrixImpedance
 from ..controllers import Controller, require_exact_steps
 from ..diagrams import Attached, Block, Control, Diagram, Linked, Moving, with_shared_states
 from ..effects import SIGNALS
-from .bristle import with_bristle
+from .bristle import with_stop
 from .tips import led_motion, linear_tips, with_tips
 from .traced import numpy_function
 
@@ -160,12 +160,10 @@ def prepare_for_simulation(
         if isinstance(content, Body):
             there = without_absent(content)
             check_levels(there, f"{diagram.name}: {part.name}")
-            bodies[part.name] = with_bristle(there, deflection)
+            bodies[part.name] = with_stop(there, deflection)
     apart = with_tips(_with_blocks(diagram, bodies), prescribed=prescribed)
     # tips with dry friction need a bristle, too
-    tips = {
-        b.name: with_bristle(b.body, deflection) for b in apart.bodies if isinstance(b.body, Body)
-    }
+    tips = {b.name: with_stop(b.body, deflection) for b in apart.bodies if isinstance(b.body, Body)}
     return _with_blocks(apart, dict(tips))
 
 

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
     from ..tuning import CheckedLimit, ParetoFront, SimulationFit, Tuned, TuningLimit
 
+#: rms by which a tenth of the give moves a signal, over what the fit leaves, from which a fit says
+#: so: the values of a driven mass moved by four standard errors where it was 0.8
+MUCH = 0.3
 #: evaluated points that are further from the front than this many of its lengths are not drawn
 _BESIDE = 1.5
 #: colours of evaluated points, of the best and of the untuned one
@@ -127,6 +130,11 @@ def fit_notes(fitted: SimulationFit) -> tuple[str, ...]:
         out.append(f"the data do not determine: {', '.join(fitted.undetermined)}")
     if rough := [n for n, x in fitted.apart.items() if x > MOST_APART]:
         out.append(f"no standard errors, as motion follows by jumps: {', '.join(rough)}")
+    if soft := [f"{n} by {x:.2g}" for n, x in fitted.by_give.items() if x > MUCH]:
+        softness = f"ideal friction gives by {fitted.case.give:g}, which may move values"
+        out.append(
+            f"{softness}: a tenth of it moves {', '.join(soft)} of its rms; state less `give`"
+        )
     if fitted.agreeing < fitted.searches:
         out.append(f"{fitted.agreeing} of {fitted.searches} searches came to these values")
     return tuple(out)

@@ -71,7 +71,7 @@ def prepare(
     for name in initial:
         if name not in states:
             raise UnknownSignal(f"initial: {unknown('state', name, states)}")
-    return Setup(body, made, setting, duration, step, inputs, motion, initial)
+    return Setup(body, made, setting, duration, step, give, inputs, motion, initial)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +123,7 @@ def simulated_form(
 class Setup:
     """A simulation that is ready to run, with its step or a shorter one.
 
-    duration, step: s;  inputs: signal -> values;  motion: prescribed motions
+    duration, step: s;  give: m or rad;  inputs: signal -> values;  motion: prescribed motions
     initial: state -> start value, SI
     """
 
@@ -132,6 +132,7 @@ class Setup:
     sampling: Sampling
     duration: float
     step: float
+    give: float
     inputs: Mapping[str, Input]
     motion: Mapping[str, Trajectory]
     initial: Mapping[str, float]

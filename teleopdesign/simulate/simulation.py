@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -27,6 +27,11 @@ if TYPE_CHECKING:
     import xarray
 
     from ..realise.kernel import Timing
+
+
+#: give over the travel of a motion, from which the scheme says so: on driven masses a thousandth
+#: moves the position by some per cent of the travel. Lower: said where it matters to few
+SOFT = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,13 +114,14 @@ def simulate(
     initial: state -> start, such as "L", "L_velocity" or "Z_M_presliding_bristle"; else 0
     computer: how controllers are sampled; "continuous": they are not, as in `to_iosystem`
     step: inner step, s, rounded down to divide the sample period
-    give: m or rad; ideal Coulomb friction is a bristle that deflects by this before it slides
+    give: m or rad; ideal Coulomb friction is a spring that deflects by this before it slides, with
+        its damper. `scheme` of the data names each motion whose travel is not far longer
     long_step: a step too long for bristle or oscillations is made shorter, or refused
     every_step: rows at every inner step instead of every sample (continuous: of 1 ms)
     estimate_error: run again with half and a quarter of the step (7 times the work) and return for
         each signal an attribute `step_error`, the largest difference between the three over its
-        largest size; large where stick and slip make motion chaotic. Where ideal friction is a
-        bristle, `give_error` is in the same way the difference to a run with a tenth of the give
+        largest size; large where stick and slip make motion chaotic. Where friction is ideal,
+        `give_error` is in the same way the difference to a run with a tenth of the give
     jit: False runs the generated code in plain Python, as a nonlinear python-control system among
         the controllers does in any case: some hundred times slower
     raises ModelError: block without laws, unknown signal, step refused or force not finite
@@ -130,11 +136,11 @@ def simulate(
     arguments |= {"initial": initial, "computer": computer, "step": step, "jit": jit}
     setup = prepare(diagram, give=give, **arguments)
     rows, timing = setup.run_resolved(long_step=long_step, every_step=every_step)
-    result = _label_rows(setup, rows, timing, every_step)
+    result = _label_rows(diagram, setup, rows, timing, every_step)
     if estimate_error:
         columns = setup.program.layout.columns
         errors = {"step_error": _step_errors(setup, rows, timing, every_step)}
-        if _is_bristle(diagram):
+        if has_ideal_friction(diagram):
             stiffer = prepare(diagram, give=give / 10, **arguments)
             errors["give_error"] = _give_errors(stiffer, rows)
         for kind, sizes in errors.items():
@@ -150,10 +156,17 @@ def _give_errors(stiffer: Setup, rows: np.ndarray) -> np.ndarray:
     return _differences([rows[::stride][: len(again)], again])
 
 
-def _is_bristle(diagram: Diagram) -> bool:
-    """Whether a body has friction without a shape, which the simulation makes a bristle."""
-    roles = [{e.role for e in b.body.effects} for b in diagram.bodies if isinstance(b.body, Body)]
-    return any("friction_level" in of and "friction_shape" not in of for of in roles)
+def has_ideal_friction(diagram: Diagram) -> bool:
+    """Whether a body has friction without a shape, which gives by a little in a simulation."""
+    return any(True for _ in _ideal_motions(diagram))
+
+
+def _ideal_motions(diagram: Diagram) -> Iterator[str]:
+    """Motions of the bodies with friction without a shape."""
+    for part in diagram.bodies:
+        roles = {e.role for e in part.body.effects} if isinstance(part.body, Body) else set()
+        if "friction_level" in roles and "friction_shape" not in roles:
+            yield part.motion
 
 
 def _step_errors(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -> np.ndarray:
@@ -177,26 +190,41 @@ def _differences(runs: list[np.ndarray]) -> np.ndarray:
     return np.asarray(spread.max(axis=0) / size)
 
 
-def _label_rows(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -> Simulation:
+def _label_rows(
+    diagram: Diagram, setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool
+) -> Simulation:
     """A simulation whose data set is made from the rows when it is first used."""
     result = object.__new__(Simulation)
-    make = partial(_dataset, setup, rows, timing, every_step)
+    make = partial(_dataset, diagram, setup, rows, timing, every_step)
     result.__dict__.update(diagram=setup.diagram, _make=make)
     return result
 
 
-def _dataset(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -> xarray.Dataset:
+def describe_give(diagram: Diagram, give: float, signals: Mapping[str, np.ndarray]) -> str:
+    """Motions that are hardly longer than what ideal friction gives, as an end of the scheme; "".
+
+    give: m or rad;  signals: by name, (n,)
+    """
+    shares = {
+        m: give / travel
+        for m in _ideal_motions(diagram)
+        if m in signals and (travel := float(np.ptp(signals[m]))) > 0.0
+    }
+    soft = [f"{share:.2g} of the travel of {m}" for m, share in shares.items() if share > SOFT]
+    return f", friction gives by {give:g}: {', '.join(soft)}, so state less `give`" if soft else ""
+
+
+def _dataset(
+    diagram: Diagram, setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool
+) -> xarray.Dataset:
     import xarray
 
     step = timing.step if every_step else timing.period
-    units = signal_units(setup.diagram)
+    units, texts = signal_units(setup.diagram), setup.diagram.texts
+    signals = dict(zip(setup.program.layout.columns, rows.T, strict=True))
     data = {
-        name: (
-            "time",
-            rows[:, i],
-            {"units": units(name), "text": setup.diagram.texts.get(name, "")},
-        )
-        for i, name in enumerate(setup.program.layout.columns)
+        name: ("time", x, {"units": units(name), "text": texts.get(name, "")})
+        for name, x in signals.items()
     }
     time = ("time", step * np.arange(len(rows)), {"units": "s"})
     scheme = f"exponential Runge-Kutta of order 4, step {timing.step * 1e3:.4g} ms"
@@ -204,6 +232,7 @@ def _dataset(setup: Setup, rows: np.ndarray, timing: Timing, every_step: bool) -
     scheme += describe_rounding(
         [setup.sampling.delay, *late], [timing.lag, *timing.late], timing.step
     )
+    scheme += describe_give(diagram, setup.give, signals)
     if setup.program.has_code:
         scheme += ", in plain Python: a block is known as code only"
     attrs = {"diagram": setup.diagram.name, "step_s": timing.step, "scheme": scheme}

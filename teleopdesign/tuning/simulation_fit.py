@@ -29,6 +29,7 @@ from ..diagrams import Diagram
 from ..passivity.intervals.box import ValueBox
 from ..simulate import Sampling
 from ..simulate.sampling import SAMPLED
+from ..simulate.simulation import has_ideal_friction
 from ..simulate.units import signal_units
 from ..studies.case import SimulatedCase, case_of
 from ..studies.differences import check_slopes_exist
@@ -60,6 +61,8 @@ class SimulationFit(Shown, ByValue):
     rms: signal -> rms of simulated minus measured (SI);  of_signal: the same over the standard
         deviation of the measured signal;  before: of_signal with the diagram's values, NaN if these
         have no simulation
+    by_give: signal -> rms by which a tenth of the give would move it, over `rms`; {}: no friction
+        is ideal
     data: SIGNAL_measured and SIGNAL_simulated over `time`
     sensitivities: of the signals at `values`;  searches: number of searches from different points
     agreeing: number of searches that ended at these values
@@ -74,6 +77,7 @@ class SimulationFit(Shown, ByValue):
     rms: Mapping[str, float]
     of_signal: Mapping[str, float]
     before: Mapping[str, float]
+    by_give: Mapping[str, float]
     data: xarray.Dataset
     sensitivities: xarray.Dataset
     searches: int
@@ -122,8 +126,8 @@ def fit_simulation(
     noise: signal -> standard deviation (SI) for its weight; default: the residual of the fit
     inputs, motion: as in `simulate`, or the name of a column of the data. A motion is
         differentiated twice without a low-pass: with steps of an encoder, `td.fit` is better
-    initial, computer, step, give: as in `simulate`; ideal friction that gives by much of the noise
-        of a position moves the other values. A `SimulatedCase` keeps all its settings except the
+    initial, computer, step, give: as in `simulate`; what ideal friction gives may move the values,
+        and `remarks` says so. A `SimulatedCase` keeps all its settings except the
         duration: up to the last whole sample of the computer within the data
     starts: number of points, besides the diagram's values, from which searches may begin
     returns: standard errors are valid for measurement errors that are correlated over at most 0.25
@@ -187,6 +191,18 @@ def _namesakes(case: SimulatedCase, measured: MeasuredSignals) -> dict[str, str]
     return names
 
 
+def _moved_by_give(case: SimulatedCase, target: Target, simulated: np.ndarray) -> np.ndarray | None:
+    """Rms by which a tenth of the give moves each signal; None: no friction is ideal.
+
+    simulated: the signals at the times of the target
+    """
+    if not has_ideal_friction(case.diagram):
+        return None
+    stiffer = replace(case, give=case.give / 10.0).simulate()
+    signals = np.array([stiffer[name].values for name in target.names])
+    return rms_of(target.at_times(stiffer.data["time"].values, signals) - simulated)
+
+
 def _result(case: SimulatedCase, box: ValueBox, target: Target, end: Followed) -> SimulationFit:
     import xarray
 
@@ -206,8 +222,10 @@ def _result(case: SimulatedCase, box: ValueBox, target: Target, end: Followed) -
     def those(mask: np.ndarray) -> tuple[str, ...]:
         return tuple(n for n, holds in zip(box.names, mask, strict=True) if holds)
 
+    fitted = case.with_values(box.named(end.values))
+    moved = _moved_by_give(fitted, target, simulated)
     return SimulationFit(
-        case.with_values(box.named(end.values)),
+        fitted,
         box.named(end.values),
         box.named(end.errors),
         those(end.is_at_end),
@@ -216,6 +234,7 @@ def _result(case: SimulatedCase, box: ValueBox, target: Target, end: Followed) -
         by_signal(rms),
         by_signal(rms / target.size),
         by_signal(before / target.size),
+        by_signal(moved / rms) if moved is not None else {},
         xarray.Dataset(columns, {"time": ("time", target.time, {"units": "s"})}),
         labelled_slopes(case, of, box.names, names, end.values),
         end.searches,
