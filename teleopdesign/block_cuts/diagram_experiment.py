@@ -148,9 +148,15 @@ def last_digit(values: Array) -> float:
     single = [np.spacing(size.astype(np.float32)).astype(float)]
     steps = [0.0]
     for kind in (decimals, significant, single):
-        fitting = (s for s in kind if np.abs(np.round(size / s) - size / s).max() < 1e-3)
+        fitting = (s for s in kind if _are_multiples(size / s))
         steps += [float(np.sqrt(np.mean(s**2))) for s in fitting][:1]
     return max(steps)
+
+
+def _are_multiples(steps: Array) -> bool:
+    """Whether all numbers are whole numbers of steps, and none of them is a small part of one."""
+    whole = np.round(steps)
+    return bool(whole.min() > 0.0 and np.abs(whole - steps).max() < 1e-3)
 
 
 def axis_of(diagram: Diagram, signal: str) -> str:

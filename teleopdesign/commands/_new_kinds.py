@@ -30,6 +30,9 @@ _OF_ONE_BODY = (
     *("gear_ratio", "counts_per_turn", "inertia"),
 )
 
+#: options that state what a friction curve lacks
+_OVER_TIME = ("time", "position", "sample_rate", "fit_span", "check_span")
+
 
 def add_diagram_options(parser: argparse.ArgumentParser) -> None:
     """The options of an experiment of a diagram."""
@@ -175,13 +178,24 @@ def _remove_new(folder: Path, present: Collection[Path] | None) -> None:
 
 
 def is_curve(options: argparse.Namespace, log: Log) -> bool:
-    """Whether a table is read as a friction curve: as stated, or as its columns say."""
-    from ..measurement.new_curve import looks_like_a_curve
+    """Whether a table is read as a friction curve: as stated, or as its columns say.
 
-    with_time = (options.time, options.position, options.sample_rate, options.fit_span)
-    if options.kind is not None or options.velocity is not None:
+    raises ExperimentError: a speed is stated of a log over time
+    """
+    from ..measurement.new_curve import is_over_time, looks_like_a_curve
+
+    if options.kind is not None:
         return True
-    return not any(with_time) and looks_like_a_curve(log)
+    over_time = any(getattr(options, name) for name in _OVER_TIME)
+    if options.velocity is None:
+        return not over_time and looks_like_a_curve(log)
+    if over_time or is_over_time(log):
+        raise ExperimentError(
+            "--velocity: is the speed of a friction curve, found a log with a time or a position: "
+            'its speed is read beside the position; expected no --velocity, or --kind "friction '
+            'curve" for points of a table'
+        )
+    return True
 
 
 def make_curve(
@@ -190,10 +204,14 @@ def make_curve(
     """Write the folder of a friction curve, and say what was understood.
 
     log: the first of the tables
+    raises ExperimentError: an option of a log over time
     """
     from ..measurement import load_experiment
     from ..measurement.new_curve import curve_columns, make_curve_folder
 
+    for name in (*_OVER_TIME, "hand", "lever_arm", "counts_per_turn", "inertia"):
+        if getattr(options, name) is not None:
+            raise ExperimentError(f"--{name.replace('_', '-')}: says nothing of a friction curve")
     curve = curve_columns(
         log,
         options.logs[0].name,
@@ -202,6 +220,7 @@ def make_curve(
         force=options.force,
         units=choices.units,
         torque_constant=choices.torque_constant,
+        gear_ratio=choices.gear_ratio,
     )
     make_curve_folder(curve, options.logs, folder, title=title)
     print(_text_of(curve, options.logs[0].name))

@@ -188,7 +188,9 @@ def _with_dead_time(model: Model, place: str, prepared: Prepared) -> Model | Non
     if dead_times(body) or place in bodies_with_measured_force(prepared.experiment):
         return None
     for effect in model.known.values():
-        if effect.role != "actuation" or body.lacks(effect) or body.axis in effect.counterparts:
+        if effect.role != "actuation" or body.has(effect.name):
+            continue
+        if body.lacks(effect) or body.axis in effect.counterparts:
             continue
         late = model.with_effect(effect, at=place)
         names = dead_times(late.body(place))

@@ -14,17 +14,27 @@ from ..base.sentences import percent
 from ._effect import Effect, FitSearch, Parameter, positive_amplitude
 from ._facts import STRAIGHT
 
+#: rad to either side of the hanging place: of less, a stiffness is that of a contact. Lower: a
+#: bristle is called a link; higher: a link that swings less is called a spring
+SWING = 0.05
+
 
 def law(now, p):
     return p.amplitude * sin(now.position + p.phase)
 
 
 def plausible(p, facts):
-    if abs(p.amplitude) <= facts.acting:
+    # a link that hangs down need not be lifted anywhere near the horizontal
+    part = (
+        float(np.abs(np.sin(facts.places + p.phase)).max(initial=SWING))
+        if len(facts.places)
+        else 1.0
+    )
+    if (torque := abs(p.amplitude) * part) <= facts.acting:
         return None
     return (
-        f"a torque of {facts.text(abs(p.amplitude), 'force')} with the link horizontal exceeds "
-        f"all acting forces, {facts.text(facts.acting, 'force')}: over a travel of "
+        f"a torque of {facts.text(torque, 'force')} within the travel exceeds all acting forces, "
+        f"{facts.text(facts.acting, 'force')}: over a travel of "
         f"{facts.text(facts.travel, 'position')} the effect imitates a constant force and a spring"
     )
 

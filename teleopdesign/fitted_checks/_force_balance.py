@@ -165,12 +165,12 @@ def _brakes(body: Body, strength: str) -> bool:
 
 
 def force_balances(
-    model: Model, prepared: Prepared, *, timed: bool = True
+    model: Model, prepared: Prepared, *, timed: bool = True, use: str = "fit"
 ) -> dict[str, ForceBalance]:
-    """The balance of every body that has one, on the fit records."""
+    """The balance of every body that has one, on the records of this use."""
     balances = {}
     for place, body in model.bodies.items():
-        stretches = [s for s in prepared.of("fit") if s.motion.body == place]
+        stretches = [s for s in prepared.of(use) if s.motion.body == place]
         balance = force_balance(body, stretches, timed=timed) if stretches else None
         if balance is not None:
             balances[place] = balance

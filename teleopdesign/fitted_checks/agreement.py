@@ -39,10 +39,14 @@ def find_disagreements(recording: CheckedRecording) -> Iterator[Finding]:
     if swapped := list(_find_swapped(recording, balances)):
         yield from swapped
         return
-    for balance in balances.values():
+    later = force_balances(*recording.compared, timed=False, use="check")
+    for body, balance in balances.items():
         contradictions = []
         if balance.left <= NOTHING:
             contradictions = [*_signs(recording, balance), *_gain(recording, balance)]
+        if not contradictions and body in later and later[body].left <= NOTHING:
+            of_check = _signs(recording, later[body])
+            contradictions = [replace(f, sentence=f"check records: {f.sentence}") for f in of_check]
         if not contradictions:
             if balance.left <= NOTHING:
                 contradictions += check_strengths(recording, balance)

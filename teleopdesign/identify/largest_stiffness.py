@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.errors import ModelError
+from ..base.errors import GrowsWithoutBound, ModelError
 from ..base.frozen import ByValue
 from ..base.shown import Shown
 from ..blocks import Body
@@ -60,7 +60,8 @@ def largest_stiffness_without_oscillation(
     smallest, largest: range of the stiffness, N/m;  kick: initial speed, m/s;  duration: s
     decay, rest: of the criterion, see the module
     precision: relative, of the result;  step, give: of the simulation, see `simulate`
-    raises ModelError: the diagram has no Dahl cancellation, or the range is empty
+    raises ModelError: the diagram has no Dahl cancellation, the range is empty, or a simulation is
+        refused, such as a step that does not divide the computer's delay
     """
     name = "C.dahl.stiffness"
     if name not in diagram.values:
@@ -84,8 +85,8 @@ def largest_stiffness_without_oscillation(
                 step=step,
                 give=give,
             )
-        except ModelError:
-            return True  # signals grow beyond all bounds
+        except GrowsWithoutBound:
+            return True
         return keeps_moving(run, decay=decay, floor=rest * abs(kick))
 
     bracket = _bisect(oscillates, smallest, largest, precision)

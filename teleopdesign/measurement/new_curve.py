@@ -28,14 +28,16 @@ from .survey.content import Survey
 from .tables import LogColumns
 
 
+def is_over_time(log: Log) -> bool:
+    """Whether a column of a log is a time or a position, by its name or unit."""
+    others = ("time", "position")
+    named = any(likeness(name, q) > 0.0 for name in log.names for q in others)
+    return named or any(unit_in_name(n, q, a) for n in log.names for q in others for a in AXES)
+
+
 def looks_like_a_curve(log: Log) -> bool:
     """Whether a log has a speed and a force, and neither a time nor a position."""
-    others = ("time", "position")
-    if any(likeness(name, q) > 0.0 for name in log.names for q in others):
-        return False
-    if any(unit_in_name(name, q, a) for name in log.names for q in others for a in AXES):
-        return False
-    return all(_candidates(log, channel) for channel in CHANNELS)
+    return not is_over_time(log) and all(_candidates(log, channel) for channel in CHANNELS)
 
 
 def _candidates(log: Log, channel: str) -> list[str]:
@@ -57,10 +59,12 @@ def curve_columns(
     force: str | None = None,
     units: Mapping[str, str] | None = None,
     torque_constant: tuple[float, str] | None = None,
+    gear_ratio: float | None = None,
 ) -> Survey:
     """The channels and the axis of a friction curve, with reasons for what was guessed.
 
     file: name in messages;  velocity, force, units: as the user states them; None: guessed
+    gear_ratio: turns of the motor, whose speed and force these are, per turn of the joint
     raises ExperimentError: no such column, no speed or force, units that leave the axis open
     """
     columns: dict[str, str] = {}
@@ -103,6 +107,9 @@ def curve_columns(
     if torque_constant is not None:
         value, unit = torque_constant
         channels["actuator_force"]["torque_constant"] = {"value": value, "unit": unit}
+    if gear_ratio is not None:
+        for entry in channels.values():
+            entry["gear_ratio"] = gear_ratio
     return Survey(axis, channels, 0.0, guesses)
 
 

@@ -1,4 +1,6 @@
-"""A check record in which nothing moves checks no model."""
+"""A check record in which nothing moves checks no model, and one may have a sign of its own."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -27,6 +29,15 @@ def arrived(moves_in_check):
 def test_a_check_warns_of_a_check_record_at_rest(moves):
     sentences = [f.sentence for f in td.check_experiment(arrived(moves)) if f.concern == "warning"]
     assert any("rests throughout the check records" in one for one in sentences) != moves
+
+
+def test_a_check_warns_of_a_command_that_has_another_sign_in_the_check_record():
+    experiment = td.load_experiment(td.example("rod"))
+    fit, check = experiment.records
+    turned = {n: -x if n.endswith("actuator_force") else x for n, x in check.signals.items()}
+    experiment = replace(experiment, records=(fit, replace(check, signals=turned)))
+    (finding,) = (f for f in td.check_experiment(experiment) if f.topic == "signs")
+    assert finding.concern == "warning" and "check records" in finding.sentence
 
 
 @pytest.mark.slow

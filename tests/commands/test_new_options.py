@@ -13,6 +13,7 @@ REFUSED = {
     ("--unit", "pos=A"): "unit of 'pos': found 'A', expected one of a position",
     ("--torque-constant", "0.045"): 'found \'0.045\', expected a number and a unit such as "0.037',
     ("--torque-constant", "0.045 Nm"): "expected a force or torque for each ampere",
+    ("--velocity", "current"): "--velocity: is the speed of a friction curve, found a log with",
     ("--position", "poss"): 'position: no column \'poss\', found time, pos, current; did you mean',
 }  # fmt: skip
 

@@ -183,6 +183,17 @@ def test_new_reads_a_table_of_speeds_and_torques(tmp_path, monkeypatch):
     assert "kind" in curve.guesses
 
 
+def test_a_curve_at_the_motor_is_that_of_the_joint_behind_its_gear(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    write_table(tmp_path / "motor.csv", "speed (rpm),torque (mN m)")
+    assert main(["new", "motor.csv", "--output", "motor", "--gear-ratio", "50"]) == 0
+    signals = td.load_experiment("motor").records[0].signals
+    assert np.abs(signals["device.velocity"]).max() == pytest.approx(10.47 / 50, 1e-3)
+    assert np.abs(signals["device.actuator_force"]).max() == pytest.approx(50 * 0.03, 1e-3)
+    assert main(["new", "motor.csv", "--overwrite", "--inertia", "0.3"]) == 2
+    assert "--inertia: says nothing of a friction curve" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("points", [4, 9])
 def test_few_speeds_name_no_effect_beside_the_parameters_that_follow_them(points):
     """Coulomb and viscous friction are all that is there; a law through all points says nothing."""

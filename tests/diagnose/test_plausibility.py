@@ -89,7 +89,7 @@ MISFITS = {
         "no motion reaches either end",
     ),
     "hardening_spring": ({"neutral": 0.1}, {"neutral": -2.0}, "a spring and a constant force"),
-    "gravity": ({"amplitude": 2.0}, {"amplitude": -40.0}, "a spring"),
+    "gravity": ({"amplitude": 2.0, "phase": 0.0}, {"amplitude": -40.0, "phase": 0.0}, "a spring"),
     "cogging_harmonic": ({"period": 0.5}, {"period": 2.0}, "varies slowly along the travel"),
     "position_dependent_gain": (
         {"fall": 0.1, "centre": 0.4},

@@ -182,6 +182,13 @@ def test_a_shift_that_raises_the_error_on_unseen_records_is_held_at_none(adequat
     assert back.record_shift[place] == held.model.record_shift[place]
 
 
+def test_beside_a_gain_a_late_command_is_compared_with_a_dead_time(tmp_path):
+    """In the place of a shift at its bound a dead time is tried, of an effect that is not there."""
+    experiment = td.load_experiment(write_simulated(tmp_path / "late", "actuation_delay"))
+    fit = fitted(experiment, "actuator_gain")
+    assert with_paying_shift(fit, prepare(experiment)).model.effects == fit.model.effects
+
+
 def logged_late(experiment, rows):
     """The experiment whose log holds commands back by whole rows."""
     for _ in range(rows):

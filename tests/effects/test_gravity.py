@@ -53,5 +53,8 @@ def test_a_link_that_swings_freely_is_pulled_by_more_than_any_sensor_measures():
     plausible, p = EFFECTS["gravity"].plausible, SimpleNamespace(amplitude=20.0, phase=0.0)
     swinging = replace(facts(-3.0, 3.0), acting=5.0 + 18.0)
     assert plausible(p, swinging) is None
-    held = replace(facts(-0.01, 0.01), acting=5.0 + 0.1)
+    held = replace(facts(0.99, 1.01), acting=5.0 + 0.1)
     assert "a constant force and a spring" in plausible(p, held)
+    # a link that hangs down is never lifted: 4 N m act at 0.2 rad
+    hanging = replace(facts(-0.2, 0.2), acting=5.0 + 0.1)
+    assert plausible(p, hanging) is None

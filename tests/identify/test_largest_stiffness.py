@@ -59,3 +59,15 @@ def test_a_loop_without_a_dahl_cancellation_is_refused():
         largest(loop().without("C"))
     with pytest.raises(ModelError, match="expected above 0 and below largest"):
         largest(loop(), smallest=1.0, largest=0.5)
+
+
+def test_a_simulation_that_is_refused_is_no_oscillation():
+    with pytest.raises(ModelError, match="no whole number of steps"):
+        largest_stiffness_without_oscillation(
+            loop(5e3),
+            smallest=100.0,
+            largest=1e5,
+            kick=1e-3,
+            duration=0.1,
+            computer=Sampling(period=1e-3, delay=1.05e-3),
+        )
