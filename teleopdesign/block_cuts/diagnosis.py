@@ -168,6 +168,7 @@ class BlockDiagnosis(Shown, ByValue):
             "check": self.check,
             "candidates": sorted(candidates, key=lambda c: -c["probability"]),
             "indistinguishable": [[_place(key) for key in group] for group in self.groups],
+            "cannot_tell": [known for one in bodies.values() for known in one["cannot_tell"]],
             "model_parameters": parameters,
             "tested": {c.name: list(c.blocks) for c in self.cuts.tested},
             "untested": dict(self.cuts.untested),
