@@ -47,6 +47,7 @@ def _no_tone(*_: Any) -> Any:
 RULES: dict[str, tuple[str, Off]] = {
     "two at once": ("moves.add_two", _nothing),
     "swap": ("moves.swap", _nothing),
+    "two in the place of one": ("swap_for_two.swap_for_two", _nothing),
     "superfluous is removed": ("moves.remove", _nothing),
     "transmission with friction": ("transmission.add_transmission", _nothing),
     "readings": ("climb.stands_in_for_readings", _nothing),

@@ -29,6 +29,7 @@ from .moves import add, add_two, swap
 from .noise_floor import NoiseFloor, noise_floor, say_floors
 from .rung import Rung
 from .statements import SetAside
+from .swap_for_two import swap_for_two
 from .transmission import add_transmission
 
 
@@ -92,7 +93,8 @@ def bar_what_explains_nothing(
 def make_next_move(search: LadderSearch, state: LadderState, *, pairs: bool) -> LadderState | None:
     """The state after the next move; None: the ladder ends here.
 
-    First, a supported effect is added. Where there is none, another effect takes the place of one
+    Two simpler effects take the place of the last one where they leave clearly less. Else, a
+    supported effect is added. Where there is none, another effect takes the place of one
     that the records do not tell from it. Where more than a tone is left, two effects are tried that
     mask each other, and a transmission with friction behind it, because a search with one of the
     two does not lead to the other.
@@ -100,7 +102,8 @@ def make_next_move(search: LadderSearch, state: LadderState, *, pairs: bool) -> 
     pairs: whether two effects may be added at once
     """
     may_grow = state.step <= search.plan.most_effects
-    moved = add(search, state) if may_grow else None
+    moved = swap_for_two(search, state)
+    moved = moved or (add(search, state) if may_grow else None)
     moved = moved or swap(search, state)
     if moved is not None or not (may_grow and pairs):
         return moved

@@ -72,7 +72,7 @@ def _add_candidate(search: LadderSearch, state: LadderState, best: Ranked) -> La
             break
     else:
         return state.with_rungs(rungs)
-    return _in_order(search, state, rungs, best.fit)
+    return in_order(search, state, rungs, best.fit)
 
 
 def add_two(search: LadderSearch, state: LadderState) -> LadderState | None:
@@ -167,7 +167,7 @@ def remove(search: LadderSearch, state: LadderState) -> LadderState | None:
         without = estimate_without(state.fit.model, rung, search.prepared)
         if without is None or is_better(without, state.fit, state.floor):
             continue
-        return _in_order(search, state, [r for r in state.rungs if r is not rung], without)
+        return in_order(search, state, [r for r in state.rungs if r is not rung], without)
     return None
 
 
@@ -212,7 +212,7 @@ def swap(search: LadderSearch, state: LadderState) -> LadderState | None:
             for r in state.rungs
             if r is rung or r.added is None or r.added.key in left
         ]
-        moved = _in_order(search, state, rungs, new.fit)
+        moved = in_order(search, state, rungs, new.fit)
         if moved is not None and (new.added == rung.added or moved.effects not in state.visited):
             return _without_superfluous(search, state, moved)
     return None
@@ -265,17 +265,20 @@ def _list_simpler(rung: Rung, state: LadderState) -> tuple[Candidate, ...]:
 
     Of look-alikes the commoner one stays where more than noise is left.
     """
+    noise = is_adequate(state.fit, state.floor)
+    simpler = list_simpler_of_role(rung, state)
+    name = rung.added.effect.name if rung.added is not None else ""
+    return tuple(c for c in simpler if noise or c.effect.commoner != name)
+
+
+def list_simpler_of_role(rung: Rung, state: LadderState) -> tuple[Candidate, ...]:
+    """Effects of the same role with fewer parameters, which the model has not."""
     added = rung.added
     assert added is not None
-    model, noise = state.fit.model, is_adequate(state.fit, state.floor)
-    possible = [Candidate(e, added.at) for e in model.known.values() if e.role == added.effect.role]
-    return tuple(
-        c
-        for c in possible
-        if c.key not in state.gone | state.effects
-        and simplicity(c)[0] < simplicity(added)[0]
-        and (noise or c.effect.commoner != added.effect.name)
-    )
+    known = state.fit.model.known.values()
+    possible = [Candidate(e, added.at) for e in known if e.role == added.effect.role]
+    free = (c for c in possible if c.key not in state.gone | state.effects)
+    return tuple(c for c in free if simplicity(c)[0] < simplicity(added)[0])
 
 
 def _is_followed(rung: Rung, state: LadderState) -> bool:
@@ -288,7 +291,7 @@ def _is_followed(rung: Rung, state: LadderState) -> bool:
     return rung.ranking is not None and rung.ranking.base is not state.rungs[-2].fit
 
 
-def _in_order(
+def in_order(
     search: LadderSearch, state: LadderState, rungs: Sequence[Rung], last: Fit
 ) -> LadderState | None:
     """The state with these rungs, ordered by falling error; None where there is no such order."""

@@ -43,9 +43,13 @@ class Whiteness:
     @property
     def band(self) -> tuple[float, float]:
         """The frequencies (Hz) with a quarter of the residual's squares below, and above."""
-        squares = np.cumsum(self.spectrum[1] ** 2)
+        frequency, height, _ = self.spectrum
+        squares = np.cumsum(height**2)
         share = squares / max(float(squares[-1]), 1e-300)
-        low, high = np.interp([0.25, 0.75], share, self.spectrum[0])
+        # what is at a frequency lies to either side of it, up to the middle of two
+        middles = 0.5 * (frequency[1:] + frequency[:-1])
+        ends = np.concatenate([frequency[:1], middles, frequency[-1:]])
+        low, high = np.interp([0.25, 0.75], np.concatenate([[0.0], share]), ends)
         return float(low), float(high)
 
 

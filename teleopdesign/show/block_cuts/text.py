@@ -29,7 +29,9 @@ def block_diagnosis_text(diagnosis: BlockDiagnosis) -> str:
         lines.append(_line(label, errors, f"{100 * row.check_error:.3g}%"))
         if row.added is not None:
             lines += [f"      {text}" for text in _parameters(diagnosis, row.added)]
-            lines += [f"      not determined: {text}" for text in _looks_alike(diagnosis, row.added)]
+            lines += [
+                f"      not determined: {text}" for text in _looks_alike(diagnosis, row.added)
+            ]
     floors = [f"{100 * diagnosis.floors[c.name]:.3g}%" for c in cuts]
     lines.append(_line("noise floor", floors, ""))
     lines += ["", *map(str, diagnosis.cuts.tested)]
