@@ -24,7 +24,7 @@ def sprung(axis, neutral):
 
 
 @pytest.mark.parametrize("axis", STAND_INS)
-def test_a_spring_and_a_bias_take_the_place_of_what_has_a_place_of_its_own(axis):
+def test_a_spring_and_a_bias_are_named_where_the_neutral_place_is_not_zero(axis):
     among = ["spring", "bias", "stribeck", STAND_INS[axis]]
     diagnosis = td.find_missing(sprung(axis, 0.4), among=among)
     assert {one["effect"] for one in diagnosis.missing_places} == {"spring", "bias"}
