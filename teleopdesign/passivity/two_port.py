@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -26,14 +27,17 @@ from ..base.arguments import describe_value
 from ..base.errors import ModelError
 from ..base.finding import Graph, Series
 from ..base.frozen import ByValue
+from ..controllers import resolvent
+from ..derive.polynomials import as_poly, element, fraction
 from ..diagrams.control_parts import entry_of
 from ..realise.lti import S
 from .claims.claim import Claim
 from .linear.family import Family, family_of_matrix
 from .linear.impedance import Impedance, exact, impedance, read_expression
 from .linear.judge import passive_claim, stable_claim
+from .linear.matrices import determinant, hold
 from .linear.sweep import passive_margin, stable_margin
-from .linear.unseen import unseen_modes
+from .linear.unseen import not_decaying
 
 
 @dataclass(frozen=True)
@@ -74,11 +78,12 @@ def two_port(entries: Any) -> TwoPort:
                 "two_port: expected two inputs and two outputs, found "
                 f"{entries.ninputs} and {entries.noutputs}"
             )
-        unseen = unseen_modes(entries)
         rows = [
             [impedance(entry_of(entries, i, j, "two_port")) for j in range(2)] for i in range(2)
         ]
-        return TwoPort(_matrix(rows), unseen)
+        made = two_port(rows)
+        has_states = bool(len(getattr(entries, "A", ())))
+        return replace(made, unseen=_unseen_states(entries)) if has_states else made
     if isinstance(entries, sp.MatrixBase):
         entries = entries.tolist()
     if isinstance(entries, str) or not (_is_pair(entries) and all(map(_is_pair, entries))):
@@ -86,27 +91,50 @@ def two_port(entries: Any) -> TwoPort:
             "two_port: expected [[z11, z12], [z21, z22]] or a system of python-control, found "
             f"{describe_value(entries)}"
         )
-    modes = (mode for row in entries for entry in row for mode in unseen_modes(entry))
-    return TwoPort(_matrix(entries), tuple(modes))
-
-
-def _matrix(entries: Any) -> sp.ImmutableMatrix:
-    return sp.ImmutableMatrix([[_entry(e) for e in row] for row in entries])
+    rows = [[_entry(e) for e in row] for row in entries]
+    modes = (mode for row in rows for e in row if isinstance(e, Impedance) for mode in e.unseen)
+    z = [[e.expression if isinstance(e, Impedance) else e for e in row] for row in rows]
+    return TwoPort(sp.ImmutableMatrix(z), tuple(modes))
 
 
 def _is_pair(value: Any) -> bool:
     return hasattr(value, "__len__") and not isinstance(value, str) and len(value) == 2
 
 
-def _entry(entry: Any) -> sp.Expr:
+def _entry(entry: Any) -> Impedance | sp.Expr:
     if hasattr(entry, "isdtime") or isinstance(entry, Impedance):
-        return impedance(entry).expression
+        return impedance(entry)
     e = read_expression(entry, S, "two_port")
     for power in e.atoms(sp.exp):
         rate = sp.Poly(power.args[0], S).all_coeffs() if power.args[0].is_polynomial(S) else []
         if len(rate) != 2 or rate[1] != 0 or rate[0] > 0:
             raise ModelError(f"two_port: expected a dead time exp(-s T), found {power}")
     return e
+
+
+def _unseen_states(system: Any) -> tuple[complex, ...]:
+    """Modes of a state space that its ports do not show and that do not decay, 1/s.
+
+    What the ports do not show is the same whatever holds them.
+    """
+    matrices = (system.A, system.B, system.C, system.D)
+    a, b, c, straight = ([[fraction(exact(x)) for x in row] for row in m] for m in matrices)
+    places = range(len(c))
+
+    def in_ring(falling: Sequence[Fraction]) -> Any:
+        return element(sp.Poly(list(map(exact, falling)) or [0], S, domain="QQ"))
+
+    made = [[resolvent(a, [row[j] for row in b], c[i]) for j in places] for i in places]
+    d = in_ring(made[0][0][0])
+    n = [
+        [in_ring(one) + in_ring([x]) * d for (_, one), x in zip(*row, strict=True)]
+        for row in zip(made, straight, strict=True)
+    ]
+    loose, tight = (determinant(hold(n, d, [sp.QQ(c)] * len(n))) for c in (1, 3))
+    shared = loose.gcd(tight)
+    for _ in places[1:]:
+        shared = shared.exquo(d)
+    return not_decaying(as_poly(shared, S))
 
 
 def teleoperator_two_port(
@@ -119,8 +147,10 @@ def teleoperator_two_port(
     """
     link = exact(stiffness) / S + exact(damping)
     late = sp.exp(-S * exact(delay)) if delay else sp.S(1)
-    z1, z2 = (impedance(x).expression + link for x in (master, slave))
-    return two_port([[z1, -link * late], [-link * late, z2]])
+    sides = impedance(master), impedance(slave)
+    z1, z2 = (side.expression + link for side in sides)
+    made = two_port([[z1, -link * late], [-link * late, z2]])
+    return replace(made, unseen=(*sides[0].unseen, *sides[1].unseen))
 
 
 @dataclass(frozen=True, eq=False)

@@ -217,3 +217,14 @@ def test_an_effect_that_is_absent_in_the_middle_alone_is_not_left_out(name):
     assert claim_over_intervals(haptic_interface(device), box).status == "unknown"
     with pytest.raises(ModelError, match=f"Z_M.{name} has no linear form"):
         claim_over_intervals(haptic_interface(device), box, claim="stable")
+
+
+def test_a_margin_that_is_no_number_at_some_point_is_no_evidence():
+    def margin(d):
+        inertia = d.values["Z_M.inertia"]
+        return np.nan if inertia > 0.2 else 1.0
+
+    device = haptic_interface(body(0.15))
+    for high, status in ((0.15, "evidence"), (0.25, "unknown")):
+        claim = claim_over_intervals(device, {"Z_M.inertia": (0.1, high)}, claim=margin)
+        assert claim.status == status

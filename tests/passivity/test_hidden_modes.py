@@ -16,9 +16,15 @@ from teleopdesign.controllers import (
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.effects import Effect, Parameter, State
 from teleopdesign.passivity import (
+    absolutely_stable,
     claim_over_intervals,
+    impedance,
+    passive,
     ports,
     positive_real,
+    teleoperator_two_port,
+    two_port,
+    wave_teleoperator,
 )
 from teleopdesign.passivity.linear.family import family_at
 from teleopdesign.passivity.linear_diagrams import linear_claims
@@ -41,6 +47,29 @@ COLUMN, ROW = np.array([[0.0], [0.0]]), np.array([[1.0, 0.0]])
 )
 def test_an_impedance_of_python_control_is_proved_only_where_its_states_decay(system, status):
     assert positive_real(system).status == status
+
+
+#: (s + 2)/(s + 1) from rest, with a state that nothing shows
+GROWS, DECAYS = (
+    ct.ss([[-1.0, 0.0], [0.0, a]], [[1.0], [0.0]], [[1.0, 0.0]], [[1.0]]) for a in (1.0, -3.0)
+)
+#: claims in which such a system is a part
+WHOLE = {
+    "its impedance": lambda one: positive_real(impedance(one)),
+    "one entry": lambda one: absolutely_stable(two_port([[impedance(one), 0], [0, 1]])),
+    "a teleoperator": lambda one: passive(
+        teleoperator_two_port(master=1, slave=one, stiffness=2.0, damping=1.0)
+    ),
+    "waves": lambda one: wave_teleoperator(
+        master=impedance(one), slave=1, coupling=1, wave_impedance=1
+    ),
+}
+
+
+@pytest.mark.parametrize("whole", WHOLE)
+def test_a_state_that_a_part_hides_counts_in_the_whole(whole):
+    assert WHOLE[whole](DECAYS).status == "proved"
+    assert WHOLE[whole](GROWS).status == "unknown"
 
 
 UNBOUNDED = {"lower": -float("inf"), "upper": float("inf")}

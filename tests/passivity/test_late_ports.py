@@ -169,3 +169,22 @@ def test_a_dead_time_of_an_actuator_counts_as_one_of_a_law(gain, status):
     diagram = haptic_interface(device, position_loop=controller("gain", {"gain": gain}))
     claim = claim_over_intervals(diagram, {"Z_M.inertia": (0.1, 0.2)}, claim="stable", points=2)
     assert claim.status == status, claim
+
+
+def beside_a_hidden_loop():
+    """A damped mass, and z' = -z - 3 z(t - T), which it drives and which it does not feel."""
+    mass = Moving("M", body(0.1, viscous__damping=1.0), "x", "u", {"f": 1}, "f")
+    parts = (
+        mass,
+        Control("L", ratio([1.0], [1.0, 1.0]), "e", "y"),
+        Control("D", late(0.1), "y", "z"),
+    )
+    sums = (Junction("e", {"x": 1.0, "z": -3.0}), Junction("u", {}))
+    return Diagram("hidden", parts, sums, {"f": "force"}, ())
+
+
+@pytest.mark.parametrize(("longest", "holds"), [(0.4, True), (2.0, None)])
+def test_a_mode_with_a_dead_time_that_grows_somewhere_in_a_box_leaves_no_evidence(longest, holds):
+    """It grows from T = acos(-1/3)/sqrt(8) = 0.676 s on, and no frequency shows it."""
+    box = {"D.delay.time": (0.1, longest)}
+    assert claim_over_intervals(beside_a_hidden_loop(), box, points=4).holds is holds

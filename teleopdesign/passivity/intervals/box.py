@@ -10,20 +10,15 @@ from itertools import product
 from typing import Any, Literal
 
 import numpy as np
-import sympy as sp
 
 from ...base.errors import ModelError, did_you_mean
 from ...base.expectations import describe_value
 from ...base.frozen import ByValue
 from ...base.shown import Shown
 from ...controllers import exact_decimal
-from ...derive.polynomials import roots
 from ...diagrams import Diagram
 from ..claims.certificate import Certificate
 from ..claims.claim import Claim, NotTrueOrFalse
-from ..linear.family import Family
-from ..linear.signs import coefficient, degree
-from ..linear.sweep import least_over, margin_of
 from ..ports import drop_absent_effects, nonlinear_parts
 
 #: most vertices that are evaluated: all vertices of eight intervals, 2^8
@@ -188,8 +183,6 @@ def nonlinear_within(diagram: Diagram, box: ValueBox) -> tuple[str, ...]:
 
 #: margin at a point of the box, (n,); -inf where the claim fails and no number measures this
 MarginFunction = Callable[[np.ndarray], float]
-#: frequencies of the grid at each point of the box, then refined beside the lowest margin
-_FREQUENCIES = 501
 #: number of points from which a descent starts, and evaluations of a descent for each value
 _STARTS, _STEPS = 3, 40
 
@@ -199,11 +192,13 @@ class Worst:
     """The least margin of all points that were evaluated.
 
     point: where the margin is least, (n,);  points: number of points
+    suspects: other points at which the margin is not above 0; (n,) each
     """
 
     point: np.ndarray
     margin: float
     points: int
+    suspects: tuple[np.ndarray, ...] = ()
 
 
 def search_worst(
@@ -238,59 +233,9 @@ def search_worst(
                 bounds=[(0.0, 1.0)] * len(low),
                 options={"maxfev": _STEPS * len(low), "xatol": 1e-6, "fatol": 1e-12},
             )
-    key = min(values, key=lambda key: values[key])
-    return Worst(np.array(key), values[key], len(values))
-
-
-def pole_margin(p: Any) -> MarginFunction:
-    """Margin of stability: distance of the rightmost root from the axis, 1/s; > 0: on the left.
-
-    p: a polynomial in s and the values
-    """
-    falling = _coefficients(p)
-
-    def margin(point: np.ndarray) -> float:
-        at = roots(falling(point))
-        return float(-at.real.max()) if len(at) else np.inf
-
-    return margin
-
-
-def port_margin(family: Family, claim: str) -> MarginFunction:
-    """Least margin of a claim over frequency; -inf where a mode grows with dampers at the ports.
-
-    "passive": N s/m;  "absolutely stable": Llewellyn's, dimensionless
-    """
-    test = margin_of(claim)
-    held = None if family.times else _coefficients(family.held)
-
-    def margin(point: np.ndarray) -> float:
-        w = np.array([1e-2, 1e3])
-        if held is not None:
-            modes = roots(held(point))
-            # 1e-7: a double root on the axis comes out of rounding by the square root of 1e-16
-            if (modes.real > 1e-7 * np.abs(modes)).any():
-                return -np.inf
-            w = np.append(w, np.abs(modes[modes != 0]))
-        w = np.concatenate([w, *(np.abs(r[r != 0]) for r in (roots(e(point)) for e in poles))])
-        # a resonance may be narrower than the distance of two frequencies: each has its own
-        grid = np.union1d(np.geomspace(w.min() / 1000, w.max() * 1000, _FREQUENCIES), w)
-        _, least, _ = least_over(
-            lambda x: test(family.at(1j * x, point)), grid, rounds=1, points=41
-        )
-        return least
-
-    poles = [] if family.times else [_coefficients(family.d)]
-    return margin
-
-
-def _coefficients(p: Any) -> Callable[[np.ndarray], np.ndarray]:
-    """A function: the coefficients of s at a point of the box, highest power first."""
-    rising = [coefficient(p, k) for k in range(degree(p), -1, -1)]
-    count = len(p.ring.symbols) - 1
-    forms = [c.as_expr() for c in rising]
-    call = sp.lambdify(p.ring.symbols[1:], [sp.sympify(e).evalf(17) for e in forms], "math")
-    return lambda point: np.array(call(*(*point, *(0.0,) * (count - len(point)))), dtype=float)
+    first, *others = sorted(values, key=lambda key: values[key])
+    suspects = tuple(np.array(k) for k in others if values[k] <= 0)
+    return Worst(np.array(first), values[first], len(values), suspects)
 
 
 def interval_claim(
@@ -303,3 +248,37 @@ def interval_claim(
         statement, status, ends, at, worst.margin, unit, nothing, worst.points, how
     )
     return replace(made, **more)
+
+
+def judge_at_points(
+    middle: Diagram, box: ValueBox, claim: Callable[[Diagram], Any], points: int, seed: int
+) -> IntervalClaim:
+    """Judge a user's margin or claim at the vertices, the middle and further points of a box.
+
+    claim: function of a diagram, which returns a margin (>= 0: it holds) or a `Claim`
+    points: number of further points;  seed: of these points
+    """
+    unknown: list[str] = []
+    units: list[str] = []
+
+    def margin(point: np.ndarray) -> float:
+        value = claim(middle.with_values(box.named(point)))
+        if not isinstance(value, Claim):
+            if np.isnan(size := float(value)):
+                unknown.append(f"{name} is no number")
+            return np.inf if np.isnan(size) else size
+        if value.holds is None:
+            unknown.append(str(value.verdict))
+        units.append(getattr(value.verdict, "unit", ""))
+        size = float(getattr(value.verdict, "margin", float("nan")))
+        if np.isfinite(size) and (size >= 0) == bool(value.holds):
+            return size
+        return {True: np.inf, False: -np.inf, None: np.inf}[value.holds]
+
+    name = getattr(claim, "__name__", "the claim")
+    worst = search_worst(margin, box, points=points, seed=seed, downhill=False)
+    failed = worst.margin < 0
+    how = f"{name} is {worst.margin:.4g} there" if failed else f"{name}: nothing is proved"
+    status: Status = "refuted" if failed else "unknown" if unknown else "evidence"
+    how = f"unknown at {len(unknown)} points: {unknown[0]}" if status == "unknown" else how
+    return interval_claim(f"{name} holds", status, worst, box, next(filter(None, units), ""), how)

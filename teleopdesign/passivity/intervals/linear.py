@@ -31,12 +31,12 @@ from .box import (
     ValueBox,
     Worst,
     interval_claim,
+    judge_at_points,
     nonlinear_within,
-    pole_margin,
-    port_margin,
     search_worst,
 )
 from .late import judge_late
+from .margins import pole_margin, port_margin
 
 #: names of claims -> units of their margins
 CLAIMS = {"passive": "N s/m", "absolutely stable": "1", "stable": "1/s"}
@@ -98,13 +98,13 @@ def normalise(p: Any) -> Any:
 def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) -> IntervalClaim:
     signs = Signs(box.exact)
     worst = search_worst(pole_margin(p), box, points=points, seed=seed)
-    there = tuple(map(float, worst.point))
-    point = ValueBox(box.names, there, there).exact  # a box without width
-    if worst.margin <= 0 and not is_hurwitz(Signs(point).middle(p)):
-        how = (
-            f"a pole with real part {-worst.margin:.4g} 1/s; not Hurwitz by Routh's scheme, exactly"
-        )
-        return interval_claim(_STABLE, "refuted", worst, box, "1/s", how)
+    for point in (worst.point, *worst.suspects) if worst.margin <= 0 else ():
+        there = tuple(map(float, point))
+        if not is_hurwitz(Signs(ValueBox(box.names, there, there).exact).middle(p)):
+            pole = -pole_margin(p)(point)
+            how = f"a pole with real part {pole:.4g} 1/s; not Hurwitz by Routh's scheme, exactly"
+            worst = replace(worst, point=point, margin=-pole)
+            return interval_claim(_STABLE, "refuted", worst, box, "1/s", how)
 
     def certificates(bound: Fraction) -> tuple[Certificate, ...]:
         title = f"{name}: every pole has a real part below -{bound} 1/s, s counted from there"
@@ -140,29 +140,38 @@ def judge_linear(
         return _point_by_point(alone, box, claim, points, seed, statement)
     family = family_of_states(states, ports(alone), box.names, box.exact)
     worst = search_worst(port_margin(family, claim), box, points=points, seed=seed)
-    exact = _settle(alone.with_values(box.named(worst.point)), claim)
-    unit, signs = CLAIMS[claim], Signs(box.exact)
-    if exact.status == "refuted":
-        worst = worst if worst.margin < 0 else replace(worst, margin=-np.inf)
-        how = str(exact.verdict)
-        return interval_claim(statement, "refuted", worst, box, unit, how, at_worst=exact)
-    if not exact.holds:
+    signs, title = Signs(box.exact), f"{alone.name}: {statement}"
+
+    def decide(point: np.ndarray) -> IntervalClaim:
+        exact = _settle(alone.with_values(box.named(point)), claim)
+        status: Status = "refuted" if exact.status == "refuted" else "unknown"
         how = f"at the worst point of the search: {exact.verdict}"
-        return interval_claim(statement, "unknown", worst, box, unit, how, at_worst=exact)
-    worst = replace(worst, margin=max(worst.margin, 0.0))
-    how = "with a dead time nothing is proved over a box"
-    made = interval_claim(statement, "evidence", worst, box, unit, how, at_worst=exact)
-    if family.times:
-        return made
-    title = f"{alone.name}: {statement}"
-    return _prove(
-        made,
-        signs,
-        lambda bound: is_shown(signs, family, claim, bound),
-        lambda bound: _certificates(signs, family, claim, bound, title),
-        "its conditions are polynomials of one sign",
-        shares=_SHARES if claim == "passive" else (),
-    )
+        there = replace(worst, point=point)
+        if exact.holds:
+            status, how, there = "evidence", "", replace(there, margin=max(worst.margin, 0.0))
+        elif status == "refuted":
+            how = str(exact.verdict)
+            there = there if worst.margin < 0 else replace(there, margin=-np.inf)
+        return interval_claim(statement, status, there, box, CLAIMS[claim], how, at_worst=exact)
+
+    made = decide(worst.point)
+    if made.status == "evidence" and family.times:
+        each = _point_by_point(alone, box, claim, points, seed, statement)
+        how = "with a dead time nothing is proved over a box: every point is decided by itself"
+        return replace(made, points=each.points, how=how) if each.status == "evidence" else each
+    if made.status == "evidence":
+        made = _prove(
+            made,
+            signs,
+            lambda bound: is_shown(signs, family, claim, bound),
+            lambda bound: _certificates(signs, family, claim, bound, title),
+            "its conditions are polynomials of one sign",
+            shares=_SHARES if claim == "passive" else (),
+        )
+    if made.status == "evidence":  # nor does the margin show it at the suspects
+        others = (decide(point) for point in worst.suspects)
+        made = next((one for one in others if one.status != "evidence"), made)
+    return made
 
 
 def _prove(
@@ -244,7 +253,7 @@ def _point_by_point(
     made = judge_at_points(alone, box, lambda diagram: _settle(diagram, claim), points, seed)
     there = _settle(alone.with_values(made.worst), claim)
     how = "its values are not in the linear forms as such: every point is decided by itself"
-    how = str(there.verdict) if made.status == "refuted" else how
+    how = {"refuted": str(there.verdict), "unknown": made.how}.get(made.status, how)
     return replace(made, statement=statement, unit=CLAIMS[claim], how=how, at_worst=there)
 
 
@@ -275,35 +284,3 @@ def agrees(states: AllStates, diagram: Diagram, box: ValueBox, speed: float) -> 
         if (np.abs(one - other).max(axis=1, initial=0.0) > _ROUNDING * size).any():
             return False
     return True
-
-
-def judge_at_points(
-    middle: Diagram, box: ValueBox, claim: Callable[[Diagram], Any], points: int, seed: int
-) -> IntervalClaim:
-    """Judge a user's margin or claim at the vertices, the middle and further points of a box.
-
-    claim: function of a diagram, which returns a margin (>= 0: it holds) or a `Claim`
-    points: number of further points;  seed: of these points
-    """
-    unknown: list[str] = []
-    units: list[str] = []
-
-    def margin(point: np.ndarray) -> float:
-        value = claim(middle.with_values(box.named(point)))
-        if not isinstance(value, Claim):
-            return float(value)
-        if value.holds is None:
-            unknown.append(str(value.verdict))
-        units.append(getattr(value.verdict, "unit", ""))
-        size = float(getattr(value.verdict, "margin", float("nan")))
-        if np.isfinite(size) and (size >= 0) == bool(value.holds):
-            return size
-        return {True: np.inf, False: -np.inf, None: np.inf}[value.holds]
-
-    worst = search_worst(margin, box, points=points, seed=seed, downhill=False)
-    name = getattr(claim, "__name__", "the claim")
-    failed = not worst.margin >= 0
-    how = f"{name} is {worst.margin:.4g} there" if failed else f"{name}: nothing is proved"
-    status: Status = "refuted" if failed else "unknown" if unknown else "evidence"
-    how = f"unknown at {len(unknown)} points: {unknown[0]}" if status == "unknown" else how
-    return interval_claim(f"{name} holds", status, worst, box, next(filter(None, units), ""), how)

@@ -40,8 +40,16 @@ from ..linear.family import family_of_states
 from ..linear.impedance import decimal, exact
 from ..linear.signs import Signs
 from ..ports import drop_absent_effects, nonlinear_parts, ports, without_holders
-from .box import IntervalClaim, ValueBox, Worst, box_of, interval_claim, nonlinear_within
-from .linear import CLAIMS, judge_at_points, judge_linear, judge_stability, states_over
+from .box import (
+    IntervalClaim,
+    ValueBox,
+    Worst,
+    box_of,
+    interval_claim,
+    judge_at_points,
+    nonlinear_within,
+)
+from .linear import CLAIMS, judge_linear, judge_stability, states_over
 
 
 @check_types

@@ -249,4 +249,4 @@ def _count_lost(n: Matrix, d: Any, times: Mapping[sp.Symbol, sp.Expr]) -> int:
 def family_of_impedance(z: Impedance) -> Family:
     """The family of an impedance of one port without further states."""
     n, d = element(z.p), element(z.q)
-    return Family([[n]], d, n + d * damper(n, d))
+    return Family([[n]], d, n + d * damper(n, d), unseen=z.unseen)

@@ -7,7 +7,7 @@ read as a float, with about sixteen digits.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 from typing import Any, Literal
@@ -22,6 +22,7 @@ from ...derive.linear_rows import read_late_ratios
 from ...derive.polynomials import as_poly, element, fraction
 from ...realise.lti import S
 from .matrices import parts_of, value_at
+from .unseen import not_decaying
 
 MotionKind = Literal["velocity", "position"]
 _LONGEST = 9  # most characters of a fraction that a text contains as a fraction
@@ -39,10 +40,12 @@ class Impedance:
     """Impedance of a one-port: force over velocity, p(s)/q(s), N s/m.
 
     p, q: coprime, rational coefficients, q monic; the degree of p may be above that of q
+    unseen: modes of its python-control system that it does not show and that do not decay, 1/s
     """
 
     p: sp.Poly
     q: sp.Poly
+    unseen: tuple[complex, ...] = ()
 
     @property
     def expression(self) -> sp.Expr:
@@ -64,13 +67,15 @@ class Impedance:
 
     def __reduce__(self) -> Any:
         # sympy pickles a polynomial without the domain of its coefficients
-        return _impedance_of_domains, tuple(
-            (poly.as_expr(), str(poly.domain)) for poly in (self.p, self.q)
-        )
+        pairs = ((poly.as_expr(), str(poly.domain)) for poly in (self.p, self.q))
+        return _impedance_of_domains, (*pairs, self.unseen)
 
 
-def _impedance_of_domains(p: tuple[sp.Expr, str], q: tuple[sp.Expr, str]) -> Impedance:
-    return Impedance(*(sp.Poly(e, S, domain=domain) for e, domain in (p, q)))
+def _impedance_of_domains(
+    p: tuple[sp.Expr, str], q: tuple[sp.Expr, str], unseen: tuple[complex, ...]
+) -> Impedance:
+    above, below = (sp.Poly(e, S, domain=domain) for e, domain in (p, q))
+    return Impedance(above, below, unseen)
 
 
 def decimal(number: sp.Expr) -> str:
@@ -134,7 +139,8 @@ def impedance(system: Any, *, motion: MotionKind = "velocity") -> Impedance:
         made = impedance_of(*sides)
         _check_degree(max(made.p.degree(), made.q.degree()))
     if motion == "position":
-        return impedance_of(element(made.p), element(made.q * sp.Poly(S, S)))
+        over_position = impedance_of(element(made.p), element(made.q * sp.Poly(S, S)))
+        return replace(over_position, unseen=made.unseen)
     return made
 
 
@@ -220,7 +226,7 @@ def _from_control(system: Any) -> Impedance:
     if hasattr(system, "num"):
         p, q = ([exact(c) for c in row[0][0]] for row in (system.num, system.den))
         _check_degree(max(len(p), len(q)) - 1)
-        return impedance_of(*(element(sp.Poly(c, S, domain="QQ")) for c in (p, q)))
+        return _with_unseen(*(element(sp.Poly(c, S, domain="QQ")) for c in (p, q)))
     if not hasattr(system, "A"):
         raise ModelError(f"impedance: no linear system: {type(system).__name__}")
     _check_degree(len(system.A))
@@ -238,4 +244,9 @@ def from_state_space(a: Any, b: Any, c: Any, d: Any) -> Impedance:
     below, above = resolvent(a, [row[0] for row in b], c[0])
     q = sp.Poly(below, S, domain="QQ")
     p = sp.Poly(above or [Fraction(0)], S, domain="QQ") + q.mul_ground(sp.Rational(d[0][0]))
-    return impedance_of(element(p), element(q))
+    return _with_unseen(element(p), element(q))
+
+
+def _with_unseen(above: Any, below: Any) -> Impedance:
+    """The impedance above/below of a system; the roots that cancel are modes that it hides."""
+    return replace(impedance_of(above, below), unseen=not_decaying(as_poly(above.gcd(below), S)))
