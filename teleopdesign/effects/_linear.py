@@ -23,7 +23,9 @@ def is_linear(laws: Iterable[sp.Expr], signals: Iterable[sp.Symbol]) -> bool:
     for law in laws:
         if any(part.has(*signals) for part in law.atoms(sp.Abs, sp.Max, sp.Min) if signals):
             return False
-        plain = law.replace(delayed, lambda signal, _: signal)  # late is linear, too
+        if any(late.args[1].has(*signals) for late in law.atoms(delayed) if signals):
+            return False
+        plain = law.replace(delayed, lambda signal, _: signal)  # late by a constant is linear, too
         slopes = [_simplify_fraction(sp.diff(plain, x)) for x in signals]
         if any(slope.has(*signals) for slope in slopes if signals):
             return False

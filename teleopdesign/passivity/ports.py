@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from graphlib import CycleError, TopologicalSorter
 
 import numpy as np
@@ -19,10 +20,11 @@ from sympy.polys.matrices.exceptions import DMNonInvertibleMatrixError
 
 from ..base.errors import ModelError
 from ..blocks import Body
-from ..controllers import Controller, make_exact
+from ..controllers import Stage, exact_decimal, make_exact, parameter_symbol
+from ..derive.linear_rows import SPEED, OfLaw, rows_of_law
 from ..diagrams import Attached, Diagram, Linked, Moving, position_symbol
 from ..effects import is_linear
-from ..realise.lti import S, linear_blocks
+from ..realise.lti import linear_blocks
 from ..realise.simulated import without_absent
 from ..realise.tips import with_tips
 from .declarations import falsely_linear
@@ -100,13 +102,9 @@ def ports(diagram: Diagram) -> tuple[Port, ...]:
 
 def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
     """Names of the parts of a diagram that are not linear."""
-    diagram, speed = with_tips(diagram), sp.Symbol("speed", positive=True)
+    diagram = with_tips(diagram)
     names = list(linear_blocks(diagram).left_out)
-    for part in diagram.controls:
-        assert isinstance(part.controller, Controller)
-        form = part.controller.linear_form(part.name, S, speed)
-        if form is not None and form.has(speed):
-            names.append(part.name)
+    names += [c.name for c in diagram.controls if any(map(_varies_with_speed, c.stages))]
     names += falsely_linear(diagram)
     # a position that is a weighted sum of others has a Jacobian that does not change
     names += [
@@ -115,6 +113,21 @@ def nonlinear_parts(diagram: Diagram) -> tuple[str, ...]:
         if not is_linear([sp.sympify(k.expression)], [position_symbol(n) for n in k.inputs])
     ]
     return (*names, *(j.name for j in diagram.junctions if j.arms))
+
+
+@lru_cache(maxsize=256)
+def _varies_with_speed(stage: Stage) -> bool:
+    """Whether a coefficient of a linear law is another one at another speed, at these values.
+
+    In a transfer function at one constant speed such coefficients may cancel.
+    """
+    if not stage.law.linear:
+        return False
+    _, rates, output = rows_of_law(OfLaw(stage.law, stage))
+    numbers = {
+        parameter_symbol("law", f"law.{n}"): exact_decimal(x) for n, x in stage.values.items()
+    }
+    return any(c.xreplace(numbers).has(SPEED) for row in (*rates, output) for c in row)
 
 
 def is_spanned(motion: str, standing: Sequence[Port]) -> bool:
@@ -226,8 +239,8 @@ def holders(diagram: Diagram) -> dict[str, tuple[str, ...]]:
     """Hands and environments, each with the forces from outside in whose place it acts.
 
     A block counts if the diagram states that role, and if each of its forces acts as a force from
-    outside does, along the motion that the block resists. Any other block is a part of the device,
-    whatever its role or name.
+    outside does, along the motion that the block resists, and is read as that force is. Any other
+    block is a part of the device, whatever its role or name.
     """
     whole = with_tips(diagram)
     entering = {
@@ -240,7 +253,7 @@ def holders(diagram: Diagram) -> dict[str, tuple[str, ...]]:
         if not isinstance(part, Attached | Linked) or part.role == "part":
             continue
         places = [
-            [f for f, loads in entering.items() if _acts_as(whole, force, motion, loads)]
+            [f for f, loads in entering.items() if _acts_as(whole, force, motion, f, loads)]
             for force, motion in zip(part.outputs, part.inputs, strict=True)
         ]
         if all(places):
@@ -256,13 +269,20 @@ def _loads_of(diagram: Diagram, force: str) -> dict[str, sp.Expr]:
     return {motion: share for motion, share in loads.items() if share != 0}
 
 
-def _acts_as(diagram: Diagram, force: str, motion: str, loads: Mapping[str, sp.Expr]) -> bool:
-    """Whether a force acts on the bodies with these shares, and the motion moves by them."""
+def _acts_as(diagram: Diagram, force: str, motion: str, other: str, loads: Shares) -> bool:
+    """Whether a force acts everywhere as the other does, and the motion moves by its loads."""
     if not diagram.is_position(motion):
         return False
     place = diagram.position(motion)
     slopes = {x.name: sp.diff(place, x) for x in place.free_symbols}
-    return all(_is_along(made, loads) for made in (_loads_of(diagram, force), slopes))
+    one, like = (_loads_of(diagram, f) | _reads_of(diagram, f) for f in (force, other))
+    return _is_along(slopes, loads) and _is_along(one, like)
+
+
+def _reads_of(diagram: Diagram, force: str) -> Shares:
+    """Command of a body, or signal that a law reads -> its share of a force, not 0."""
+    heard = {*(c.input for c in diagram.controls), *(b.command for b in diagram.moving)}
+    return {name: x for name, x in shares_of(diagram, force).items() if name in heard}
 
 
 def _is_along(made: Mapping[str, sp.Expr], loads: Mapping[str, sp.Expr]) -> bool:

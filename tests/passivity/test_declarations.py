@@ -24,6 +24,7 @@ from teleopdesign.passivity.declarations import (
 )
 from teleopdesign.passivity.diagram_claims import composed_claim
 from teleopdesign.passivity.friction_pairs import friction_pairs, pair_claims
+from teleopdesign.passivity.ports import nonlinear_parts
 from teleopdesign.passivity.theorems.wave_channel import wave_claim
 
 DAHL = controller("dahl", {"level": 0.4, "stiffness": 1e4})
@@ -107,6 +108,7 @@ NOT_LINEAR = {
     "of degree one, and bent": "-p.size * now.velocity**2 / now.position",
     "a constant": "p.size",
     "of one direction": "-p.size * Abs(now.velocity)",
+    "late by its speed": "-p.size * delayed(now.position, now.velocity)",
 }
 
 
@@ -235,3 +237,13 @@ def test_a_stated_transfer_function_in_z_is_that_of_the_steps(tmp_path, stated, 
         return
     with pytest.raises(ModelError, match="declares shift"):
         load_controller(path)
+
+
+def test_a_law_whose_speed_cancels_in_its_transfer_function_is_not_linear(tmp_path):
+    """It reads what it kept at one speed at another one; a tremble then loads a negative spring."""
+    size = "(1 + 10 * now.speed)"
+    keeps = memory(f"now.input * {size} - now.z")
+    law = load_controller(law_file(tmp_path, f"-p.level * now.z / {size}", f"linear=True, {keeps}"))
+    made = controller(law, {"level": 3.0, "second": 0.1})
+    device = body(0.1, viscous__damping=2.0, spring__stiffness=10.0)
+    assert nonlinear_parts(haptic_interface(device, force_feedback=made)) == ("H",)

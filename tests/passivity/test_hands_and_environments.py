@@ -18,9 +18,7 @@ from teleopdesign.diagrams import (
     teleoperator,
     write_diagram,
 )
-from teleopdesign.passivity import (
-    diagram_claims,
-)
+from teleopdesign.passivity import claim_over_intervals, diagram_claims
 from teleopdesign.passivity.ports import holders
 
 SPRING = controller("spring_damper", {"stiffness": 300.0, "damping": 1.0})
@@ -93,3 +91,15 @@ def test_a_file_states_the_role_and_an_older_file_is_read_by_its_names(tmp_path)
     (tmp_path / "old.toml").write_text(text)
     with pytest.warns(UserWarning, match='old.toml.*Z_E.*role.*"environment"'):
         assert read_diagram(tmp_path / "old.toml") == diagram
+
+
+@pytest.mark.parametrize(("read", "holds"), [("total", True), ("h", False)])
+def test_a_hand_holds_a_port_where_what_is_read_of_its_force_is_read_of_the_port(read, holds):
+    """A law pushes on with twice what it reads: of the port nothing if the hand's force alone."""
+    held = at_port("Z_H", "hand")
+    law = Control("C", controller("gain", {"gain": 2.0}), read, "y")
+    sums = (Junction("total", {"f": 1.0, "h": 1.0}), Junction("u", {"y": -1.0}))
+    diagram = Diagram("read", (*held.blocks, law), sums, {"f": "force"}, ())
+    assert bool(holders(diagram)) is holds
+    assert claim_over_intervals(diagram, {}, claim="stable").status == "refuted"
+    assert diagram_claims(diagram).claims[0].claim.status == "refuted"

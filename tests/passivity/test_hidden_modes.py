@@ -18,6 +18,7 @@ from teleopdesign.effects import Effect, Parameter, State
 from teleopdesign.passivity import (
     absolutely_stable,
     claim_over_intervals,
+    damping_excess,
     impedance,
     passive,
     ports,
@@ -70,6 +71,7 @@ WHOLE = {
 def test_a_state_that_a_part_hides_counts_in_the_whole(whole):
     assert WHOLE[whole](DECAYS).status == "proved"
     assert WHOLE[whole](GROWS).status == "unknown"
+    assert float(damping_excess(DECAYS)) == 1 and float(damping_excess(GROWS)) == -np.inf
 
 
 UNBOUNDED = {"lower": -float("inf"), "upper": float("inf")}

@@ -39,7 +39,8 @@ def is_exactly_passive(family: Family, margin: Fraction = Fraction(0)) -> bool:
     n, d = take_damping(family, margin), family.d
     held = family.held if n is family.n else close(n, d, dampers(n, d))
     tests = axis_conditions(n, d, "passive")
-    return is_hurwitz(as_poly(held, S)) and all(is_non_negative(as_poly(p, X)) for p in tests)
+    decays = not family.unseen and is_hurwitz(as_poly(held, S))
+    return decays and all(is_non_negative(as_poly(p, X)) for p in tests)
 
 
 def is_shown(signs: Signs, family: Family, claim: str, margin: Fraction = Fraction(0)) -> bool:
