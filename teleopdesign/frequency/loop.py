@@ -29,7 +29,7 @@ from . import sampled_margins
 from .frozen_friction import cancellations_left_over
 from .late_loop import LateRatio, count_loop, crossings, loop_as_written, unity_grid
 from .late_zeros import count_growing
-from .sampled_loop import SampledLoop, sampled_loop
+from .sampled_loop import SampledLoop, sampled_loop, unseen_beside, unseen_in_samples
 
 if TYPE_CHECKING:
     import control
@@ -54,6 +54,7 @@ class LoopGain(Shown):
         None where others sample too: those of `held` then count as their response over frequency
     counted: the loop with all states, where nothing samples or is measured
     left_over: other controllers that cancel friction while friction is left out
+    fault: a mode that grows, and that no law which samples or was measured changes; "" for none
     """
 
     expression: sp.Expr
@@ -65,6 +66,7 @@ class LoopGain(Shown):
     sampled: SampledLoop | None = None
     counted: LateRatio | None = field(default=None, compare=False, repr=False)
     left_over: tuple[str, ...] = ()
+    fault: str = ""
 
     def __call__(self, s: Any) -> Any:
         """Value at complex s (1/s), a number or an array of any shape."""
@@ -114,9 +116,16 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
     counted = None
     if not linear.held and not gain.atoms(AppliedUndef):
         counted = count_loop(diagram, controller, speed=speed)
+    fault = ""
+    if counted is None and sampled is None:
+        laws = (c for c in diagram.controls if c.name not in linear.left_out)
+        away = [c for c in laws if not all(g.law.linear for g in c.stages)]
+        fault = unseen_beside(diagram, [c.name for c in away])
+        fault = fault and f"a mode that it does not see grows: {fault}"
+        fault = next(filter(None, (fault, *map(unseen_in_samples, away))), "")
     over = cancellations_left_over(diagram, linear.left_out)
     made = gain, controller, linear.left_out, linear.held, fastest, growing, sampled, counted
-    return LoopGain(*made, over)
+    return LoopGain(*made, over, fault)
 
 
 def delay_margin(loop: LoopGain | control.TransferFunction) -> float:
@@ -154,6 +163,8 @@ def unity_crossings(
                 f"loop: {', '.join(gone)} has no linear form and is not in the gain: "
                 f'judge the rest with `diagram.without("{gone[0]}")`, or simulate'
             )
+        if loop.fault:
+            raise UnstableLoop(f"the loop of {loop.controller}: {loop.fault}")
         if loop.expression.atoms(AppliedUndef):
             return *measured_crossings(loop.expression, growing=loop.growing), True
         if loop.sampled is not None:

@@ -15,6 +15,7 @@ unit circle are computed in floats as functions of z - 1, since slow poles lie c
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, reduce
@@ -24,7 +25,7 @@ import numpy as np
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..controllers import Controller, exact_decimal, is_of_matrices, sides_of
+from ..controllers import Controller, controller, exact_decimal, is_of_matrices, sides_of
 from ..derive.all_states import all_states
 from ..derive.polynomials import fraction, is_free_of_growth
 from ..diagrams import Control, Diagram
@@ -142,19 +143,49 @@ def sampled_loop(diagram: Diagram, part: Control, linear: LinearBlocks) -> Sampl
     periods = {exact_decimal(stage.values["period"]) for stage in law.stages}
     if len(periods) != 1 or 0 in periods:
         return None
-    z = sp.Symbol("z")
-    sides = [sides_of(stage.values, z) for stage in law.stages]
-    above, below = (reduce(sp.Poly.mul, side) for side in zip(*sides, strict=True))
-    unseen = sp.gcd(above, below)
+    above, below, fault = _sides_in_z(part)
     opened = diagram.open_at(part.name)
     if part.input not in opened.signals:
         return None
-    law_in_z = _rationals(above.quo(unseen)), _rationals(below.quo(unseen))
+    law_in_z = _rationals(above), _rationals(below)
     made = _loop_round(opened, part, linear.speed, fraction(periods.pop()), law_in_z)
-    if made is not None and not is_free_of_growth(_reverse(unseen)):
-        modes = ", ".join(f"z = {r:.4g}" for r in np.roots(_floats(_rationals(unseen))))
-        return replace(made, fault=f"a mode that it does not see grows, among {modes}")
-    return made
+    return replace(made, fault=fault) if made is not None and fault else made
+
+
+def unseen_beside(diagram: Diagram, away: Sequence[str]) -> str:
+    """Modes of the linear equations that grow whatever the laws `away` are, in words; or "".
+
+    Gains stand in their place. What all powers of a common factor of these gains share is a mode
+    that none of these laws changes.
+    """
+    factor = sp.Symbol("factor")
+    for k, name in enumerate(away):
+        diagram = diagram.with_block(name, controller("gain", {"gain": float(sp.prime(5 + k))}))
+    states = all_states(diagram, gains=dict.fromkeys(away, factor))
+    place, whole = states.ring.symbols.index(factor), states.determinant()
+    powers = {k[place] for k in whole}
+    sides = (states.ring({k: c for k, c in whole.items() if k[place] == power}) for power in powers)
+    unseen = reduce(lambda a, b: a.gcd(b), sides, states.ring.zero)
+    return describe_growth(unseen, states.times) if unseen else ""
+
+
+def unseen_in_samples(part: Control) -> str:
+    """Modes of a law in discrete time that it does not show and that grow, in words; or ""."""
+    laws = [stage.law for stage in part.stages]
+    is_known = all(law.in_z is not None and is_of_matrices(law) for law in laws)
+    return _sides_in_z(part)[2] if laws and is_known else ""
+
+
+def _sides_in_z(part: Control) -> tuple[sp.Poly, sp.Poly, str]:
+    """Coprime sides of a law of matrices in z, and the modes that cancel and grow, in words."""
+    z = sp.Symbol("z")
+    sides = [sides_of(stage.values, z) for stage in part.stages]
+    above, below = (reduce(sp.Poly.mul, side) for side in zip(*sides, strict=True))
+    unseen = sp.gcd(above, below)
+    modes = ", ".join(f"z = {r:.4g}" for r in np.roots(_floats(_rationals(unseen))))
+    grows = not is_free_of_growth(_reverse(unseen))
+    fault = f"a mode that it does not see grows, among {modes}" if grows else ""
+    return above.quo(unseen), below.quo(unseen), fault
 
 
 def _reverse(p: sp.Poly) -> sp.Poly:

@@ -3,10 +3,11 @@
 import control
 import numpy as np
 import pytest
+from devices import body
 
 from teleopdesign.base.errors import UnstableLoop
 from teleopdesign.controllers import from_control
-from teleopdesign.diagrams import Control, Diagram, plant_parts
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving, plant_parts
 from teleopdesign.frequency import delay_margin, loop_gain, matrix_response
 from teleopdesign.passivity import diagram_claims
 
@@ -75,3 +76,30 @@ def test_nothing_is_proved_of_it_and_the_claim_says_why():
     assert [one.claim.status for one in claims.claims] == ["unknown"]
     text = str(claims.claims[0].claim.verdict)
     assert "P_rest is a measured frequency response" in text and "right half plane" in text
+
+
+HIDES = {g: control.ss(np.diag([-9.0, g]), [[1.0], [0.0]], [[1.0, 0.0]], [[2.0]]) for g in (-3, 3)}
+
+
+@pytest.mark.parametrize("grows", [-3, 3])
+@pytest.mark.parametrize("beside", ["what was measured", "two that sample"])
+def test_a_loop_with_no_exact_form_has_no_margin_beside_a_hidden_mode_that_grows(grows, beside):
+    """A law shows 2 + 1/(s + 9) and hides exp(3 t), in its own loop and beside other loops."""
+    held = body(1.0, viscous__damping=1.0, spring__stiffness=50.0)
+    blocks = [Moving("M", held, "x", "u", {"f": 1.0}, "f")]
+    if beside == "what was measured":
+        other = from_control(control.frd(control.tf([1.0], [1.0, 9.0]), W))
+        blocks.append(Control("R", other, "x", "r"))
+    else:
+        other = from_control(control.tf([1.0], [1.0, -0.5], 0.01))
+        blocks += [Control("R", other, "x", "r"), Control("Q", other, "x", "q")]
+    blocks.append(Control("C", from_control(HIDES[grows]), "x", "c", analog=True))
+    back = {b.output: -1.0 for b in blocks[1:]}
+    diagram = Diagram("hidden", tuple(blocks), (Junction("u", back),), {"f": "force"}, ("x",))
+    for name in ("R", "C"):
+        loop = loop_gain(diagram, controller=name)
+        if grows < 0:
+            assert delay_margin(loop) > 0
+            continue
+        with pytest.raises(UnstableLoop, match="does not see grows"):
+            delay_margin(loop)
