@@ -61,9 +61,10 @@ def controller_parts(
     places = [(i, j) for i in range(len(outputs)) for j in range(len(inputs))]
     every = {(i, j): from_control(entry_of(system, i, j, name), name="entry") for i, j in places}
     forms = {p: c.linear_form(name, sp.Symbol("s"), sp.S(0), held=True) for p, c in every.items()}
-    shared = isinstance(system, control.StateSpace) and system.nstates > 0 and len(places) > 1
+    has_states = isinstance(system, control.StateSpace) and system.nstates > 0
+    shared = has_states and len(places) > 1
     there = [p for p in places if forms[p] != 0]
-    if shared:  # what drives a state that no output shows, and what shows one that none drives
+    if has_states:  # what drives a state that no output shows, and what shows one that none drives
         rows, columns = ({p[axis] for p in there} for axis in (0, 1))
         there = [p for p in places if p in there or p[0] not in rows or p[1] not in columns]
     controls: list[Control] = []

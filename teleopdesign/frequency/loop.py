@@ -29,7 +29,7 @@ from . import sampled_margins
 from .frozen_friction import cancellations_left_over
 from .late_loop import LateRatio, count_loop, crossings, loop_as_written, unity_grid
 from .late_zeros import count_growing
-from .sampled_loop import SampledLoop, sampled_loop, unseen_beside, unseen_in_samples
+from .sampled_loop import SampledLoop, sampled_loop, unseen_beside
 
 if TYPE_CHECKING:
     import control
@@ -120,9 +120,7 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
     if counted is None and sampled is None:
         laws = (c for c in diagram.controls if c.name not in linear.left_out)
         away = [c for c in laws if not all(g.law.linear for g in c.stages)]
-        fault = unseen_beside(diagram, [c.name for c in away])
-        fault = fault and f"a mode that it does not see grows: {fault}"
-        fault = next(filter(None, (fault, *map(unseen_in_samples, away))), "")
+        fault = unseen_beside(diagram, away)
     over = cancellations_left_over(diagram, linear.left_out)
     made = gain, controller, linear.left_out, linear.held, fastest, growing, sampled, counted
     return LoopGain(*made, over, fault)

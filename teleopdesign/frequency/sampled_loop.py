@@ -25,7 +25,14 @@ import numpy as np
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..controllers import Controller, controller, exact_decimal, is_of_matrices, sides_of
+from ..controllers import (
+    Controller,
+    controller,
+    exact_decimal,
+    is_of_matrices,
+    matrices_of,
+    sides_of,
+)
 from ..derive.all_states import all_states
 from ..derive.polynomials import fraction, is_free_of_growth
 from ..diagrams import Control, Diagram
@@ -152,28 +159,58 @@ def sampled_loop(diagram: Diagram, part: Control, linear: LinearBlocks) -> Sampl
     return replace(made, fault=fault) if made is not None and fault else made
 
 
-def unseen_beside(diagram: Diagram, away: Sequence[str]) -> str:
-    """Modes of the linear equations that grow whatever the laws `away` are, in words; or "".
+def unseen_beside(diagram: Diagram, away: Sequence[Control]) -> str:
+    """Modes that grow whatever these laws are, or that one of them hides, in words; "" for none.
 
-    Gains stand in their place. What all powers of a common factor of these gains share is a mode
-    that none of these laws changes.
+    Gains stand in the place of the laws. What all powers of a common factor of these gains share
+    is a mode that none of them changes.
     """
-    factor = sp.Symbol("factor")
-    for k, name in enumerate(away):
-        diagram = diagram.with_block(name, controller("gain", {"gain": float(sp.prime(5 + k))}))
-    states = all_states(diagram, gains=dict.fromkeys(away, factor))
+    factor, names = sp.Symbol("factor"), {part.name for part in away}
+    gains = {
+        part.name: replace(
+            part, controller=controller("gain", {"gain": float(sp.prime(5 + k))}), entry=None
+        )
+        for k, part in enumerate(away)
+    }
+    at_gains = replace(diagram, blocks=tuple(gains.get(b.name, b) for b in diagram.blocks))
+    states = all_states(at_gains, gains=dict.fromkeys(names, factor))
     place, whole = states.ring.symbols.index(factor), states.determinant()
-    powers = {k[place] for k in whole}
-    sides = (states.ring({k: c for k, c in whole.items() if k[place] == power}) for power in powers)
+    sides = (
+        states.ring({k: c for k, c in whole.items() if k[place] == power})
+        for power in {k[place] for k in whole}
+    )
     unseen = reduce(lambda a, b: a.gcd(b), sides, states.ring.zero)
-    return describe_growth(unseen, states.times) if unseen else ""
+    if unseen and (modes := describe_growth(unseen, states.times)):
+        return f"a mode that it does not see grows: {modes}"
+    systems: dict[str, list[Control]] = {}
+    for part in away:
+        systems.setdefault(part.entry.of if part.entry else part.name, []).append(part)
+    return next(filter(None, map(_unseen_in_samples, systems.values())), "")
 
 
-def unseen_in_samples(part: Control) -> str:
-    """Modes of a law in discrete time that it does not show and that grow, in words; or ""."""
-    laws = [stage.law for stage in part.stages]
-    is_known = all(law.in_z is not None and is_of_matrices(law) for law in laws)
-    return _sides_in_z(part)[2] if laws and is_known else ""
+def _unseen_in_samples(parts: Sequence[Control]) -> str:
+    """Modes of a law in discrete time that it does not show and that grow, in words; or "".
+
+    parts: the law, or all entries of a system of several inputs and outputs
+    """
+    laws = [stage.law for part in parts for stage in part.stages]
+    if not laws or not all(law.in_z is not None and is_of_matrices(law) for law in laws):
+        return ""
+    known = [made for part in parts if (made := matrices_of(part.controller)) is not None]
+    if len(parts) == 1 or len(known) < len(parts):
+        return _sides_in_z(parts[0])[2]
+    # the modes that the outputs do not change, whatever inputs are made of them
+    modes = []
+    for first in (1, 40):
+        closed = [[exact_decimal(x) for x in row] for row in known[0][0]]
+        for k, (_, b, c, *_) in enumerate(known):
+            for i, x in enumerate(b):
+                weight = exact_decimal(x) / sp.prime(first + k)
+                closed[i] = [
+                    e + weight * exact_decimal(y) for e, y in zip(closed[i], c, strict=True)
+                ]
+        modes.append(sp.Matrix(closed).charpoly(sp.Symbol("z")).as_expr())
+    return _describe_unseen(sp.gcd(*(sp.Poly(p, sp.Symbol("z"), domain="QQ") for p in modes)))
 
 
 def _sides_in_z(part: Control) -> tuple[sp.Poly, sp.Poly, str]:
@@ -182,10 +219,13 @@ def _sides_in_z(part: Control) -> tuple[sp.Poly, sp.Poly, str]:
     sides = [sides_of(stage.values, z) for stage in part.stages]
     above, below = (reduce(sp.Poly.mul, side) for side in zip(*sides, strict=True))
     unseen = sp.gcd(above, below)
+    return above.quo(unseen), below.quo(unseen), _describe_unseen(unseen)
+
+
+def _describe_unseen(unseen: sp.Poly) -> str:
     modes = ", ".join(f"z = {r:.4g}" for r in np.roots(_floats(_rationals(unseen))))
     grows = not is_free_of_growth(_reverse(unseen))
-    fault = f"a mode that it does not see grows, among {modes}" if grows else ""
-    return above.quo(unseen), below.quo(unseen), fault
+    return f"a mode that it does not see grows, among {modes}" if grows else ""
 
 
 def _reverse(p: sp.Poly) -> sp.Poly:

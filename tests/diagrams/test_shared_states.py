@@ -105,6 +105,15 @@ def test_what_no_output_shows_is_there_all_the_same():
     assert family_at(diagram, ports(diagram)).undecayed == pytest.approx([2.0])
 
 
+@pytest.mark.parametrize(("b", "c"), [(1.0, 0.0), (0.0, 1.0), (0.0, 0.0)])
+def test_one_entry_that_is_zero_keeps_its_states(b, c):
+    unseen = control.ss([[2.0]], [[b]], [[c]], [[0.0]])
+    controls, sums = controller_parts(unseen, name="K", inputs=("x",), outputs=("u",), motion="x")
+    rod = Moving("Z", body(0.1, viscous__damping=2.0), "x", "u", {"f": 1.0}, "f")
+    diagram = Diagram("zero", (rod, *controls), sums, {"f": "force"}, ("x",))
+    assert family_at(diagram, ports(diagram)).undecayed == pytest.approx([2.0])
+
+
 @pytest.mark.slow
 def test_a_loop_of_static_laws_has_no_pivot_that_is_zero():
     """Systems without a straight way, each in a sum of all: D = 0 was divided by."""

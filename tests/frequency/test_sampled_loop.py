@@ -6,7 +6,7 @@ from fractions import Fraction
 import control as ct
 import numpy as np
 import pytest
-from devices import body
+from devices import body, two_rods
 
 from teleopdesign.base.errors import UnstableLoop
 from teleopdesign.controllers import controller, from_control
@@ -143,3 +143,19 @@ def test_a_window_of_dead_times_about_a_whole_sample_is_detected():
     assert margin == pytest.approx(0.130849, rel=1e-5)
     for share, grows in ((0.999, False), (1.001, True)):
         assert loop.with_delay(share * margin).grows() == grows
+
+
+@pytest.mark.parametrize("hidden", [(), (0.7,), (1.5,)])
+def test_a_law_of_two_axes_hides_what_neither_of_its_outputs_shows(hidden):
+    """States of two entries each, integrators among them, count once; margins with 0.7 hidden."""
+    n, gains = len(hidden), -np.array([[50.0, -20.0], [-20.0, 50.0]])
+    a = np.diag([1.0, 0.5, *hidden])
+    b = np.vstack([np.eye(2), np.ones((n, 2))])
+    c = np.hstack([0.001 * gains, np.zeros((2, n))])
+    system = ct.ss(a, b, c, gains, 0.01)
+    loop = loop_gain(two_rods(system, analog=False), controller="C_1_1")
+    if 1.5 in hidden:
+        with pytest.raises(UnstableLoop, match="does not see grows"):
+            delay_margin(loop)
+    else:
+        assert delay_margin(loop) == pytest.approx(0.09, rel=0.1)
