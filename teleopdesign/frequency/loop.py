@@ -118,8 +118,8 @@ def loop_gain(diagram: Diagram, *, controller: str = "H", speed: float = 0.0) ->
         counted = count_loop(diagram, controller, speed=speed)
     fault = ""
     if counted is None and sampled is None:
-        laws = (c for c in diagram.controls if c.name not in linear.left_out)
-        away = [c for c in laws if not all(g.law.linear for g in c.stages)]
+        there = (c for c in diagram.controls if c.name not in linear.left_out)
+        away = [c for c in there if not all(g.law.linear for g in c.stages)]
         fault = unseen_beside(diagram, away)
     over = cancellations_left_over(diagram, linear.left_out)
     made = gain, controller, linear.left_out, linear.held, fastest, growing, sampled, counted

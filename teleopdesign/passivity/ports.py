@@ -279,7 +279,7 @@ def _acts_as(diagram: Diagram, force: str, motion: str, other: str, loads: Share
     return _is_along(slopes, loads) and _is_along(one, like)
 
 
-def _reads_of(diagram: Diagram, force: str) -> Shares:
+def _reads_of(diagram: Diagram, force: str) -> dict[str, sp.Expr]:
     """Command of a body, or signal that a law reads -> its share of a force, not 0."""
     heard = {*(c.input for c in diagram.controls), *(b.command for b in diagram.moving)}
     return {name: x for name, x in shares_of(diagram, force).items() if name in heard}
