@@ -225,6 +225,8 @@ def test_a_margin_that_is_no_number_at_some_point_is_no_evidence():
         return np.nan if inertia > 0.2 else 1.0
 
     device = haptic_interface(body(0.15))
-    for high, status in ((0.15, "evidence"), (0.25, "unknown")):
-        claim = claim_over_intervals(device, {"Z_M.inertia": (0.1, high)}, claim=margin)
-        assert claim.status == status
+    for high, status, refuted in ((0.15, "evidence", "evidence"), (0.25, "unknown", "refuted")):
+        box = {"Z_M.inertia": (0.1, high)}
+        assert claim_over_intervals(device, box, claim=margin).status == status
+        is_light = claim_over_intervals(device, box, claim=lambda d: margin(d) > 0)
+        assert is_light.status == refuted

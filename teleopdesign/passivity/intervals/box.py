@@ -255,7 +255,8 @@ def judge_at_points(
 ) -> IntervalClaim:
     """Judge a user's margin or claim at the vertices, the middle and further points of a box.
 
-    claim: function of a diagram, which returns a margin (>= 0: it holds) or a `Claim`
+    claim: function of a diagram, which returns a margin (>= 0: it holds), whether it holds, or a
+        `Claim`
     points: number of further points;  seed: of these points
     """
     unknown: list[str] = []
@@ -263,6 +264,8 @@ def judge_at_points(
 
     def margin(point: np.ndarray) -> float:
         value = claim(middle.with_values(box.named(point)))
+        if isinstance(value, bool | np.bool_):
+            return np.inf if value else -np.inf
         if not isinstance(value, Claim):
             if np.isnan(size := float(value)):
                 unknown.append(f"{name} is no number")

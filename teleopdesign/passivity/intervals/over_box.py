@@ -68,7 +68,7 @@ def claim_over_intervals(
         "absolutely stable": two ports between any passive terminations; "stable": every pole of the
         whole diagram, hand and environment included, has a negative real part; delay blocks and
         intervals of their dead times are allowed. Or a function of a diagram that returns a margin
-        (>= 0: the claim holds) or a `Claim`
+        (>= 0: the claim holds), whether the claim holds, or a `Claim`
     points: number of points that are evaluated besides the vertices and the middle;  seed: of these
     returns: proved over the whole box, refuted at a point, or checked numerically. Proofs exist for
         linear diagrams, for friction with its cancellation (by theorems), and, with dead times, for
