@@ -36,7 +36,7 @@ from ..passivity import (
     positive_real,
 )
 from ..passivity.identified import effects_left_open, extend_to_device
-from ..passivity.linear.impedance import exact
+from ..passivity.linear.impedance import exact, impedance
 from ..passivity.theorems.lugre import add_bristle_damping
 from ..realise.damping_interval import damping_interval
 from ..realise.friction_interval import FrictionInterval, value_interval
@@ -177,7 +177,8 @@ def feedback_claim(body: Body, force_feedback: Controller) -> Claim:
         sp.Poly([exact(round_near(float(c), digits=6)) for c in poly.all_coeffs()], S)
         for poly in (port.p, port.q)
     )
-    claim = positive_real(above.as_expr() / below.as_expr())
+    rounded = impedance(above.as_expr() / below.as_expr())
+    claim = positive_real(replace(rounded, unseen=port.unseen))
     without = join_names(["friction", "sampling", "delay", *gone])
     return replace(claim, statement=f"without {without} {claim.statement}")
 

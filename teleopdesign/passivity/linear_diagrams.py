@@ -13,6 +13,7 @@ import sympy as sp
 
 from ..base.errors import ModelError
 from ..derive import symbol_values, transfer
+from ..derive.all_states import all_states
 from ..derive.effort import bounded_effort
 from ..diagrams import Diagram
 from ..realise.lti import linear_blocks
@@ -20,10 +21,10 @@ from ..realise.tips import led_motion, linear_tips
 from .claims.claim import Claim, Unknown, use_units_of
 from .declarations import falsely_linear
 from .growing_mode import GrowingMode
-from .linear.family import Family, family_at
+from .linear.family import Family, family_at, family_of_states
 from .linear.impedance import Impedance, impedance
 from .linear.judge import NEARBY, passive_claim, stable_claim
-from .ports import Port, nonlinear_parts
+from .ports import Port, nonlinear_parts, ports, without_holders
 from .search.growing_wave import GrowingWave, wave_of
 from .theorems import TopicClaim
 
@@ -113,7 +114,7 @@ def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple
     """Impedance at the hand (N s/m), and the names of parts without a linear form.
 
     With R_D = 0 the force of the hand on the device is Zhat_M L; with a compliant transmission the
-    motion is that of the tip. A mode that a zero cancels is not in it: see `diagram_claims`.
+    motion is that of the tip. Modes that the hand does not feel are its `unseen`.
 
     The names include parts that are declared linear and are not; their form in Z has no meaning.
 
@@ -127,4 +128,7 @@ def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple
     linear = linear_blocks(apart, speed=speed)
     form = transfer(apart.open_at("K"), "E", (motion,), given=motion)[motion]
     z = impedance(sp.sympify(form).subs(symbol_values(linear)), motion="position")
+    alone = without_holders(diagram)
+    family = family_of_states(all_states(alone, speed=speed), ports(alone))
+    z = replace(z, unseen=family.undecayed if family.hides else ())
     return z, (*linear.left_out, *falsely_linear(apart))

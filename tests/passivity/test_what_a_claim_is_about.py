@@ -2,13 +2,14 @@
 
 import math
 
+import control as ct
 import pytest
 import sympy as sp
 from devices import body
 
 import teleopdesign as td
 from teleopdesign.base.errors import ModelError
-from teleopdesign.controllers import ControlLaw, ControllerState, controller
+from teleopdesign.controllers import ControlLaw, ControllerState, controller, from_control
 from teleopdesign.design.verdict import feedback_claim
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_interface
 from teleopdesign.effects import EFFECTS, Effect, Parameter, State, delayed
@@ -159,6 +160,13 @@ def test_the_claim_of_a_design_on_feedback_has_the_actuator_or_names_it(name):
     device = body(viscous__damping=2.0).with_effect(EFFECTS[name], values[name])
     claim = feedback_claim(device, controller("gain", {"gain": 1.0}))
     assert (name in claim.statement) == (name == "actuator_saturation")
+
+
+@pytest.mark.parametrize(("rate", "status"), [(-2.0, "proved"), (2.0, "unknown")])
+def test_the_claim_of_a_design_counts_what_the_feedback_hides(rate, status):
+    hides = ct.ss([[-10.0, 0.0], [0.0, rate]], [[1.0], [1.0]], [[1.0, 0.0]], [[0.5]])
+    claim = feedback_claim(body(viscous__damping=2.0), from_control(hides))
+    assert claim.status == status
 
 
 def test_a_stated_transfer_function_holds_at_the_values_that_run():
