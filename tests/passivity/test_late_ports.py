@@ -188,3 +188,8 @@ def test_a_mode_with_a_dead_time_that_grows_somewhere_in_a_box_leaves_no_evidenc
     """It grows from T = acos(-1/3)/sqrt(8) = 0.676 s on, and no frequency shows it."""
     box = {"D.delay.time": (0.1, longest)}
     assert claim_over_intervals(beside_a_hidden_loop(), box, points=4).holds is holds
+
+
+def test_dead_times_that_are_too_long_to_be_followed_leave_stability_open():
+    diagram = beside_a_hidden_loop().with_values({"D.delay.time": 1e9})
+    assert claim_over_intervals(diagram, {}, claim="stable").status == "unknown"

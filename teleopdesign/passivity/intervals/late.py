@@ -30,6 +30,7 @@ import numpy as np
 import sympy as sp
 from mpmath import iv
 
+from ...base.errors import ModelError
 from ...controllers import exact_decimal
 from ...derive.effort import try_within_effort
 from ...derive.polynomials import is_hurwitz
@@ -56,7 +57,10 @@ def judge_late(
         return {x: Fraction(int(v.p), int(v.q)) for x, v in zip(symbols, numbers, strict=True)}
 
     def margin(point: np.ndarray) -> float:
-        return slowest_decay(terms_of(p, times, values=at(point)))
+        try:
+            return slowest_decay(terms_of(p, times, values=at(point)))
+        except ModelError:  # dead times turn the phase more often than can be followed
+            return -np.inf
 
     worst = search_worst(margin, box, points=points, seed=seed)
     if worst.margin <= 0:
