@@ -35,7 +35,7 @@ from ._declarations import (
     symbols_of,
     unknown_symbols,
 )
-from ._exact import exact_decimal, make_exact, resolvent
+from ._exact import exact_decimal, make_exact, resolvent, unseen_factor
 from ._from_control import (
     from_control,
     invert_plant,
@@ -86,6 +86,7 @@ __all__ = [
     "require_kept",
     "symbols_of",
     "unit_state",
+    "unseen_factor",
     "why_not_cancelled",
 ]
 

@@ -13,9 +13,12 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import sympy as sp
+from sympy.polys.matrices import DomainMatrix
 
 if TYPE_CHECKING:
     from ._controller import Stage
+
+Matrix = Sequence[Sequence[float]]
 
 
 def exact_decimal(value: float) -> sp.Rational:
@@ -58,6 +61,32 @@ def resolvent(
         below.append(coefficient)
         power = [[moved[i][j] + (i == j) * coefficient for j in range(n)] for i in range(n)]
     return below, above
+
+
+def unseen_factor(a: Matrix, b: Matrix, c: Matrix, variable: sp.Symbol) -> sp.Poly:
+    """Factor of det(s I - A) of the modes that inputs and outputs together do not show.
+
+    It is a factor of det(s I - A - B K C) for every K, and two of these share no other.
+
+    a: (n, n), b: (n, inputs), c: (outputs, n);  variable: s, or z of a system in discrete time
+    """
+    n, inputs, outputs = len(a), len(b[0]), len(c)
+
+    def exact(rows: Matrix, shape: tuple[int, int]) -> DomainMatrix:
+        numbers = [[exact_decimal(x) for x in row] for row in rows]
+        return DomainMatrix.from_list_sympy(*shape, numbers, domain=sp.QQ)
+
+    plain, of_inputs, of_outputs = exact(a, (n, n)), exact(b, (n, inputs)), exact(c, (outputs, n))
+    sides = []
+    for first in (1, 200):
+        primes = [
+            [sp.Rational(1, sp.prime(first + outputs * i + j)) for j in range(outputs)]
+            for i in range(inputs)
+        ]
+        gains = DomainMatrix.from_list_sympy(inputs, outputs, primes, domain=sp.QQ)
+        closed = plain + of_inputs * gains * of_outputs
+        sides.append(sp.Poly(list(map(sp.QQ.to_sympy, closed.charpoly())), variable, domain="QQ"))
+    return sp.gcd(*sides)
 
 
 def has_numbers(stage: Stage) -> bool:

@@ -32,6 +32,7 @@ from ..controllers import (
     is_of_matrices,
     matrices_of,
     sides_of,
+    unseen_factor,
 )
 from ..derive.all_states import all_states
 from ..derive.polynomials import fraction, is_free_of_growth
@@ -199,18 +200,8 @@ def _unseen_in_samples(parts: Sequence[Control]) -> str:
     known = [made for part in parts if (made := matrices_of(part.controller)) is not None]
     if len(parts) == 1 or len(known) < len(parts):
         return _sides_in_z(parts[0])[2]
-    # the modes that the outputs do not change, whatever inputs are made of them
-    modes = []
-    for first in (1, 40):
-        closed = [[exact_decimal(x) for x in row] for row in known[0][0]]
-        for k, (_, b, c, *_) in enumerate(known):
-            for i, x in enumerate(b):
-                weight = exact_decimal(x) / sp.prime(first + k)
-                closed[i] = [
-                    e + weight * exact_decimal(y) for e, y in zip(closed[i], c, strict=True)
-                ]
-        modes.append(sp.Matrix(closed).charpoly(sp.Symbol("z")).as_expr())
-    return _describe_unseen(sp.gcd(*(sp.Poly(p, sp.Symbol("z"), domain="QQ") for p in modes)))
+    columns, rows = np.array([made[1] for made in known]).T, [made[2] for made in known]
+    return _describe_unseen(unseen_factor(known[0][0], columns, rows, sp.Symbol("z")))
 
 
 def _sides_in_z(part: Control) -> tuple[sp.Poly, sp.Poly, str]:

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -27,15 +26,13 @@ from ..base.arguments import describe_value
 from ..base.errors import ModelError
 from ..base.finding import Graph, Series
 from ..base.frozen import ByValue
-from ..controllers import resolvent
-from ..derive.polynomials import as_poly, element, fraction
+from ..controllers import unseen_factor
 from ..diagrams.control_parts import entry_of
 from ..realise.lti import S
 from .claims.claim import Claim
 from .linear.family import Family, family_of_matrix
 from .linear.impedance import Impedance, exact, impedance, read_expression
 from .linear.judge import passive_claim, stable_claim
-from .linear.matrices import determinant, hold
 from .linear.sweep import passive_margin, stable_margin
 from .linear.unseen import not_decaying
 
@@ -82,8 +79,10 @@ def two_port(entries: Any) -> TwoPort:
             [impedance(entry_of(entries, i, j, "two_port")) for j in range(2)] for i in range(2)
         ]
         made = two_port(rows)
-        has_states = bool(len(getattr(entries, "A", ())))
-        return replace(made, unseen=_unseen_states(entries)) if has_states else made
+        if not len(getattr(entries, "A", ())):
+            return made
+        unseen = unseen_factor(entries.A, entries.B, entries.C, S)
+        return replace(made, unseen=not_decaying(unseen))
     if isinstance(entries, sp.MatrixBase):
         entries = entries.tolist()
     if isinstance(entries, str) or not (_is_pair(entries) and all(map(_is_pair, entries))):
@@ -110,31 +109,6 @@ def _entry(entry: Any) -> Impedance | sp.Expr:
         if len(rate) != 2 or rate[1] != 0 or rate[0] > 0:
             raise ModelError(f"two_port: expected a dead time exp(-s T), found {power}")
     return e
-
-
-def _unseen_states(system: Any) -> tuple[complex, ...]:
-    """Modes of a state space that its ports do not show and that do not decay, 1/s.
-
-    What the ports do not show is the same whatever holds them.
-    """
-    matrices = (system.A, system.B, system.C, system.D)
-    a, b, c, straight = ([[fraction(exact(x)) for x in row] for row in m] for m in matrices)
-    places = range(len(c))
-
-    def in_ring(falling: Sequence[Fraction]) -> Any:
-        return element(sp.Poly(list(map(exact, falling)) or [0], S, domain="QQ"))
-
-    made = [[resolvent(a, [row[j] for row in b], c[i]) for j in places] for i in places]
-    d = in_ring(made[0][0][0])
-    n = [
-        [in_ring(one) + in_ring([x]) * d for (_, one), x in zip(*row, strict=True)]
-        for row in zip(made, straight, strict=True)
-    ]
-    loose, tight = (determinant(hold(n, d, [sp.QQ(c)] * len(n))) for c in (1, 3))
-    shared = loose.gcd(tight)
-    for _ in places[1:]:
-        shared = shared.exquo(d)
-    return not_decaying(as_poly(shared, S))
 
 
 def teleoperator_two_port(
