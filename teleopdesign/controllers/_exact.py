@@ -12,13 +12,14 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+import numpy as np
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
 if TYPE_CHECKING:
     from ._controller import Stage
 
-Matrix = Sequence[Sequence[float]]
+Matrix = Sequence[Sequence[float]] | np.ndarray
 
 
 def exact_decimal(value: float) -> sp.Rational:

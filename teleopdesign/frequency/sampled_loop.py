@@ -200,8 +200,8 @@ def _unseen_in_samples(parts: Sequence[Control]) -> str:
     known = [made for part in parts if (made := matrices_of(part.controller)) is not None]
     if len(parts) == 1 or len(known) < len(parts):
         return _sides_in_z(parts[0])[2]
-    columns, rows = np.array([made[1] for made in known]).T, [made[2] for made in known]
-    return _describe_unseen(unseen_factor(known[0][0], columns, rows, sp.Symbol("z")))
+    columns, rows = (np.array([made[k] for made in known]) for k in (1, 2))
+    return _describe_unseen(unseen_factor(known[0][0], columns.T, rows, sp.Symbol("z")))
 
 
 def _sides_in_z(part: Control) -> tuple[sp.Poly, sp.Poly, str]:
