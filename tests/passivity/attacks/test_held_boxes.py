@@ -96,6 +96,13 @@ def least_loss(values):
     return min(np.linalg.eigvalsh(b + x * np.outer(LINK, LINK))[0] for x in link)
 
 
+def at_rest(values):
+    """Least static stiffness between the ports, over the largest: below 0 a displacement grows."""
+    la, lb, lc, ld = (values[f"{LAW}.{n}"] for n in "abcd")
+    k = matrices(values, held=False)[2] + (ld - lc * lb / la) * np.outer(LINK, LINK)
+    return np.linalg.eigvalsh(k)[0] / np.abs(k).max()
+
+
 def sampled(rng, box, number=60):
     for k in range(number):
         share = rng.random(len(box)) if k % 3 == 0 else rng.integers(0, 2, len(box)).astype(float)
@@ -124,6 +131,13 @@ def test_no_point_of_a_box_has_less_than_the_margin_that_is_proved(seed, number)
                 box[n] = (values[n], ends[1])
         verdict = claim_over_intervals(made(values), box, claim=claim, points=4)
         counts[claim, verdict.status] += 1
+        if verdict.status == "refuted" and claim != "absolutely stable":
+            worst = {**values, **verdict.worst}
+            size = max(abs(x) for n, x in worst.items() if n.endswith("damping"))
+            out = -slowest(worst) / abs(worst[f"{LAW}.a"])
+            if claim == "passive":
+                out = min(least_loss(worst) / size, at_rest(worst))
+            assert out < 1e-6, (values, box, verdict)
         for point in sampled(rng, box):
             here = {**values, **point}
             pole, loss = slowest(here), least_loss(here)
@@ -133,6 +147,7 @@ def test_no_point_of_a_box_has_less_than_the_margin_that_is_proved(seed, number)
                 assert verdict.margin <= -slowest({**values, **verdict.worst}) * (1 + 1e-6)
             if verdict.status == "proved" and claim == "passive":
                 assert loss >= verdict.proved_margin - 1e-9 * scale, (values, box, point, verdict)
+                assert at_rest(here) >= -1e-12, (values, box, point, verdict)
             if verdict.holds and claim == "absolutely stable":
                 assert pole < 0, (values, box, point, verdict)
     print(dict(counts))
