@@ -7,18 +7,57 @@ port that holds grows with no hand: neither what its impedance shows nor what it
 
 from collections import Counter
 
+import control as ct
 import numpy as np
 import pytest
 from passivity.attacks.budget import attacked
 from passivity.attacks.late_modes import count_growing
-from passivity.attacks.test_late_families import FAMILIES, pick, points, random_box
+from passivity.attacks.test_late_families import (
+    FAMILIES,
+    TIME,
+    delay,
+    device,
+    impedance,
+    mass,
+    pick,
+    points,
+    random_box,
+    times,
+)
 
 from teleopdesign.base.errors import ModelError
+from teleopdesign.controllers import controller, from_control
+from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.passivity import claim_over_intervals
 
 #: relative to the mode of the body: a hand that holds it almost free, to almost fixed
 _SIZES = (-4.0, 4.0)
 HANDS = 20
+
+
+class Apart:
+    """Beside a damped mass z' = -p z - k z(t - T), which it drives and which it does not feel."""
+
+    names = ("M.inertia", "M.viscous.damping", "K.gain.gain")
+
+    def draw(self, rng):
+        return {**mass(rng), "p": pick(rng, -1, 1), "K.gain.gain": pick(rng, -1, 1.5),
+                TIME: pick(rng, -2.5, 0.3)}  # fmt: skip
+
+    def diagram(self, v):
+        law = from_control(ct.tf([1.0], [1, v["p"]]), name="own")
+        blocks = (
+            Moving("M", device(v), "x", "u", {"f": 1}, "f"),
+            Control("C", law, "e", "z", analog=True),
+            delay("T_1", v, ("z", "late")),
+            Control("K", controller("gain", {"gain": v["K.gain.gain"]}), "late", "k", analog=True),
+        )
+        sums = (Junction("u", {}), Junction("e", {"x": 1.0, "k": -1.0}))
+        return Diagram("apart", blocks, sums, {"f": "force"}, ("x",))
+
+    def terms(self, v):
+        z = impedance(v)
+        return [(times(z, [1, v["p"]]), 0.0), (times(z, [v["K.gain.gain"]]), v[TIME])]
 
 
 def with_hands(rng, values):
@@ -46,7 +85,7 @@ def beaten_by(rng, family, values):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("family", FAMILIES, ids=lambda f: type(f).__name__.lower())
+@pytest.mark.parametrize("family", [*FAMILIES, Apart()], ids=lambda f: type(f).__name__.lower())
 @attacked(0, 4)
 def test_no_hand_makes_a_late_loop_grow_that_is_called_passive(family, seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
