@@ -19,7 +19,7 @@ from sympy.polys.matrices import DomainMatrix
 if TYPE_CHECKING:
     from ._controller import Stage
 
-Matrix = Sequence[Sequence[float]] | np.ndarray
+_Numbers = Sequence[Sequence[float]] | np.ndarray
 
 
 def exact_decimal(value: float) -> sp.Rational:
@@ -64,7 +64,7 @@ def resolvent(
     return below, above
 
 
-def unseen_factor(a: Matrix, b: Matrix, c: Matrix, variable: sp.Symbol) -> sp.Poly:
+def unseen_factor(a: _Numbers, b: _Numbers, c: _Numbers, variable: sp.Symbol) -> sp.Poly:
     """Factor of det(s I - A) of the modes that inputs and outputs together do not show.
 
     It is a factor of det(s I - A - B K C) for every K, and two of these share no other.
@@ -73,7 +73,7 @@ def unseen_factor(a: Matrix, b: Matrix, c: Matrix, variable: sp.Symbol) -> sp.Po
     """
     n, inputs, outputs = len(a), len(b[0]), len(c)
 
-    def exact(rows: Matrix, shape: tuple[int, int]) -> DomainMatrix:
+    def exact(rows: _Numbers, shape: tuple[int, int]) -> DomainMatrix:
         numbers = [[exact_decimal(x) for x in row] for row in rows]
         return DomainMatrix.from_list_sympy(*shape, numbers, domain=sp.QQ)
 

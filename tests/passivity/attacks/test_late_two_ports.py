@@ -39,7 +39,7 @@ def random_two_port(rng):
     d = reduce(np.polymul, [mode(rng) for _ in range(int(rng.integers(0, 3)))], [1.0])
     r = np.round(10 ** rng.uniform(-0.5, 0.5, 2), 2)
     mass = np.round(10 ** rng.uniform(-2, 0, 2) * rng.integers(0, 2, 2), 3)
-    own = [np.polymul([m, x], d) for m, x in zip(mass, r, strict=True)]
+    at_ports = [np.polymul([m, x], d) for m, x in zip(mass, r, strict=True)]
     share = 1 + rng.choice([-1, 1]) * 10 ** rng.uniform(-4, 0)
     size = float(np.sqrt(r[0] * r[1])) * share
     ratio = 10 ** rng.uniform(-0.5, 0.5) if rng.random() < 0.5 else 1.0
@@ -49,23 +49,25 @@ def random_two_port(rng):
     elif shape == 1 and len(d) > 1:  # a resonance passes from port to port, and is at each
         peak = np.polymul([1.0, 0.0], [1.0] + [0.0] * (len(d) - 3)) if len(d) > 2 else [1.0]
         height = d[-2] if len(d) > 2 else d[-1]
-        own = [np.polyadd(x, np.multiply(height * y, peak)) for x, y in zip(own, r, strict=True)]
+        at_ports = [
+            np.polyadd(x, np.multiply(height * y, peak)) for x, y in zip(at_ports, r, strict=True)
+        ]
         across = [np.multiply(size * height * y, peak) for y in (ratio, 1 / ratio)]
     else:
         k = number(10 ** rng.uniform(-1, 2))
         d = np.polymul(d, [1.0, 0.0])
-        own = [np.polyadd(np.polymul(x, [1.0, 0.0]), np.multiply(k, d[:-1])) for x in own]
+        at_ports = [np.polyadd(np.polymul(x, [1.0, 0.0]), np.multiply(k, d[:-1])) for x in at_ports]
         across = [np.multiply(-k, d[:-1])] * 2  # a late spring
     times = [number(10 ** rng.uniform(-3, 1)) * int(rng.random() < 0.8) for _ in range(2)]
     if shape == 2 and rng.random() < 0.7:  # P (T1 + T2)/2 is compared with the dampers
         times = [number(np.sqrt(r[0] * r[1]) / k * share)] * 2
     if not any(times):
         times[0] = 0.1
-    rounded = [[float(f"{c:.9g}") for c in p] for p in (*own, *across, d)]
+    rounded = [[float(f"{c:.9g}") for c in p] for p in (*at_ports, *across, d)]
     return rounded[:2], rounded[2:4], rounded[4], times
 
 
-def in_sympy(own, across, d, times):
+def in_sympy(at_ports, across, d, times):
     below = sp.Poly([sp.Rational(repr(float(c))) for c in d], S).as_expr()
 
     def entry(p, time=0.0):
@@ -73,19 +75,19 @@ def in_sympy(own, across, d, times):
         return above / below * sp.exp(-S * sp.Rational(repr(time)))
 
     return [
-        [entry(own[0]), entry(across[0], times[0])],
-        [entry(across[1], times[1]), entry(own[1])],
+        [entry(at_ports[0]), entry(across[0], times[0])],
+        [entry(across[1], times[1]), entry(at_ports[1])],
     ]
 
 
-def on_axis(own, across, d, times, w):
+def on_axis(at_ports, across, d, times, w):
     """Sizes of the two inequalities at w, relative to their terms, to fifty digits."""
     with mpmath.workdps(50):
         s = mpmath.mpc(0, w)
         z = [[0, 0], [0, 0]]
         below = mpmath.polyval([mpmath.mpf(repr(c)) for c in d], s)
         for i in range(2):
-            z[i][i] = mpmath.polyval([mpmath.mpf(repr(c)) for c in own[i]], s) / below
+            z[i][i] = mpmath.polyval([mpmath.mpf(repr(c)) for c in at_ports[i]], s) / below
             late = mpmath.exp(-s * mpmath.mpf(repr(times[i])))
             z[i][1 - i] = mpmath.polyval([mpmath.mpf(repr(c)) for c in across[i]], s) / below * late
         r1, r2 = z[0][0].real, z[1][1].real
@@ -105,13 +107,13 @@ def hands(rng):
     return np.array([m, r * rng.integers(0, 2), k]), np.array([1.0, 0.0])
 
 
-def grows(rng, own, across, d, times, tries=40):
+def grows(rng, at_ports, across, d, times, tries=40):
     """Hands with which a mode grows, or None."""
     for _ in range(tries):
         (a1, b1), (a2, b2) = hands(rng), hands(rng)
         sides = [
             np.polyadd(np.polymul(n, b), np.polymul(a, d))
-            for n, a, b in ((own[0], a1, b1), (own[1], a2, b2))
+            for n, a, b in ((at_ports[0], a1, b1), (at_ports[1], a2, b2))
         ]
         f = np.polymul(*sides)
         late = -reduce(np.polymul, (across[0], across[1], b1, b2))
