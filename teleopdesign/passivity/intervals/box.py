@@ -21,6 +21,8 @@ from ..claims.certificate import Certificate
 from ..claims.claim import Claim, NotTrueOrFalse
 from ..ports import drop_absent_effects, nonlinear_parts
 
+#: the statement of the claim "stable"
+STABLE = "every pole has a negative real part"
 #: most vertices that are evaluated: all vertices of eight intervals, 2^8
 MOST_VERTICES = 256
 

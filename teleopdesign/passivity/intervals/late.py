@@ -36,10 +36,8 @@ from ...derive.effort import try_within_effort
 from ...derive.polynomials import is_hurwitz
 from ...frequency.late_zeros import Terms, count_growing, exact_terms, terms_of
 from ..linear.signs import Signs
-from .box import IntervalClaim, Status, ValueBox, interval_claim, search_worst
+from .box import STABLE, IntervalClaim, Status, ValueBox, interval_claim, search_worst
 from .late_cells import is_zero_free
-
-_STATEMENT = "every pole has a negative real part"
 
 
 def judge_late(
@@ -69,12 +67,12 @@ def judge_late(
         radius = holds_root(exact_terms(p, times, there), root) if root.real > 0 else None
         if radius is not None and root.real > radius:
             how = f"a pole at {root:.4g} 1/s, within {radius:.1g} 1/s: by Rouche's theorem"
-            return interval_claim(_STATEMENT, "refuted", worst, box, "1/s", how)
+            return interval_claim(STABLE, "refuted", worst, box, "1/s", how)
         how = (
             "at the worst point of the search a pole is beyond the axis, or too near to it, and "
             "not shown"
         )
-        return interval_claim(_STATEMENT, "unknown", worst, box, "1/s", how)
+        return interval_claim(STABLE, "unknown", worst, box, "1/s", how)
     cells = None
     # without dead times, in the middle of the box
     together = p.evaluate([(x, 1) for x in p.ring.gens[1 + len(box.names) :]])
@@ -88,7 +86,7 @@ def judge_late(
             "floats with all rounding bounded, without a certificate"
         )
     bound = {"proved_margin": 0.0} if cells is not None else {}
-    return interval_claim(_STATEMENT, status, worst, box, "1/s", how, **bound)
+    return interval_claim(STABLE, status, worst, box, "1/s", how, **bound)
 
 
 #: steps in which the dead times grow from 0 to their values, and Newton steps in each of them

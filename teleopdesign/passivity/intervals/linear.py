@@ -25,6 +25,7 @@ from ..linear.signs import Signs
 from ..linear_diagrams import linear_claims
 from ..ports import drop_absent_effects, ports
 from .box import (
+    STABLE,
     IntervalClaim,
     MarginFunction,
     Status,
@@ -44,7 +45,6 @@ CLAIMS = {"passive": "N s/m", "absolutely stable": "1", "stable": "1/s"}
 _SHARES = (0.999, 0.9, 0.5)
 #: why a claim about a diagram with such a loop is unknown
 _ILL_POSED = "a loop has the gain -1 at high frequency: the least change makes a mode grow at once"
-_STABLE = "every pole has a negative real part"
 
 
 def states_over(diagram: Diagram, box: ValueBox, speed: float = 0.0) -> AllStates | None:
@@ -83,7 +83,7 @@ def judge_stability(middle: Diagram, box: ValueBox, points: int, seed: int) -> I
         )
     if not is_well_posed(middle, all_states(middle)):
         worst = Worst(box.centre, float("nan"), 1)
-        return interval_claim(_STABLE, "unknown", worst, box, "1/s", _ILL_POSED)
+        return interval_claim(STABLE, "unknown", worst, box, "1/s", _ILL_POSED)
     p = normalise(states.determinant())
     if states.times:
         return judge_late(p, states.times, box, points, seed)
@@ -104,7 +104,7 @@ def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) 
             pole = -pole_margin(p)(point)
             how = f"a pole with real part {pole:.4g} 1/s; not Hurwitz by Routh's scheme, exactly"
             worst = replace(worst, point=point, margin=-pole)
-            return interval_claim(_STABLE, "refuted", worst, box, "1/s", how)
+            return interval_claim(STABLE, "refuted", worst, box, "1/s", how)
 
     def certificates(bound: Fraction) -> tuple[Certificate, ...]:
         title = f"{name}: every pole has a real part below -{bound} 1/s, s counted from there"
@@ -112,7 +112,7 @@ def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) 
         return (stability_certificate(title, moved, names=box.names, ends=box.exact, signs=signs),)
 
     return _prove(
-        interval_claim(_STABLE, "evidence", worst, box, "1/s", ""),
+        interval_claim(STABLE, "evidence", worst, box, "1/s", ""),
         signs,
         lambda bound: signs.is_hurwitz(_move_axis(p, bound)),
         certificates,
