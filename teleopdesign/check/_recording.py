@@ -261,11 +261,7 @@ def stopping_findings(recording: CheckedRecording) -> Iterator[Finding]:
             yield from (f for f in check.find(recording) if f.stops)
 
 
-def why_silent(prepared: Prepared, model: Model) -> str:
-    """Why these records tell no effect, as the end of a verdict; "" where they may tell one.
-
-    model: of the user, with the inertias that are known
-    """
-    findings = stopping_findings(CheckedRecording(prepared.experiment, model, prepared))
-    sentence = next((f.sentence for f in findings), "")
+def why_silent(recording: CheckedRecording) -> str:
+    """Why these records tell no effect, as the end of a verdict; "" where they may tell one."""
+    sentence = next((f.sentence for f in stopping_findings(recording)), "")
     return f"{sentence[:1].upper()}{sentence[1:]}"

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from ..check import why_silent
+from ..check import CheckedRecording, why_silent
 from ..measurement.prepare import Prepared
 from ..model import Model
 from .error import force_error, refer_to_command
@@ -33,6 +33,7 @@ def end_of(
     rungs: of the state, with the reading error removed from the last fit; None: it is removed here
     """
     prepared, estimated = search.prepared, state.fit
+    recording = CheckedRecording(search.experiment, state.rungs[0].fit.model, search.whole)
     rungs = with_last_corrected(search, state) if rungs is None else rungs
     if prepared is not search.whole:
         search.progress("errors on the whole records")
@@ -50,7 +51,7 @@ def end_of(
         # without those that returned later, such as beside another effect
         set_aside=tuple(one for one in state.set_aside if one.candidate.key not in accepted),
         beliefs=_beliefs(rungs, prepared),
-        silence=why_silent(search.whole, rungs[0].fit.model),
+        silence=search.silence or why_silent(recording),
     )
 
 

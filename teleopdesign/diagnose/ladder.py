@@ -12,8 +12,9 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
+from ..check import CheckedRecording, why_silent
 from ..effects import SIGNALS, Effect
-from ..measurement.experiment import Experiment
+from ..measurement.experiment import Experiment, isolate_joint
 from ..model import Model
 from .climb import climb
 from .conclusion import end_of
@@ -31,7 +32,7 @@ from .part_search import (
     with_known,
     with_shifts_of,
 )
-from .parts import PreparedParts, isolate_joint, prepare_parts
+from .parts import PreparedParts, prepare_parts
 from .parts_fit import PartsFit, PartsRung, as_bodies, estimate_parts
 from .parts_result import diagnosis_of_parts
 from .result import diagnosis_of
@@ -116,7 +117,10 @@ def _begin_joints(
     plan: SearchPlan,
 ) -> tuple[PreparedParts, dict[str, PartSearch], PartsFit]:
     """As `begin_parts`, where links join the parts."""
+    silence = why_silent(CheckedRecording(prepared.experiment, stated))
+    prepared = replace(prepared, silence=silence)
     known = stated.known if prepared.base is None else _select_beyond_links(stated.known)
+    known = {} if silence else known
     models = {
         j: Model({j: body}, known).with_links(prepared.initial) for j, body in stated.bodies.items()
     }
@@ -134,6 +138,7 @@ def _begin_joints(
             seed=seed,
             plan=plan.for_joints(len(prepared.parts)),
             progress=lambda text, j=j: report(f"{j}: {text}"),  # type: ignore[misc]
+            silence="The records of the arm tell no effect." if silence else "",
         )
         records = with_clock_of_others(first.prepared, first.fits, j)
         joints[j] = begin_part(j, search, records, first.fits[j].model, prepared)

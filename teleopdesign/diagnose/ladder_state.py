@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..base.frozen import ByValue
-from ..check import why_silent
+from ..check import CheckedRecording, why_silent
 from ..effects import depends_on_time, find_effect
 from ..measurement.experiment import Experiment
 from ..measurement.friction_curve import count_speeds
@@ -37,6 +37,7 @@ class LadderSearch:
     stated: the model as its user gave it
     seed: of the random numbers; each noise floor uses the same ones
     progress: called with a line of text at each step
+    silence: why the records of the arm tell no effect at this joint; "": they may tell one
     """
 
     experiment: Experiment
@@ -46,6 +47,7 @@ class LadderSearch:
     seed: int = 0
     plan: SearchPlan = PLAN
     progress: Callable[[str], None] = lambda _: None
+    silence: str = ""
 
     @property
     def is_of_body_in_time(self) -> bool:
@@ -207,7 +209,7 @@ def search_for(
     stated = model or Model.from_experiment(experiment)
     if whole.is_curve:
         stated = restrict_to_curve(stated, count_speeds(s.motion.velocity for s in whole.stretches))
-    if why_silent(whole, stated):
+    if why_silent(CheckedRecording(experiment, stated, whole)):
         stated = restrict_candidates((), stated)
     return LadderSearch(
         experiment=experiment,

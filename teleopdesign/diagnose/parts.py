@@ -19,7 +19,7 @@ from ..base.errors import ExperimentError
 from ..base.frozen import ByValue
 from ..effects import EFFECTS
 from ..measurement.bandwidth import bandwidth_of
-from ..measurement.experiment import Experiment
+from ..measurement.experiment import Experiment, isolate_joint
 from ..measurement.filtering import Array
 from ..measurement.motion import LinkForces, Motion
 from ..measurement.prepare import Prepared, Stretch, prepare
@@ -38,6 +38,7 @@ class PreparedParts(ByValue):
         are those of the description
     parts: joint -> its records, like an experiment on one body; "" -> those of all bodies
     others: joint -> the joint whose motion is its channel `other_position`
+    silence: why the records of the arm tell no effect; "": they may tell one
     """
 
     experiment: Experiment
@@ -45,6 +46,7 @@ class PreparedParts(ByValue):
     base: BaseParameters | None
     parts: Mapping[str, Prepared]
     others: Mapping[str, str] = field(default_factory=dict)
+    silence: str = ""
 
     @property
     def joints(self) -> Mapping[str, Prepared]:
@@ -67,13 +69,6 @@ class PreparedParts(ByValue):
         others = [p.stretches for j, p in self.parts.items() if j != joint]
         count = len(self.parts[joint].stretches) if others else 0
         return [tuple(stretches[i].motion for stretches in others) for i in range(count)]
-
-
-def isolate_joint(experiment: Experiment, joint: str) -> Experiment:
-    """The experiment on one joint alone."""
-    channels = {n: c for n, c in experiment.channels.items() if c.body in (joint, None)}
-    bodies = {joint: experiment.bodies[joint]}
-    return replace(experiment, bodies=bodies, channels=channels, arm=None)
 
 
 def prepare_parts(

@@ -61,6 +61,7 @@ def diagnosis_of_parts(
         reading=tuple(reading_data(experiment.reading)),
         estimated=rows[-1].model,
         open=(),
+        silence=prepared.silence,
         left_out=tuple(dict.fromkeys(words for d in each for words in d.left_out)),
         considered=first.considered,
         joints=joints,

@@ -17,12 +17,12 @@ import numpy as np
 
 from ..base.codec import Filled
 from ..base.errors import ExperimentError, did_you_mean, quote
-from ..measurement.experiment import Experiment, load_experiment
+from ..measurement.experiment import Experiment, isolate_joint, load_experiment
 from ..measurement.prepare import Prepared
 from ..model import Model
 from .fit import Fit, estimate
 from .other_motion import with_other_motions
-from .parts import PreparedParts, isolate_joint, prepare_parts, with_bodies_of
+from .parts import PreparedParts, prepare_parts, with_bodies_of
 from .search_plan import EFFORTS, cut_to_windows
 
 

@@ -231,6 +231,13 @@ def _exactness(channel: Channel, unit: str) -> str:
     return f" ({', '.join(parts)})" if parts else ""
 
 
+def isolate_joint(experiment: Experiment, joint: str) -> Experiment:
+    """The experiment on one joint alone."""
+    channels = {n: c for n, c in experiment.channels.items() if c.body in (joint, None)}
+    bodies = {joint: experiment.bodies[joint]}
+    return replace(experiment, bodies=bodies, channels=channels, arm=None)
+
+
 def excerpt(experiment: Experiment, *, most: int = MOST) -> Experiment:
     """The experiment with about `most` samples; the experiment itself where it has no more.
 

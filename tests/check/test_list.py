@@ -5,8 +5,6 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.check import findings_of, look_at, stopping_findings, why_silent
-from teleopdesign.measurement.prepare import prepare
-from teleopdesign.model import Model
 
 H = 0.005
 T = H * np.arange(1600)
@@ -36,5 +34,5 @@ def test_what_stops_a_diagnosis_is_among_the_findings_and_the_end_of_its_verdict
     assert stops == list(stopping_findings(recording))
     assert [f.topic for f in stops] == [topic] * (topic is not None)
     assert stops == [f for f in td.check_experiment(experiment) if f.stops]
-    silent = why_silent(prepare(experiment), Model.from_experiment(experiment))
+    silent = why_silent(recording)
     assert silent == "".join(f.sentence for f in stops)

@@ -76,7 +76,7 @@ def _values(diagnosis: Diagnosis, begin: str) -> Iterator[str]:
 
 def _arm(diagnosis: Diagnosis) -> Iterator[str]:
     """Lines of an arm: the verdict, then one line for each joint."""
-    yield sentence(diagnosis)
+    yield from textwrap.wrap(sentence(diagnosis), WIDTH)
     yield f"{'joint':<20}{'before':>10}{'after':>10}{'floor':>10}  verdict"
     for joint, one in diagnosis.joints.items():
         ends = [row.joints[joint].check_error for row in (diagnosis.before, diagnosis.after)]

@@ -212,7 +212,8 @@ def sentence(diagnosis: Diagnosis) -> str:
     """The verdict of a diagnosis in words; what is left of an arm is said of each joint."""
     if diagnosis.joints:
         names = ", ".join(map(str, diagnosis.missing))
-        return f"verdict: {diagnosis.verdict}{': ' + names if names else ''}."
+        why = f" {diagnosis.silence}" if diagnosis.silence else ""
+        return f"verdict: {diagnosis.verdict}{': ' + names if names else ''}.{why}"
     rest = _rest(diagnosis)
     if diagnosis.verdict == "model_adequate":
         noise = f" The remaining error is noise ({diagnosis.left:.2f} noise floors)."
