@@ -1,7 +1,8 @@
 """What the records of one joint tell about the base parameters of an arm's links, for the others.
 
-Each joint's information holds when its other parameters are free. Its observations count by what
-its model leaves, so a joint that lacks an effect tells the others little.
+Each joint's information holds when its other parameters are free. Its observations count relative
+to its measured force. If they counted by what its model leaves, the joint that lacks an effect
+could fit the links to the effect, and only other joints would show an error.
 """
 
 from __future__ import annotations
@@ -19,7 +20,6 @@ from ..measurement.shared_links import Knowledge, share, weighted_columns
 from ..model import Model
 from ..realise.along_motion import residual_along
 from ..realise.tangent_columns import LinkParameter
-from .error import force_error
 from .fit import block_numbers, standard_errors
 from .least_squares import span
 from .parts import PreparedParts, remove_links
@@ -28,21 +28,13 @@ from .record_shift import record_shifts
 from .residual import weighted_residuals
 from .solve import BLOCK, free_parameters
 
-#: least residual, as a part of the measured force, that sets the weight of a joint: below it the
-#: weight no longer grows
-LEAST = 1e-4
-
 
 def joint_knowledge(
     models: Mapping[str, Model], records: Mapping[str, Prepared], prepared: PreparedParts
-) -> tuple[dict[str, Knowledge], dict[str, float]]:
-    """Joint -> its information on the base parameters, and the scale of its observations.
-
-    models, records: of each joint
-    """
-    sizes = _misfits(models, prepared)
-    known = {j: _knowledge(models[j], p.of("fit"), sizes[j]) for j, p in records.items()}
-    return known, sizes
+) -> dict[str, Knowledge]:
+    """Joint -> its information on the base parameters; models, records: of each joint."""
+    sizes = prepared.size
+    return {j: _knowledge(models[j], p.of("fit"), sizes[j]) for j, p in records.items()}
 
 
 def common_links(known: Collection[Knowledge]) -> tuple[float, ...]:
@@ -74,7 +66,7 @@ def link_errors(
 
     models, records: of each joint
     """
-    sizes = _misfits(models, prepared)
+    sizes = prepared.size
     rows, left, blocks, first = [], [], [], 0
     for j, model in models.items():
         columns, residual, slopes, plain = _linear(model, records[j].of("fit"))
@@ -86,18 +78,6 @@ def link_errors(
         blocks.append(numbers + first)
         first = int(blocks[-1].max()) + 1
     return standard_errors(np.vstack(rows), np.concatenate(left), np.concatenate(blocks))
-
-
-def _misfits(models: Mapping[str, Model], prepared: PreparedParts) -> dict[str, float]:
-    """Joint -> root of the squares that its model leaves: the scale of its observations.
-
-    So a joint that lacks an effect has little weight in the links, which all joints depend on.
-    While an effect has no start value yet, the scale is the root of the measured squares.
-    """
-    if any(m.absent for m in models.values()):
-        return dict(prepared.size)
-    left = {j: force_error(m, remove_links(prepared.parts[j].of("fit"))) for j, m in models.items()}
-    return {j: max(left[j], LEAST) * size for j, size in prepared.size.items()}
 
 
 def _knowledge(model: Model, stretches: tuple[Stretch, ...], size: float) -> Knowledge:

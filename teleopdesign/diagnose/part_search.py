@@ -131,8 +131,8 @@ def with_known(
     mine = with_clock_of_others(records, fits, joint)
     if prepared.base is None:
         return mine
-    known, sizes = joint_knowledge({j: f.model for j, f in fits.items()}, records, prepared)
-    return with_others(mine, known, sizes[joint], fits[joint].model)
+    known = joint_knowledge({j: f.model for j, f in fits.items()}, records, prepared)
+    return with_others(mine, known, prepared.size[joint], fits[joint].model)
 
 
 #: reason why an effect is refused although the records of one joint supported it

@@ -20,8 +20,6 @@ from .error import force_error, refer_to_command
 from .fit import Fit, estimate
 from .link_knowledge import common_links, joint_knowledge, with_others
 from .parts import PreparedParts, mean_inertias, remove_links, with_inertias
-from .search_plan import EFFORTS
-from .solve import solve
 from .stated_fit import estimate_values
 
 #: rounds over all joints of a fit: a third round changes the error by less than 1e-3
@@ -114,12 +112,10 @@ def estimate_parts(
     models, fits, records = dict(models), {}, dict(prepared.parts)
     for k in range(rounds):
         if prepared.base is not None:
-            if not any(m.absent for m in models.values()):
-                models = _estimate_at_common_links(models, prepared)
-            known, sizes = joint_knowledge(models, records, prepared)
+            known, size = joint_knowledge(models, records, prepared), prepared.size
             common = common_links(known.values())
             models = {j: m.with_links(common) for j, m in models.items()}
-            records = {j: with_others(p, known, sizes[j], models[j]) for j, p in records.items()}
+            records = {j: with_others(p, known, size[j], models[j]) for j, p in records.items()}
         for j, model in models.items():
             start = bool(model.absent) and k == 0
             fits[j] = (estimate_values if start else estimate)(model, records[j])
@@ -150,30 +146,13 @@ def with_body_inertia(model: Model, joint: str, inertia: float) -> Model:
     return model.with_values({name: replace(model.parameters[name], value=inertia)})
 
 
-def _estimate_at_common_links(
-    models: Mapping[str, Model], prepared: PreparedParts
-) -> dict[str, Model]:
-    """Models of all joints, estimated at common base parameters that hold by the present misfits.
-
-    A model that was misled, or has just got an effect, leaves far more than it will after its fit.
-    With such a misfit its joint would have almost no weight in the base parameters.
-    """
-    known, _ = joint_knowledge(models, prepared.parts, prepared)
-    common = common_links(known.values())
-    there = {}
-    for j, records in prepared.parts.items():
-        plain = replace(records, stretches=remove_links(records.of("fit")))
-        there[j] = solve(models[j].with_links(common), plain, EFFORTS.rough).model
-    return there
-
-
 def with_common_links(
     fits: Mapping[str, Fit], records: Mapping[str, Prepared], prepared: PreparedParts
 ) -> PartsFit:
     """Fits of all joints, evaluated on the records with common base parameters."""
     links: tuple[float, ...] = ()
     if prepared.base is not None:
-        known, _ = joint_knowledge({j: f.model for j, f in fits.items()}, records, prepared)
+        known = joint_knowledge({j: f.model for j, f in fits.items()}, records, prepared)
         links = common_links(known.values())
     fits = {j: _evaluate_at(f, f.model.with_links(links), records[j]) for j, f in fits.items()}
     return PartsFit(fits, dict(records))

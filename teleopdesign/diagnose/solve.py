@@ -13,7 +13,8 @@ from ..measurement.prepare import Prepared, Stretch
 from ..measurement.record_clock import CLOCK
 from ..measurement.shared_links import best_links
 from ..model import Model
-from .least_squares import minimise
+from .criteria import CRITERIA
+from .least_squares import minimise, sum_of_squares
 from .record_shift import RecordShifts, record_shifts
 from .residual import residuals, weighted_residuals
 from .search_plan import Effort
@@ -160,23 +161,16 @@ def solve(
     """
     stretches = prepared.of("fit") if stretches is None else stretches
     problem = search_problem(model, prepared, stretches)
-    if len(problem.start):
-        minimum = minimise(
-            problem.with_prior,
-            problem.start,
-            problem.lower,
-            problem.upper,
-            tolerance=effort.tolerance,
-            evaluations=effort.evaluations,
-            residual_alone=problem.residual_with_prior,
-        )
-        best, rows = minimum.values, len(minimum.residual) - len(problem.shifts.logs)
-        residual, jacobian = minimum.residual[:rows], minimum.jacobian[:rows]
-    else:
-        best, (residual, jacobian) = problem.start, problem.both(problem.start)
-    if any(s.shared is not None for s in stretches):
-        problem = replace(problem, model=settle_links(problem.model_at(best), stretches))
+    best, residual, jacobian = _minimum(problem, effort)
+    while any(s.shared is not None for s in stretches):
+        before = sum_of_squares(residual)
+        model = settle_links(problem.model_at(best), stretches)
+        problem = replace(problem, model=model, start=best)
         residual, jacobian = problem.both(best)
+        # other rows may rest with other links: the search goes on while these links leave less
+        if not sum_of_squares(residual) < (1.0 - CRITERIA.relative_improvement) * before:
+            break
+        best, residual, jacobian = _minimum(problem, effort)
     at_upper = (problem.upper - best < AT_BOUND) & ~problem.limited
     return Solution(
         model=problem.model_at(best),
@@ -187,6 +181,23 @@ def solve(
         residual=residual,
         jacobian=jacobian,
     )
+
+
+def _minimum(problem: SearchProblem, effort: Effort) -> tuple[Array, Array, Array]:
+    """Coordinates (p + k,) of the minimum, residual (rows,) and Jacobian (rows, p + k) there."""
+    if not len(problem.start):
+        return problem.start, *problem.both(problem.start)
+    minimum = minimise(
+        problem.with_prior,
+        problem.start,
+        problem.lower,
+        problem.upper,
+        tolerance=effort.tolerance,
+        evaluations=effort.evaluations,
+        residual_alone=problem.residual_with_prior,
+    )
+    rows = len(minimum.residual) - len(problem.shifts.logs)
+    return minimum.values, minimum.residual[:rows], minimum.jacobian[:rows]
 
 
 def settle_links(model: Model, stretches: Sequence[Stretch]) -> Model:

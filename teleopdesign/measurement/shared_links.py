@@ -9,7 +9,7 @@ other parameters are free. So a joint can be compared alone: to minimise
 is to minimise |W r|^2 with W = (1 + Y H^-1 Y^T)^(-1/2). A direction of the residual r that the
 links can cause counts less, and not at all where no other joint has information on it. W differs
 from the identity in at most as many directions as there are base parameters. Squares of each joint
-are relative to its model's remaining squares: a joint that lacks an effect has little weight.
+are relative to its measured squares.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def share(stretches: Sequence[Stretch], others: Knowledge, size: float) -> tuple
     """The stretches of one joint, each with `Shared` to remove the link parameters from residuals.
 
     others: information of the other joints
-    size: root of the squares that the joint's model leaves, or of those measured
+    size: root of the measured squares of the joint
     """
     columns = [weighted_columns(s) for s in stretches]
     all_rows = np.vstack(columns) / size

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -98,6 +99,36 @@ def test_an_adequate_model_of_an_arm_lacks_nothing(tmp_path):
     diagnosis = td.find_missing(td.load_experiment(folder), among=among)
     assert diagnosis.missing == ()
     assert diagnosis.verdict == "model_adequate"
+
+
+@pytest.mark.slow
+def test_a_spring_that_misleads_the_links_is_no_hardening_spring(tmp_path):
+    """With wrong links other rows rest: one fit at such links left 3.7 % beside the spring."""
+    generator = np.random.default_rng([66, 6, 1])
+    arm, hidden = random_arm(generator, 4), ("spring", 0, 1.3184615713004828)
+    folder = write_experiment(tmp_path / "arm", arm, generator, hidden, late=0.5)
+    among = ("spring", "hardening_spring")
+    diagnosis = td.find_missing(td.load_experiment(folder), among=among)
+    assert [c.key for c in diagnosis.missing] == [("spring", "joint1")]
+    # 1 % of white noise through 8 Hz of 50: 0.4 %
+    assert diagnosis.joints["joint1"].after.check_error < 0.006
+
+
+@pytest.mark.slow
+def test_what_a_weak_actuator_makes_at_another_joint_has_no_name(tmp_path):
+    """Wrong links led to a gain of 1.001 at joint 1, before that of joint 2 was in the model."""
+    generator = np.random.default_rng([77, 3, 0])
+    arm = random_arm(generator, 3)
+    whole = td.load_experiment(write_experiment(tmp_path / "arm", arm, generator, seconds=20.0))
+    key = "joint2.actuator_force"
+    records = tuple(
+        replace(r, signals={**r.signals, key: 1.2 * r.signals[key]}) for r in whole.records
+    )
+    among = ("actuator_gain", "spring", "coulomb_asymmetry", "coupling", "bias", "stribeck")
+    diagnosis = td.find_missing(replace(whole, records=records), among=among)
+    assert [c.key for c in diagnosis.missing] == [("actuator_gain", "joint2")]
+    gain = diagnosis.model.parameters["joint2.actuator_gain.gain"].value
+    assert gain == pytest.approx(1 / 1.2, rel=0.01)
 
 
 @pytest.mark.slow
