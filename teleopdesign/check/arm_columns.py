@@ -1,13 +1,12 @@
 """Columns of an arm with the wrong sign, joint or scale: which change leaves less?
 
-    force at joint j = Y_j(positions of all joints) b + friction_j(v_j) + constant_j
+    force at joint j = Y_j(positions of all joints) b + friction_j(v_j) + spring_j q_j + constant_j
 
 The base parameters b of the links act at all joints, so a wrong column contradicts the others. And
 friction takes energy out: its level, damping and drag are not negative. The least squares of this
 balance compare changes of the columns: the opposite sign of a force, a position or both, the
 columns of two joints exchanged, and another scale of a force. Neither an inertial parameter nor an
-effect of the user's model is needed; what the balance lacks remains with each change. And what a
-spring, or friction that differs with the direction, would explain as well is no wrong column.
+effect of the user's model is needed; what the balance lacks remains with each change.
 """
 
 from __future__ import annotations
@@ -45,11 +44,9 @@ STEP = 0.1
 POWERS = [0.25 * k for k in range(-12, 13)]
 #: fewest rows in motion of a joint that is compared; low-passed share of motion of such a row
 FEWEST, CLEAR_MOTION = 50, 0.98
-#: least strength of each column of a joint: level, damping and drag brake, a constant force has any
-#: sign; of further effects, a spring holds, and friction may differ with the direction
-LEAST = (0.0, 0.0, 0.0, -np.inf, 0.0, -np.inf)
-#: number of these columns, without and with the further effects
-FRICTION, EFFECTS = 4, len(LEAST)
+#: least strength of each column of a joint: level, damping and drag brake, and a spring holds; a
+#: constant force, and a difference of the directions, have any sign
+LEAST = (0.0, 0.0, 0.0, 0.0, -np.inf, -np.inf)
 
 
 @dataclass(frozen=True)
@@ -97,9 +94,9 @@ def find_wrong_columns(recording: CheckedRecording) -> Iterator[Finding]:
     ways = [balance.follow((*first, change)) for change in balance.better(first)]
     changes = merge(min(ways, key=balance.error, default=first))
     before, after = balance.error(first), balance.error(changes)
-    for change in (c for c in changes if c not in first):
+    for change in (c for c in changes if c not in first and after <= SWAPPED * before):
         others = tuple(c for c in changes if c != change)
-        if after <= SWAPPED * balance.error(others, EFFECTS):
+        if after <= SWAPPED * balance.error(others):
             alike.append(balance.better(others))
     if not alike:
         return
@@ -182,11 +179,8 @@ class ArmBalance:
             return []
         return [c for c in sorted(left, key=lambda c: left[c]) if left[c] <= ALIKE * least]
 
-    def error(self, changes: Changes, width: int = FRICTION) -> float:
-        """Part of the force that columns with changes leave unexplained, rms over joints.
-
-        width: number of columns of each joint beside those of the links
-        """
+    def error(self, changes: Changes) -> float:
+        """Part of the force that columns with changes leave unexplained, rms over joints."""
         k, rows, targets = len(self.joints), list[Array](), list[Array]()
         forces = self._columns("actuator_force", changes)
         for j, columns in enumerate(self._rows(self._columns("position", changes))):
@@ -196,13 +190,13 @@ class ArmBalance:
             size = float(np.linalg.norm(target))
             if len(columns) == 0 or size == 0.0:
                 continue
-            beside = np.zeros((len(columns), k, width))
-            beside[:, j] = friction[:, :width]
+            beside = np.zeros((len(columns), k, len(LEAST)))
+            beside[:, j] = friction
             rows.append(np.hstack([links, beside.reshape(len(columns), -1)]) / size)
             targets.append(target / size)
         if not rows:
             return 0.0
-        squares = _least_squares(np.vstack(rows), np.concatenate(targets), k, width)
+        squares = _least_squares(np.vstack(rows), np.concatenate(targets), k)
         return float(np.sqrt(squares / len(rows)))
 
     def _best_scale(self, joint: str, changes: Changes) -> Change | None:
@@ -265,19 +259,19 @@ class ArmBalance:
         for j, (source, _) in enumerate(positions):
             motion, keep = motions[source], stretches[j].keep
             speed, constant = np.abs(v[j]), np.ones(len(v[j]))
-            friction = np.vstack([sign[j], v[j], v[j] * speed, constant, q[j], speed])
+            friction = np.vstack([sign[j], v[j], v[j] * speed, q[j], constant, speed])
             every = np.vstack([columns[j], friction, commands, motions[j].interaction[None]])
             moving = motion.lowpassed(np.abs(motion.direction).astype(np.float64), keep)
             rows.append(motion.lowpassed(every, keep).T[moving > CLEAR_MOTION])
         return rows
 
 
-def _least_squares(matrix: Array, target: Array, joints: int, width: int) -> float:
-    """Least squares of a balance whose last columns are those of friction, `width` a joint."""
+def _least_squares(matrix: Array, target: Array, joints: int) -> float:
+    """Least squares of a balance whose last columns are those of each joint itself."""
     from scipy.optimize import lsq_linear
 
     size = np.linalg.norm(matrix, axis=0)
     size[size == 0.0] = 1.0
     least = np.full(len(size), -np.inf)
-    least[len(size) - joints * width :] = LEAST[:width] * joints
+    least[len(size) - joints * len(LEAST) :] = LEAST * joints
     return float(2.0 * lsq_linear(matrix / size, target, (least, np.inf), method="bvls").cost)
