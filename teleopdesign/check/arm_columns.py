@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import combinations, product
+from itertools import combinations
 
 import numpy as np
 
@@ -51,34 +51,37 @@ LEAST = (0.0, 0.0, 0.0, 0.0, -np.inf, -np.inf)
 
 @dataclass(frozen=True)
 class Change:
-    """A change of the columns of some joints.
+    """A change of the columns of one quantity.
 
-    quantities: of the columns;  joints: all of them, or one; of two, their columns are exchanged
-    factor: on the columns; -1: they have the opposite sign; None: they are exchanged
+    joints: one, or two whose columns are exchanged
+    factor: on the column; -1: it has the opposite sign; None: the columns are exchanged
     """
 
-    quantities: tuple[str, ...]
+    quantity: str
     joints: tuple[str, ...]
     factor: float | None = -1.0
 
     def __str__(self) -> str:
-        keys = [f"{joint}.{q}" for joint in self.joints for q in self.quantities]
+        keys = join_names([f"{joint}.{self.quantity}" for joint in self.joints])
         if self.factor is None:
-            return f"the columns of {join_names(keys)} are exchanged"
-        if self.factor > 0.0:
-            times = f"{self.factor:.4g}"
-            return (
-                f"{keys[0]} is multiplied by {times} (scale = {times} or the torque constant; "
-                "actuator_gain in the model if the actuator gives another force)"
-            )
-        if len(keys) > 1:
-            axis = ", or turn the axis in the kinematics" if len(self.quantities) > 1 else ""
-            return f"{join_names(keys)} have the opposite sign (sign = -1 at each{axis})"
-        return f"{keys[0]} has the opposite sign (sign = -1)"
+            return f"the columns of {keys} are exchanged"
+        if self.factor < 0.0:
+            return f"{keys} has the opposite sign (sign = -1)"
+        times = f"{self.factor:.4g}"
+        return (
+            f"{keys} is multiplied by {times} (scale = {times} or the torque constant; "
+            "actuator_gain in the model if the actuator gives another force)"
+        )
 
 
-#: changes, one after another, of the columns as recorded
+#: changes of the columns as recorded; those of a step are made together, and undone by making them
+#: again
 Changes = tuple[Change, ...]
+
+
+def with_step(changes: Changes, step: Changes) -> Changes:
+    """The changes with those of a step; one that is there already is undone."""
+    return (*(c for c in changes if c not in step), *(c for c in step if c not in changes))
 
 
 def find_wrong_columns(recording: CheckedRecording) -> Iterator[Finding]:
@@ -89,10 +92,10 @@ def find_wrong_columns(recording: CheckedRecording) -> Iterator[Finding]:
         balance = ArmBalance(excerpt(recording.experiment))
     except ExperimentError:  # the records cannot be compared, as the diagnosis says
         return
-    first, alike = balance.with_stated_gains(recording), list[list[Change]]()
+    first, alike = balance.with_stated_gains(recording), list[list[Changes]]()
     # of several faults each hides the others: any of those alike may be the first
-    ways = [balance.follow((*first, change)) for change in balance.better(first)]
-    changes = merge(min(ways, key=balance.error, default=first))
+    ways = [balance.follow(with_step(first, step)) for step in balance.better(first)]
+    changes = min(ways, key=balance.error, default=first)
     before, after = balance.error(first), balance.error(changes)
     for change in (c for c in changes if c not in first and after <= SWAPPED * before):
         others = tuple(c for c in changes if c != change)
@@ -101,7 +104,9 @@ def find_wrong_columns(recording: CheckedRecording) -> Iterator[Finding]:
     if not alike:
         return
     shares = [percent(part, ".2g") for part in (before, after)]
-    what = "; and ".join(" or ".join(map(str, some)) for some in alike)
+    what = "; and ".join(
+        " or ".join(" and ".join(map(str, step)) for step in steps) for steps in alike
+    )
     sentence = (
         f"The columns of the joints contradict each other: {shares[0]} of the forces is left "
         f"unexplained, {shares[1]} if {what}. Mend this at channels: until then, these records "
@@ -112,23 +117,6 @@ def find_wrong_columns(recording: CheckedRecording) -> Iterator[Finding]:
 
 
 CHECK = RecordingCheck(order=205, find=find_wrong_columns, may_stop=True)
-
-
-def merge(changes: Changes) -> Changes:
-    """The changes with one factor at most on each column: exchanges, then signs, then scales."""
-    factors = dict[tuple[str, str], float]()
-    for change in changes:
-        for key in product(change.joints, change.quantities):
-            factors[key] = factors.get(key, 1.0) * (change.factor or 1.0)
-    merged = [c for c in changes if c.factor is None]
-    for joint in dict.fromkeys(joint for joint, _ in factors):
-        here = {q: factors[j, q] for j, q in factors if j == joint}
-        if turned := tuple(q for q in ("position", "actuator_force") if here.get(q, 1.0) < 0.0):
-            merged.append(Change(turned, (joint,)))
-        scale = abs(here.get("actuator_force", 1.0))
-        if not 1.0 / ALIKE < scale < ALIKE:
-            merged.append(Change(("actuator_force",), (joint,), scale))
-    return tuple(merged)
 
 
 class ArmBalance:
@@ -152,32 +140,30 @@ class ArmBalance:
         changes: Changes = ()
         for j, body in ({} if recording.model is None else recording.model.bodies).items():
             if body.has("actuator_gain"):
-                changes = (*changes, *filter(None, [self._best_scale(j, changes)]))
+                changes = (*changes, *self._best_scale(j, changes))
         return changes
 
     def follow(self, changes: Changes) -> Changes:
         """The changes with the best further ones, until none leaves less."""
         while better := self.better(changes):
-            changes = (*changes, better[0])
+            changes = with_step(changes, better[0])
         return changes
 
-    def better(self, changes: Changes) -> list[Change]:
-        """The change that leaves least beside others, then those alike; []: none leaves less."""
-        error, possible = self.error(changes), list[Change]()
-        quantities: list[tuple[str, ...]] = [("actuator_force",)]
-        if error > UNEXPLAINED:
-            quantities += [("position",), ("position", "actuator_force")]
-        for some in quantities:
-            possible += [Change(some, (j,)) for j in self.joints]
-            possible += [Change(some, pair, None) for pair in combinations(self.joints, 2)]
-            if len(some) == 1:
-                possible.append(Change(some, self.joints))
-        possible += filter(None, (self._best_scale(j, changes) for j in self.joints))
-        left = {c: self.error((*changes, c)) for c in possible}
+    def better(self, changes: Changes) -> list[Changes]:
+        """The step that leaves least beside changes, then those alike; []: none leaves less."""
+        error, steps = self.error(changes), [self._best_scale(j, changes) for j in self.joints]
+        places = [*((j,) for j in self.joints), *combinations(self.joints, 2)]
+        alone, both = (("actuator_force",), ("position",)), ("position", "actuator_force")
+        for some in (*alone, both) if error > UNEXPLAINED else alone[:1]:
+            for place in places:
+                factor = -1.0 if len(place) == 1 else None
+                steps.append(tuple(Change(quantity, place, factor) for quantity in some))
+            steps.append(tuple(Change(some[0], (j,)) for j in self.joints if len(some) == 1))
+        left = {step: self.error(with_step(changes, step)) for step in steps if step}
         least = min(left.values())
         if least > (1.0 - STEP) * error:
             return []
-        return [c for c in sorted(left, key=lambda c: left[c]) if left[c] <= ALIKE * least]
+        return [s for s in sorted(left, key=lambda s: left[s]) if left[s] <= ALIKE * least]
 
     def error(self, changes: Changes) -> float:
         """Part of the force that columns with changes leave unexplained, rms over joints."""
@@ -199,26 +185,26 @@ class ArmBalance:
         squares = _least_squares(np.vstack(rows), np.concatenate(targets), k)
         return float(np.sqrt(squares / len(rows)))
 
-    def _best_scale(self, joint: str, changes: Changes) -> Change | None:
-        """The change of a joint's force to its best scale; None: it is near 1, or beyond all."""
+    def _best_scale(self, joint: str, changes: Changes) -> Changes:
+        """The change of a joint's force to its best scale; (): it is near 1, or beyond all."""
         from scipy.optimize import minimize_scalar
 
-        change = Change(("actuator_force",), (joint,))
+        change = Change("actuator_force", (joint,))
 
         def error(power: float) -> float:
             return self.error((*changes, replace(change, factor=10.0**power)))
 
         best = int(np.argmin([error(power) for power in POWERS]))
         if not 0 < best < len(POWERS) - 1:
-            return None
+            return ()
         power = minimize_scalar(error, bounds=(POWERS[best - 1], POWERS[best + 1])).x
         factor = float(10.0**power)
-        return None if 1.0 / ALIKE < factor < ALIKE else replace(change, factor=factor)
+        return () if 1.0 / ALIKE < factor < ALIKE else (replace(change, factor=factor),)
 
     def _columns(self, quantity: str, changes: Changes) -> tuple[tuple[int, float], ...]:
         """For each joint, the joint whose column is read, and the factor on its signal."""
         source, factor = list(range(len(self.joints))), [1.0] * len(self.joints)
-        for change in (c for c in changes if quantity in c.quantities):
+        for change in (c for c in changes if quantity == c.quantity):
             here = [self.joints.index(j) for j in change.joints]
             if change.factor is None:
                 source[here[0]], source[here[1]] = source[here[1]], source[here[0]]
