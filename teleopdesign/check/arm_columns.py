@@ -97,10 +97,14 @@ def find_wrong_columns(recording: CheckedRecording) -> Iterator[Finding]:
     ways = [balance.follow(with_step(first, step)) for step in balance.better(first)]
     changes = min(ways, key=balance.error, default=first)
     before, after = balance.error(first), balance.error(changes)
-    for change in (c for c in changes if c not in first and after <= SWAPPED * before):
-        others = tuple(c for c in changes if c != change)
+    new = tuple(c for c in changes if c not in first and after <= SWAPPED * before)
+    for joints in dict.fromkeys(change.joints for change in new):
+        step = tuple(c for c in new if c.joints == joints)
+        others = tuple(c for c in changes if c not in step)
         if after <= SWAPPED * balance.error(others):
-            alike.append(balance.better(others))
+            steps = (s for s in balance.better(others) if set(s) != set(step))
+            good = (s for s in steps if balance.error(with_step(others, s)) <= ALIKE * after)
+            alike.append([step, *good])
     if not alike:
         return
     shares = [percent(part, ".2g") for part in (before, after)]
