@@ -132,6 +132,21 @@ def test_what_a_weak_actuator_makes_at_another_joint_has_no_name(tmp_path):
 
 
 @pytest.mark.slow
+def test_an_effect_that_the_links_imitate_shows_at_its_joint_alone(tmp_path):
+    """With links by what each joint leaves, joint 3 had 0.4 % and joint 2 lacked a gravity."""
+    generator = np.random.default_rng([67, 21, 1])
+    arm, hidden = random_arm(generator, 3), ("load_dependent_friction", 2, 1.47488436476814)
+    folder = write_experiment(tmp_path / "arm", arm, generator, hidden)
+    among = ("load_dependent_friction", "actuator_gain", "gravity", "coulomb_asymmetry")
+    diagnosis = td.find_missing(td.load_experiment(folder), among=among)
+    for joint in ("joint1", "joint2"):
+        assert diagnosis.joints[joint].verdict == "model_adequate"
+    # the motor of this joint hardly brakes: the friction looks like a gain
+    added = {r.added.key for r in diagnosis.rungs if r.added is not None}
+    assert added in ({("actuator_gain", "joint3")}, {("load_dependent_friction", "joint3")})
+
+
+@pytest.mark.slow
 def test_an_industrial_arm_is_predicted_better_than_by_plain_least_squares():
     folder = shared_folder("data/ur10e_arm")
     _, fit = fitted(folder)
