@@ -45,8 +45,9 @@ def swap_for_two(search: LadderSearch, state: LadderState) -> LadderState | None
                 Rung(second.candidate, second.fit, beside),
             )
             moved = in_order(search, state, [*state.rungs[:-1], *pair], second.fit)
-            if moved is not None and moved.effects not in state.visited:
-                return moved
+            if moved is None or moved.effects in state.visited:
+                continue
+            return moved
     return None
 
 
