@@ -79,8 +79,7 @@ def test_two_joints_whose_names_are_exchanged_have_four_wrong_columns(arm):
     assert finding.sentence.count("exchanged") == 2
 
 
-@pytest.mark.parametrize("joint", [1, 2])
-@pytest.mark.parametrize("factor", [0.5, 2.0, 100.0])
+@pytest.mark.parametrize(("joint", "factor"), [(1, 0.5), (2, 2.0), (2, 100.0)])
 def test_a_wrong_torque_constant_has_a_line_with_the_scale_that_mends_it(arm, joint, factor):
     key = f"joint{joint}.{U}"
     (finding,) = stops(read_as(arm, {key: (key, factor)}))
@@ -120,10 +119,10 @@ def test_an_exchange_of_columns_with_other_torque_constants_needs_no_scale(arm):
 @pytest.mark.parametrize(
     ("hidden", "late"),
     [
-        (None, 0.0),
-        (("load_dependent_friction", 1, 1.5), 0.0),
+        pytest.param(None, 0.0, marks=pytest.mark.slow),
+        pytest.param(("load_dependent_friction", 1, 1.5), 0.0, marks=pytest.mark.slow),
         (("presliding", 1, 1.5), 0.75),
-        (("spring", 0, 1.5), -1.0),
+        pytest.param(("spring", 0, 1.5), -1.0, marks=pytest.mark.slow),
     ],
 )
 def test_what_a_model_lacks_is_no_wrong_column(tmp_path, hidden, late):

@@ -23,7 +23,7 @@ def sprung(axis, neutral):
     return td.experiment(table, axis=axis, fit=[(0, 8)], check=[(8, 14)], **channels)
 
 
-@pytest.mark.parametrize("axis", STAND_INS)
+@pytest.mark.parametrize("axis", ["revolute", pytest.param("prismatic", marks=pytest.mark.slow)])
 def test_a_spring_and_a_bias_are_named_where_the_neutral_place_is_not_zero(axis):
     among = ["spring", "bias", "stribeck", STAND_INS[axis]]
     diagnosis = td.find_missing(sprung(axis, 0.4), among=among)
