@@ -1,8 +1,8 @@
 """An identified model as a file of a rigid-body simulator: MJCF (MuJoCo) and URDF (ROS, others).
 
 A joint of such a simulator has a Coulomb friction level, viscous damping and a largest motor force;
-with MJCF also a spring and an armature (inertia that turns with the joint). Other effects of a
-model have no place. They are named in a comment of the file, and in `SimulatorFile.left_out`.
+with MJCF also a spring, an armature (inertia that turns with the joint) and a gain. Other effects
+of a model have no place. They are named in a comment of the file, and in `SimulatorFile.left_out`.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _MJCF = {
 }
 #: parameter of a body -> attribute of <dynamics> in URDF that holds it
 _URDF = {"coulomb.level": "friction", "viscous.damping": "damping"}
-_LIMIT = "actuator_saturation.limit"
+_LIMIT, _GAIN = "actuator_saturation.limit", "actuator_gain.gain"
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def _mjcf(model: Model, name: str) -> SimulatorFile:
         root,
         model,
         "Link and armature share the inertia: take what your own link has off the armature.",
-        held=(*_MJCF, _LIMIT),
+        held=(*_MJCF, _LIMIT, _GAIN),
     )
     # implicit in velocity: damping of a light joint is stiff
     settings = {"gravity": "0 0 0", "integrator": "implicitfast", "timestep": _number(STEP)}
@@ -108,11 +108,18 @@ def _mjcf(model: Model, name: str) -> SimulatorFile:
             link, "inertial", pos="0 0 0", mass=_number(mass), diaginertia=moments
         )
         motor = {"name": f"{place}_motor", "joint": f"{place}_joint"}
+        gain = _value(body, _GAIN)
+        if gain is not None:
+            motor["gear"] = _number(gain)
+            holds.append((f"{place}.{_GAIN}", gain, body.unit(_GAIN), "gear"))
         if (limit := _value(body, _LIMIT)) is not None:
-            motor |= {"forcelimited": "true", "forcerange": f"{_number(-limit)} {_number(limit)}"}
+            # MuJoCo limits the force before the gear
+            at_motor = limit / abs(gain or 1.0)
+            ends = f"{_number(-at_motor)} {_number(at_motor)}"
+            motor |= {"forcelimited": "true", "forcerange": ends}
             holds.append((f"{place}.{_LIMIT}", limit, body.unit(_LIMIT), "forcerange"))
         ElementTree.SubElement(motors, "motor", motor)
-    return SimulatorFile(_text(root), tuple(holds), _list_left_out(model, (*_MJCF, _LIMIT)))
+    return SimulatorFile(_text(root), tuple(holds), _list_left_out(model, (*_MJCF, _LIMIT, _GAIN)))
 
 
 def _urdf(model: Model, name: str) -> SimulatorFile:

@@ -31,6 +31,7 @@ def model():
                 "revolute",
                 4e-4,
                 coulomb={"level": 0.01},
+                actuator_gain={"gain": 0.6},
                 actuator_saturation={"limit": 0.3},
                 bias={"force": 0.0},
             ),
@@ -58,7 +59,8 @@ def test_mjcf_has_a_joint_with_friction_damping_spring_and_armature(model):
     assert numbers(slide) == pytest.approx(expected | {"armature": 0.1})
     assert numbers(hinge) == pytest.approx({"frictionloss": 0.01, "armature": 2e-4})
     free, limited = root.iter("motor")
-    assert free.get("forcerange") is None and limited.get("forcerange") == "-0.3 0.3"
+    assert free.get("forcerange") is None and limited.get("forcerange") == "-0.5 0.5"
+    assert free.get("gear") is None and limited.get("gear") == "0.6"
 
 
 def test_the_inertia_of_each_mjcf_joint_is_the_identified_one(model):
