@@ -15,6 +15,7 @@ from ..base.finding import Finding
 from ..base.sentences import percent, with_standard_error
 from ..base.units import unit_of
 from ..check import CheckedRecording, RecordingCheck
+from ..check.arm_columns import SWAPPED
 from ..check.computed_command import describe_computed
 from ..measurement.experiment import Experiment
 from ..measurement.first_guess import is_first_guess
@@ -29,8 +30,6 @@ CALIBRATED, UNSURE = 1.25, 0.05
 #: part of the force that is left unexplained, above which there is no finding on signs, units,
 #: shifts
 NOTHING = 0.9
-#: part of an unexplained force that columns of two bodies leave less of where they are swapped
-SWAPPED = 0.5
 
 
 def find_disagreements(recording: CheckedRecording) -> Iterator[Finding]:

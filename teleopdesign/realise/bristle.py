@@ -2,9 +2,9 @@
 
 The spring of a simulation has a damper beside it, both held within the friction level, and slides
 without creep (`with_stop`). A bristle that creeps before it slides (Dahl), or returns the energy
-of its spring when the motion turns, moves a body that ideal friction would hold: for the same
-deflection the motion of a driven mass was off by 3 % of its travel, and is by 1 %; under a load of
-nine tenths of the level with a vibration beside it, by 40 % and 1 %.
+of its spring when the motion turns, moves a body that ideal friction would hold. With a deflection
+of 10 um a driven mass was off by 3 % of its travel, and is by 1 %. Under 0.7 of its level and a
+vibration of 0.2 beside it, a mass crept 0.4 mm in 2 s, and stays within the deflection.
 """
 
 from __future__ import annotations

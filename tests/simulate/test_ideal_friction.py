@@ -53,7 +53,7 @@ def test_a_driven_mass_moves_as_by_events(force, damping, duration, error):
 
 
 def test_a_vibration_below_the_level_does_not_move_a_loaded_mass():
-    """A bristle that creeps would carry it 0.3 mm in these 2 s."""
+    """A bristle that creeps carried it 0.4 mm in these 2 s."""
     run = td.simulate_diagram(
         td.haptic_interface(device()),
         duration=2.0,
