@@ -10,8 +10,8 @@ import sympy as sp
 
 from ..base.arguments import check_types
 
-#: factor on the position of a stop up to which the stop holds a state at rest: without a margin the
-#: state would chatter between two rates
+#: factor on the position of a stop where it holds a state at rest. Between the two the rate falls
+#: steadily: a state whose stop moves outwards would else chatter between two rates
 HELD = 1.001
 
 
@@ -37,12 +37,12 @@ class State:
     stop: Callable[[Any, Any], sp.Expr] | None = None
 
     def rate_with_stop(self, now: Any, p: Any, name: str) -> sp.Expr:
-        """The rate; zero at the stop, and back to the stop where this has become smaller."""
+        """The rate; none at the stop, and back to the stop where this has become smaller."""
         rate = sp.sympify(self.rate(now, p), strict=True)
         if self.stop is None or rate == 0:
             return rate
         z, stop = sp.Abs(getattr(now, name)), self.stop(now, p)
-        at_stop = sp.And(z >= stop, getattr(now, name) * rate > 0)
-        # not evaluated: sympy would compare the two at length, and cannot decide
-        back = sp.Min((HELD * stop - z) / (stop + z), 0, evaluate=False)
-        return sp.Piecewise((rate * back, at_stop), (rate, True))
+        free = sp.Or(z < stop, getattr(now, name) * rate <= 0)
+        gap = HELD * stop - z
+        slower, back = gap / ((HELD - 1) * stop), gap / (stop + z)
+        return sp.Piecewise((rate, free), (rate * slower, gap > 0), (rate * back, True))
