@@ -86,13 +86,11 @@ def with_stop(body: Body, deflection: float) -> Body:
         itself has a part in the level, which then cannot limit it
     raises ModelError: as `with_bristle`
     """
-    held = with_bristle(body, deflection)
-    if held is body or body.level().has(*_LOADS):
-        return held
-    stiffness = held.parameters["presliding.stiffness"].value
-    damping = 2.0 * (stiffness * body.parameters["inertia"].value) ** 0.5
-    held = held.without_effect("presliding")
-    return held.with_effect(_stop(), {"stiffness": stiffness, "bristle_damping": damping})
+    if not _has_ideal_friction(body) or body.level().has(*_LOADS):
+        return with_bristle(body, deflection)
+    stiffness = _stiffness(body, deflection)
+    damping = _damping(body, stiffness, 1.0)
+    return body.with_effect(_stop(), {"stiffness": stiffness, "bristle_damping": damping})
 
 
 def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -> Body:
@@ -103,30 +101,44 @@ def with_bristle(body: Body, deflection: float, *, damping_ratio: float = 0.0) -
     returns: the body itself where it has no friction level, or a friction shape already
     raises ModelError: a deflection of zero, that of a record that never moves
     """
-    roles = {e.role for e in body.effects}
-    if "friction_level" not in roles or "friction_shape" in roles:
+    if not _has_ideal_friction(body):
         return body
-    if not deflection > 0.0:
-        raise ModelError("a bristle needs a length: the recorded position never moves")
+    stiffness = _stiffness(body, deflection)
     unloaded, level = _levels_by_load(body)
     if unloaded == 0.0:
         body = with_least_level(body)
     if unloaded < STEADY * level:
         damping_ratio = min(damping_ratio, UNDAMPED)
     of_any_level = bool(body.lacks(EFFECTS["presliding"]))
-    if (law := _level_in_motion(body.effects)) is not None:
-        # where the level is small, the bristle would be far too soft elsewhere
-        level = max(level, float(np.nanmax(law(*_ALONG, *body.numbers().values()))))
-    stiffness = level / deflection
     if not damping_ratio:
         plain = _bristle(of_any_level).without("bristle_damping")
         # a level that follows a load may need the friction itself
         rigid = plain if body.level().has(*_LOADS) else _rigid_bristle(of_any_level)
         return body.with_effect(rigid, {"stiffness": stiffness})
-    damping = 2.0 * damping_ratio * (stiffness * body.parameters["inertia"].value) ** 0.5
+    damping = _damping(body, stiffness, damping_ratio)
     return body.with_effect(
         _bristle(of_any_level), {"stiffness": stiffness, "bristle_damping": damping}
     )
+
+
+def _has_ideal_friction(body: Body) -> bool:
+    roles = {e.role for e in body.effects}
+    return "friction_level" in roles and "friction_shape" not in roles
+
+
+def _stiffness(body: Body, deflection: float) -> float:
+    """Of a bristle that deflects by so much where the friction level is largest."""
+    if not deflection > 0.0:
+        raise ModelError("a bristle needs a length: the recorded position never moves")
+    _, level = _levels_by_load(body)
+    if (law := _level_in_motion(body.effects)) is not None:
+        # where the level is small, the bristle would be far too soft elsewhere
+        level = max(level, float(np.nanmax(law(*_ALONG, *body.numbers().values()))))
+    return level / deflection
+
+
+def _damping(body: Body, stiffness: float, ratio: float) -> float:
+    return float(2.0 * ratio * (stiffness * body.parameters["inertia"].value) ** 0.5)
 
 
 def with_least_level(body: Body) -> Body:
