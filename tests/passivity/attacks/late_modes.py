@@ -9,10 +9,12 @@ import numpy as np
 
 #: of f over the sizes of its terms: nearer to zero on the contour a zero lies on it, or none does
 ZERO = 1e-9
+#: of a contour at most; fast modes beside long dead times would take millions
+POINTS = 200_000
 
 
 def count_growing(terms):
-    """Zeros of f with Re s > 0; None where one lies too near to the axis.
+    """Zeros of f with Re s > 0; None where one lies too near to the axis, or f turns too often.
 
     terms: pairs (polynomial, dead time), the first without one and of the highest degree
     """
@@ -57,6 +59,8 @@ def _turns(terms):
         wide = np.flatnonzero(steepest * np.abs(np.diff(path)) > np.abs(f[1:]) + np.abs(f[:-1]))
         if not len(wide):
             return -np.angle(f[1:] / f[:-1]).sum() / np.pi
+        if len(path) + len(wide) > POINTS:
+            return None
         between = (path[wide] + path[wide + 1]) / 2
         new = values(between)
         path = np.insert(path, wide + 1, between)
