@@ -56,11 +56,11 @@ demo: $(VENV)/installed-core  ## diagnose a recording that comes with the packag
 
 test: $(VENV)/installed-test  ## plain tests, some three minutes (PYTEST_ARGS adds or overrides)
 	@echo "== Tests without those marked slow"
-	@$(BIN)/pytest -n $(JOBS) $(PYTEST_ARGS)
+	@$(BIN)/pytest -n $(JOBS) --max-worker-restart 1 $(PYTEST_ARGS)
 
 slow: $(VENV)/installed-test  ## tests marked slow
 	@echo "== Slow tests"
-	@$(BIN)/pytest -n $(JOBS) -m slow $(PYTEST_ARGS)
+	@$(BIN)/pytest -n $(JOBS) --max-worker-restart 1 -m slow $(PYTEST_ARGS)
 
 fuzz: $(VENV)/installed-test $(VENV)/installed-fuzz  ## spoilt files for every reader, FUZZ of each, twice; failures go to build/fuzz
 	@echo "== $(FUZZ) spoilt files for each reader"
