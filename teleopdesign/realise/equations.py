@@ -252,7 +252,7 @@ class _Builder:
             force = sp.Symbol(f"{part.name}_acting", real=True)
             self.acting[force], acting = acting, force
         here[SIGNALS["acting_force"]] = acting
-        held = _held_at_stops(part.body)
+        held = _held_at_stops(part.body, equation.level)
         friction = equation.friction.xreplace(held)
         if any(WITHIN_LEVEL in effect.always for effect in part.body.effects):
             friction = _limit(friction, equation.level)
@@ -271,12 +271,15 @@ def _limit(friction: sp.Expr, level: sp.Expr) -> sp.Expr:
     return sp.Max(-level, sp.Min(friction, level, evaluate=False), evaluate=False)
 
 
-def _held_at_stops(body: Body) -> dict[sp.Symbol, sp.Expr]:
-    """Hidden state -> the state within its stop: a step may carry it beyond, its force never."""
+def _held_at_stops(body: Body, level: sp.Expr) -> dict[sp.Symbol, sp.Expr]:
+    """Hidden state -> the state within its stop: a step may carry it beyond, its force never.
+
+    level: of the body's friction, its carried force solved for
+    """
     held = {}
     for effect in body.effects:
         for name, (_, stop) in effect.stops().items():
-            z, stop = effect.state_symbols()[name], stop.xreplace({SIGNALS["level"]: body.level()})
+            z, stop = effect.state_symbols()[name], stop.xreplace({SIGNALS["level"]: level})
             # not evaluated: sympy would compare the two at length, and cannot decide
             held[z] = sp.Max(-stop, sp.Min(z, stop, evaluate=False), evaluate=False)
     return held
