@@ -21,7 +21,7 @@ from typing import Any
 import sympy as sp
 
 from ..base.errors import ModelError
-from ..blocks import Body, Value
+from ..blocks import Body
 from ..controllers import ControlLaw, Controller, Stage
 from ..diagrams import Attached, Block, Control, Diagram, Junction, Linked, Moving
 from ..effects import CONTACT_ROLES, Effect
@@ -124,24 +124,18 @@ def _sides(diagram: Diagram, part: Moving, body: Body, structure: Effect) -> tup
             f"{diagram.name}: {part.name}: the tip has {behind:g} {body.unit('inertia')} of the "
             f"body's {inertia:g}: it must be less, and more than none"
         )
-    held = [e for e in body.effects if e.role == "tip_level"]
-    device = body
-    for effect in (*held, structure):
-        device = device.without_effect(effect.name)
-    device = device.with_values({"inertia": inertia - behind})
-    end = Body(body.axis, {"inertia": Value(behind)})
-    for effect in body.effects:
-        if effect.role in CONTACT_ROLES:
-            values = {n: body.parameters[f"{effect.name}.{n}"].value for n in effect.parameters}
-            end = end.with_effect(effect, values)
-    for effect in reversed(end.effects):
-        device = device.without_effect(effect.name)
-    for effect in held:
-        end = end.with_effect(
-            move_to_tip_body(effect),
-            {n: body.parameters[f"{effect.name}.{n}"].value for n in effect.parameters},
-        )
-    return device, end
+    end = [e for e in body.effects if e.role in (*CONTACT_ROLES, "tip_level")]
+    device = [e for e in body.effects if e not in (*end, structure)]
+    of_tip = [move_to_tip_body(e) if e.role == "tip_level" else e for e in end]
+    return _take(body, inertia - behind, device), _take(body, behind, of_tip)
+
+
+def _take(body: Body, inertia: float, effects: list[Effect]) -> Body:
+    """A body of this inertia with some of the effects of another one."""
+    names = {e.name for e in effects}
+    values = {n: v for n, v in body.parameters.items() if n.partition(".")[0] in names}
+    values["inertia"] = replace(body.parameters["inertia"], value=inertia)
+    return Body(body.axis, values, tuple(effects))
 
 
 @lru_cache(maxsize=8)  # laws compare by identity

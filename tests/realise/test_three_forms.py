@@ -72,8 +72,12 @@ def simulated(made, **arguments):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "names",
-    # of two: elements whose slip levels follow the load
-    [*((name,) for name in NAMES), ("load_dependent_friction", "maxwell_slip")],
+    # of two: elements whose slip levels follow the load, what the tip touches
+    [
+        *((name,) for name in NAMES),
+        ("load_dependent_friction", "maxwell_slip"),
+        ("contact_damping", "transmission_compliance"),
+    ],
     ids="-".join,
 )
 def test_kernel_and_python_control_move_alike(names):
