@@ -146,8 +146,11 @@ def _law_of(effects: tuple[Effect, ...], smoothed: bool) -> ControlLaw:
     """The control law of these effects; smoothed: friction is v/(a + abs(v)) of its level."""
     if not effects:
         raise ModelError("cancel: found no effect, expected one or more")
-    if smoothed:
-        effects = tuple(e for e in effects if e.role != "friction_shape")
+    # one law for all that say the same: files tell a law by its parameters
+    if smoothed and any(e.role == "friction_shape" for e in effects):
+        return _law_of(tuple(e for e in effects if e.role != "friction_shape"), smoothed)
+    if smoothed and not any(e.role == "friction_level" for e in effects):
+        return _law_of(effects, False)
     names = {e.name for e in effects}
     for effect in effects:
         if why := why_not_cancelled(effect):
@@ -155,7 +158,6 @@ def _law_of(effects: tuple[Effect, ...], smoothed: bool) -> ControlLaw:
         within = effect.role in ("friction_factor", "friction_speed", "friction_shape")
         if within and (missing := sorted(effect.needs - names)):
             raise ModelError(f'cancel: "{effect.name}" needs "{missing[0]}" beside it')
-    smoothed = smoothed and any(e.role == "friction_level" for e in effects)
     output, rates = _place(effects, smoothed)
     used = set[sp.Basic]().union(*(x.free_symbols for x in (output, *rates.values())))
     stated = {_zero(): _ZERO, _smoothing(): _SMOOTHING}

@@ -112,6 +112,16 @@ def test_file_of_a_diagram_holds_the_law(compensated, tmp_path):
     assert pickle.loads(pickle.dumps(compensated)) == compensated
 
 
+@pytest.mark.parametrize("shape", [(), ("presliding",)])
+def test_file_holds_a_law_that_has_nothing_left_to_smooth(shape, tmp_path):
+    names = ("coulomb", *shape) if shape else ("cogging",)
+    values = {n: dict.fromkeys(EFFECTS[n].parameters, 0.5) for n in names}
+    law = td.cancel(values, smoothing_velocity=0.02)
+    diagram = td.haptic_interface(td.hand(mass=0.2, damping=1.0, stiffness=0.0), cancellation=law)
+    td.write_diagram(diagram, tmp_path / "diagram.toml")
+    assert td.read_diagram(tmp_path / "diagram.toml") == diagram
+
+
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 def test_c_header_steps_like_the_law(tmp_path):
     law = td.cancel(device(), smoothing_velocity=0.01)
