@@ -85,6 +85,7 @@ def transfer_functions(diagram: Diagram) -> TransferFunctions:
     both. Zhat_M = (R_D - R_M)/L. L is the response of a position loop K. Only functions for which
     the diagram has the blocks are derived; other blocks are left out of the diagram for them.
     Bernstein, Lawrence, Pao, World Haptics 2005, eqs (2) to (5) and (7), figure 4.
+    raises ModelError: the diagram lacks a signal of a haptic interface
 
         >>> parts = {"hand": td.ANY, "cancellation": td.ANY, "force_feedback": td.ANY}
         >>> td.transfer_functions(td.haptic_interface(**parts))
@@ -94,6 +95,11 @@ def transfer_functions(diagram: Diagram) -> TransferFunctions:
         T_H = Z_H (Z_M + Gamma Z_H - C)^-1 Gamma    (R_D to R_M, hybrid)
         Zhat_M = Gamma^-1 (Z_M - C)    (L to R_D - R_M: apparent mechanism impedance)
     """
+    if lacks := [s for s in ("L", "R_D", "R_M", "E") if s not in diagram.signals]:
+        raise ModelError(
+            f"{diagram.name}: no signal {lacks[0]}, expected a haptic interface: "
+            "`derive_transfers` derives those of any diagram"
+        )
     cases = named_cases(diagram)
     expressions = {name: case.derive() for name, case in cases.items()}
     texts = {name: case.text for name, case in cases.items()}

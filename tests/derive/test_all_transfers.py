@@ -19,6 +19,7 @@ from teleopdesign.derive import (
     proved_equal,
     return_difference,
     transfer,
+    transfer_functions,
 )
 from teleopdesign.derive.elimination import rows
 from teleopdesign.diagrams import (
@@ -31,6 +32,7 @@ from teleopdesign.diagrams import (
     Moving,
     haptic_interface,
     load_shipped,
+    teleoperator,
 )
 
 
@@ -216,6 +218,11 @@ def test_a_derivation_that_takes_too_long_is_named():
 def test_a_transfer_that_is_not_there_is_reported_with_the_nearest():
     with pytest.raises(ModelError, match='did you mean "T_MBC"'):
         all_transfers(load_shipped("haptic-interface"))["T_MCB"]
+
+
+def test_a_diagram_that_is_no_haptic_interface_is_sent_to_the_function_for_any():
+    with pytest.raises(ModelError, match="no signal L, .*derive_transfers"):
+        transfer_functions(teleoperator(coupling=ANY))
 
 
 def test_the_return_difference_is_that_of_the_opened_loop():
