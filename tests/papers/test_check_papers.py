@@ -20,7 +20,6 @@ from teleopdesign.papers import (
 )
 from teleopdesign.papers._proof import (
     BlocksDiffer,
-    BlocksEqual,
     Equal,
     Grows,
     Holds,
@@ -171,7 +170,7 @@ FALSE = {
     "a limit": Limit("w", sp.sin(x) / x, x, sp.S(0), sp.S(0)),
     "a relation": Holds("w", sp.sqrt(2), ">", sp.Rational(3, 2)),
     "a relation of symbols": Holds("w", x + y, ">", x),
-    "commuting blocks": BlocksEqual("w", A * B, B * A),
+    "commuting blocks": Equal("w", A * B, B * A),
     "blocks that are equal": BlocksDiffer("w", A * (A + B) ** -1, 1 - B * (A + B) ** -1),
 }
 
