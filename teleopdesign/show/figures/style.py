@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable
 from functools import cache, wraps
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
@@ -98,6 +99,22 @@ def save_figure(
             with write_beside(file) as part:
                 figure.savefig(part)
     return files
+
+
+def as_svg(figure: matplotlib.figure.Figure, *, title: str = "", dpi: float = 100.0) -> str:
+    """The figure as SVG for a page, which is closed; the same figure gives the same text.
+
+    title: alternative text;  dpi: of parts that are drawn as pixels
+    """
+    import matplotlib.pyplot as plt
+
+    out = StringIO()
+    with plt.rc_context({"svg.hashsalt": "teleopdesign"}):  # the same identifiers in every process
+        named = {"Title": title} if title else {}
+        figure.savefig(out, format="svg", metadata={"Date": None, **named}, dpi=dpi)
+    plt.close(figure)
+    text = out.getvalue()
+    return text[text.index("<svg") :]
 
 
 STYLE = Path(__file__).with_name("teleopdesign.mplstyle")
