@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from ...base.errors import ModelError
 from ...base.finding import Array, Graph, Series
-from ...base.sentences import unit_on_page as unit_text
-from ...base.units import unit_of
+from ...base.sentences import readable_unit
 from ...blocks import free_space
 from ...diagnose import Diagnosis, SimulationComparison
 from ...diagnose.comparison import energetic_speed, recorded_impedance
@@ -66,7 +65,7 @@ def plot_over_carrier(
     """Mean residual over the carrier on the first and last rung, and 80 % of the samples."""
     quantity = "force" if carrier.name == "command" else carrier.name
     places = carrier.values(vars(rows))
-    scale = choose_prefix(unit_of(quantity, axis), size_of(places))
+    scale = choose_prefix(quantity, axis, size_of(places))
     series = [
         Series(
             name=name,
@@ -111,7 +110,7 @@ def excerpt(rows: BodySamples, axis: str, bandwidth: float) -> Graph:
     """Measured and modelled force where the residual decreased most (or is largest)."""
     window = _window(rows, bandwidth)
     kept = window[:: max(1, len(window) // EXCERPT_POINTS)]  # low-passed: neighbours are alike
-    force = choose_prefix(unit_of("force", axis), size_of(rows.measured[window]))
+    force = choose_prefix("force", axis, size_of(rows.measured[window]))
     series = [Series("measured", rows.clock[kept], force.factor * rows.measured[kept], "course")]
     for name, r in _first_and_last(rows.residual):
         model = force.factor * (rows.measured[kept] - r[kept])
@@ -147,17 +146,6 @@ def _moving_mean(values: Array, length: int) -> Array:
     return np.asarray((sums[length:] - sums[:-length]) / length)
 
 
-#: SI unit -> (unit that is shown, factor), from small to large; other units are not changed
-_SHOWN = {
-    "m": (("µm", 1e6), ("mm", 1e3), ("m", 1.0)),
-    "m/s": (("µm/s", 1e6), ("mm/s", 1e3), ("m/s", 1.0)),
-    "N": (("mN", 1e3), ("N", 1.0)),
-    "N*m": (("mN·m", 1e3), ("N·m", 1.0)),
-    "rad": (("mrad", 1e3), ("rad", 1.0)),
-    "rad/s": (("mrad/s", 1e3), ("rad/s", 1.0)),
-}
-
-
 @dataclass(frozen=True)
 class Scaled:
     """A unit for display, and the factor from SI to it."""
@@ -166,13 +154,10 @@ class Scaled:
     factor: float
 
 
-def choose_prefix(unit: str, size: float) -> Scaled:
-    """The largest prefix in which `size` (SI) is at least 0.5, or the smallest that exists."""
-    choices = _SHOWN.get(unit, ((unit_text(unit), 1.0),))
-    for shown, factor in reversed(choices):
-        if size * factor >= 0.5:
-            return Scaled(shown, factor)
-    return Scaled(*choices[0])
+def choose_prefix(quantity: str, axis: str, size: float) -> Scaled:
+    """The unit with the prefix in which a quantity of that size (SI) reads well."""
+    factor, unit = readable_unit(quantity, axis, size)
+    return Scaled(unit.replace(" ", "·"), factor)
 
 
 def size_of(values: Array) -> float:
@@ -247,9 +232,7 @@ def _overlay(comparison: SimulationComparison, use: str, at: str) -> Graph:
         gap = np.full((3, 1), np.nan)
         time, measured, simulated = np.hstack([p for one in stretches for p in (one, gap)])
         if scale is None:
-            scale = choose_prefix(
-                unit_of("position", axis), size_of(measured[np.isfinite(measured)])
-            )
+            scale = choose_prefix("position", axis, size_of(measured[np.isfinite(measured)]))
             low, high = float(np.nanmin(measured)), float(np.nanmax(measured))
             series.append(Series("measured", time, scale.factor * measured, "course"))
         room = 0.5 * (high - low)
