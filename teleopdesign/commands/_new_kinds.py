@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
 from ..base.files import read_whole, write_text
-from ._options import shell_word
+from ._options import add_repeated, shell_word
 
 if TYPE_CHECKING:
     from ..block_cuts import ChannelProposal
@@ -42,13 +42,8 @@ def add_diagram_options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="compare this diagram, not one body",
     )
-    parser.add_argument(
-        "--signal",
-        action="append",
-        default=[],
-        metavar="NAME=COLUMN",
-        help="the column of a signal of the diagram, or none (may be repeated)",
-    )
+    text = "the column of a signal of the diagram, or none"
+    add_repeated(parser, "--signal", "NAME=COLUMN", text)
 
 
 def say_what_stops(experiment: Experiment) -> None:

@@ -11,53 +11,54 @@ from __future__ import annotations
 import argparse
 import os
 import shlex
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from itertools import product
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
-from ..base.files import check_writable, read_whole
+from ..base.files import check_writable, read_whole, write_json
 from ..base.units import AXES, QUANTITIES, to_si, unit_of
 
-
-def add_folder(parser: argparse.ArgumentParser) -> None:
-    """Argument: the experiment's folder."""
-    parser.add_argument(
-        "folder",
-        type=Path,
-        help="folder with experiment.toml and its records, or an answer for this folder (.json)",
-    )
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def add_effect_files(parser: argparse.ArgumentParser) -> None:
     """Argument: the user's effect files."""
-    parser.add_argument(
-        "--effect",
-        action="append",
-        default=[],
-        type=Path,
-        metavar="FILE",
-        help="file that defines a further effect (may be repeated)",
-    )
+    add_repeated(parser, "--effect", "FILE", "file that defines a further effect", kind=Path)
 
 
 def add_law_files(parser: argparse.ArgumentParser) -> None:
     """Argument: the user's files of control laws."""
+    text = "file that defines a further control law for the diagram"
+    add_repeated(parser, "--law", "FILE", text, kind=Path)
+
+
+def add_repeated(
+    parser: argparse.ArgumentParser, option: str, metavar: str, text: str, *, kind: type = str
+) -> None:
+    """Argument: an option that may be repeated; its values are a list."""
     parser.add_argument(
-        "--law",
+        option,
         action="append",
         default=[],
-        type=Path,
-        metavar="FILE",
-        help="file that defines a further control law for the diagram (may be repeated)",
+        type=kind,
+        metavar=metavar,
+        help=f"{text} (may be repeated)",
     )
+
+
+#: option -> endings of its file, where no others are stated
+ENDINGS = {"--json": (".json",), "--figure": (".png", ".pdf", ".svg")}
 
 
 def add_output(parser: argparse.ArgumentParser, option: str, text: str, *endings: str) -> None:
     """Argument: a file that the command writes, which `check_outputs` checks before the work.
 
-    text: the help;  endings: endings of the file name that are allowed
+    text: the help;  endings: endings of the file name that are allowed, by default `ENDINGS`
     """
+    endings = endings or ENDINGS[option]
     action = parser.add_argument(
         option, type=Path, metavar="F", help=f"{text} ({', '.join(endings)})"
     )
@@ -96,10 +97,38 @@ def count_argument(text: str) -> int:
     return number
 
 
-def say_written(*paths: Path | None) -> None:
+Writer = Callable[[Path], object]
+
+
+def write_requested(
+    options: argparse.Namespace,
+    writers: Mapping[str, Writer] | None = None,
+    *,
+    json: Callable[[], object] | None = None,
+    figure: Callable[[], Figure] | None = None,
+) -> None:
+    """Write each file that the options request, and print their names in one line.
+
+    writers: option -> the function that writes its file
+    json: gives plain data;  figure: draws; both are called only if their file is requested
+    """
+    from ..show import save_figure
+
+    known = dict(writers or {})
+    if json is not None:
+        known["json"] = lambda path: write_json(path, json())
+    if figure is not None:
+        known["figure"] = lambda path: save_figure(figure(), path, suffixes=(path.suffix,))
+    paths = {name: path for name in known if (path := getattr(options, name)) is not None}
+    for name, path in paths.items():
+        known[name](path)
+    say_written(*paths.values())
+
+
+def say_written(*paths: Path) -> None:
     """Print the names of the files that were written, in one line; nothing if there are none."""
-    if written := [str(path) for path in paths if path is not None]:
-        print(f"\nwritten: {', '.join(written)}")
+    if paths:
+        print(f"\nwritten: {', '.join(map(str, paths))}")
 
 
 def make_folder(path: Path) -> Path:
@@ -119,16 +148,15 @@ def make_folder(path: Path) -> Path:
 
 def add_experiment(parser: argparse.ArgumentParser, *, answer: bool = True) -> None:
     """Arguments: the experiment's folder, the user's effects, and an answer to continue from."""
+    parser.add_argument(
+        "folder",
+        type=Path,
+        help="folder with experiment.toml and its records, or an answer of `teleopdesign "
+        "diagnose --json`",
+    )
     if answer:
-        parser.add_argument(
-            "folder",
-            type=Path,
-            help="folder with experiment.toml and its records, or an answer of `teleopdesign "
-            "diagnose --json`",
-        )
         add_answer(parser)
     else:
-        add_folder(parser)
         parser.set_defaults(answer=None)
     add_effect_files(parser)
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ModelError
-from ..base.files import write_beside, write_json
 from ..base.toml import read_toml
 from ._diagnosis import (
     answer_in,
@@ -17,7 +16,7 @@ from ._diagnosis import (
     experiment_or_diagram,
     print_diagnosis,
 )
-from ._options import say_written
+from ._options import write_requested
 
 if TYPE_CHECKING:
     from ..block_cuts import BlockDiagnosis, DiagramExperiment
@@ -42,16 +41,16 @@ def diagnose_diagram(experiment: DiagramExperiment, options: argparse.Namespace)
     diagnosis = diagnose_now(experiment, options)
     assert isinstance(diagnosis, BlockDiagnosis)
     print_diagnosis(str(diagnosis))
-    if options.json is not None:
-        write_answer(diagnosis, options.json)
-    if options.figure is not None:
-        with write_beside(options.figure) as part:
-            diagnosis.plot().savefig(part)
-    if options.report is not None:
-        from ..show.block_cuts.text import write_block_report
+    from ..show.block_cuts.text import write_block_report
 
-        write_block_report(diagnosis, options.report)
-    say_written(options.report, options.json, options.figure)
+    write_requested(
+        options,
+        {
+            "report": lambda path: write_block_report(diagnosis, path),
+            "json": lambda path: write_answer(diagnosis, path),
+        },
+        figure=diagnosis.plot,
+    )
     return 0
 
 
@@ -117,8 +116,7 @@ def describe_diagram(diagnosis: BlockDiagnosis, options: argparse.Namespace) -> 
     for name, body in diagnosis.bodies.items():
         described[name] = describe_residual(body.model, body.prepared, body.floor)
         print(f"\n{name}\n{described[name]}")
-    if options.json is not None:
-        write_json(options.json, {name: one.as_data() for name, one in described.items()})
+    write_requested(options, json=lambda: {name: one.as_data() for name, one in described.items()})
     return 0
 
 

@@ -8,8 +8,7 @@ import textwrap
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from ..base.files import write_json
-from ._options import add_output
+from ._options import add_output, write_requested
 from ._terminal import replace_line
 
 if TYPE_CHECKING:
@@ -29,7 +28,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         help="P1 to P65: check only these statements, and print every step and number",
     )
-    add_output(parser, "--json", "write the results", ".json")
+    add_output(parser, "--json", "write the results")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -47,8 +46,7 @@ def run(options: argparse.Namespace) -> int:
         "\n".join(_full(r, width) for r in results) if options.statement else _table(results, width)
     )
     print(_summary(results))
-    if options.json is not None:
-        write_json(options.json, [as_json(r) for r in results])
+    write_requested(options, json=lambda: [result_data(r) for r in results])
     return 0 if all(r.as_stated for r in results) else 1
 
 
@@ -113,7 +111,7 @@ def _summary(results: list[Result]) -> str:
     return f"{len(results)} statements in {seconds:.0f} s: {counted}."
 
 
-def as_json(result: Result) -> dict[str, Any]:
+def result_data(result: Result) -> dict[str, Any]:
     """A result as plain data; each figure has the range in which it must lie and its margin."""
     s = result.statement
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError, ModelError
-from ..base.files import harmless_cell, write_beside, write_text
+from ..base.files import harmless_cell, write_text
 from ..base.sentences import percent
 from . import STOPPED
 from ._command_line import BAD_INPUT
@@ -30,8 +30,8 @@ from ._options import (
     add_search,
     count_argument,
     make_folder,
-    say_written,
     shell_word,
+    write_requested,
 )
 from ._terminal import PointReporter, replace_line
 from ._whole_diagram import diagnose_diagram
@@ -59,9 +59,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="folder with experiment.toml and its records; several folders need --output",
     )
     parser.set_defaults(answer=None)
-    add_output(parser, "--json", "write the answer", ".json")
+    add_output(parser, "--json", "write the answer")
     add_output(parser, "--predictions", "write measured and modelled forces", ".csv", ".csv.gz")
-    add_output(parser, "--figure", "write the figure", ".png", ".pdf", ".svg")
+    add_output(parser, "--figure", "write the figure")
     parser.add_argument(
         "--simulate",
         action="store_true",
@@ -121,16 +121,15 @@ def run(options: argparse.Namespace) -> int:
     assert isinstance(diagnosis, Diagnosis)
     _print(diagnosis, experiment, verbose=options.verbose)
     simulation = _simulation(diagnosis, options)
-    if options.json is not None:
-        write_answer(diagnosis, options.json, simulation=simulation)
-    if options.predictions is not None:
-        write_predictions(diagnosis, options.predictions)
-    if options.figure is not None:
-        with write_beside(options.figure) as part:
-            diagnosis.plot().savefig(part)
-    if options.report is not None:
-        write_page(diagnosis, options.report, simulation)
-    say_written(options.report, options.json, options.predictions, options.figure)
+    write_requested(
+        options,
+        {
+            "report": lambda path: write_page(diagnosis, path, simulation),
+            "json": lambda path: write_answer(diagnosis, path, simulation=simulation),
+            "predictions": lambda path: write_predictions(diagnosis, path),
+        },
+        figure=diagnosis.plot,
+    )
     source = shell_word(options.json or folder)
     for line in _suggest_commands(diagnosis, source):
         print(line)

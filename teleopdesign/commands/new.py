@@ -20,7 +20,7 @@ from ._new_kinds import (
     say_next,
     say_what_stops,
 )
-from ._options import shell_word
+from ._options import add_repeated, shell_word
 
 if TYPE_CHECKING:
     from ..measurement.experiment import Experiment
@@ -71,13 +71,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         ("hand", "the measured force of the hand or environment, or none"),
     ):
         parser.add_argument(f"--{name}", metavar="COLUMN", help=f"the column of {text}")
-    parser.add_argument(
-        "--unit",
-        action="append",
-        default=[],
-        metavar="COLUMN=UNIT",
-        help="the unit of a column (may be repeated)",
-    )
+    add_repeated(parser, "--unit", "COLUMN=UNIT", "the unit of a column")
     for option, text in (
         ("torque-constant", 'torque constant of the motor, such as "0.037 N*m/A"'),
         (

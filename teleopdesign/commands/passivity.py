@@ -5,17 +5,17 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
-from ..base.files import read_whole, write_json
+from ..base.files import read_whole
+from ..base.sentences import wrap
 from ._arms import add_body
-from ._claims import BESIDE_A_DIAGRAM, WIDTH, claim_data, claim_lines, is_diagram, settle_diagram
+from ._claims import BESIDE_A_DIAGRAM, claim_data, claim_lines, is_diagram, settle_diagram
 from ._diagnosis import body_of_source
-from ._options import add_answer, add_effect_files, add_law_files, add_output, say_written
+from ._options import add_answer, add_effect_files, add_law_files, add_output, write_requested
 
 if TYPE_CHECKING:
     from ..passivity.device_claims import Compensator, Margin
@@ -59,7 +59,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="SPEED",
         help="for a diagram: largest speed in this search, m/s or rad/s (default: %(default)g)",
     )
-    add_output(parser, "--json", "write claims, certificates and motions", ".json")
+    add_output(parser, "--json", "write claims, certificates and motions")
     parser.add_argument(
         "--check",
         type=Path,
@@ -137,14 +137,12 @@ def run(options: argparse.Namespace) -> int:
     print(_describe_device(device, claims, limits))
     if options.period is not None and device.damping.low > 0:
         print("\n" + _describe_z_width(device, options.period, options.delay))
-    if options.json is not None:
-        content = {
-            "basis": basis.sentence(body.axis),
-            "claims": [claim_data(s) for s in claims],
-            "margins": [vars(m) for m in limits],
-        }
-        write_json(options.json, content)
-    say_written(options.json)
+    content = {
+        "basis": basis.sentence(body.axis),
+        "claims": [claim_data(s) for s in claims],
+        "margins": [vars(m) for m in limits],
+    }
+    write_requested(options, json=lambda: content)
     return 0
 
 
@@ -293,9 +291,8 @@ def _check_file(path: Path) -> int:
             except Refused as problem:
                 raise ExperimentError(f"{path}: {title}: {problem}") from None
             count += 1
-            print("\n".join(textwrap.wrap(f"proved: {shown}", WIDTH, subsequent_indent="    ")))
+            print(wrap(f"proved: {shown}", rest="    "))
         if certificates:
-            lines = textwrap.wrap(f"title, not checked: {title}", WIDTH, subsequent_indent="    ")
-            print("\n".join([*lines, ""]))
+            print(wrap(f"title, not checked: {title}", rest="    ") + "\n")
     print(f"{count} certificate{'s' * (count != 1)} of {len(certified)} claims verified")
     return 0
