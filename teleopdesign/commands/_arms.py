@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError, unknown
-from ._options import add_repeated, value_from
+from ._options import add_repeated, split_pairs, value_from
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis
@@ -83,13 +83,12 @@ def place_at_pose(diagnosis: Diagnosis, joint: str, options: argparse.Namespace)
 def _read_pose(texts: list[str], experiment: Experiment) -> dict[str, float]:
     """Joint -> position (SI), from texts JOINT=VALUE[UNIT]."""
     pose, joints = {}, list(experiment.bodies)
-    for text in texts:
-        joint, _, value = text.partition("=")
+    for joint, value in split_pairs(texts, "--pose", "JOINT=VALUE").items():
+        where = f"--pose {joint}={value}"
         if joint not in joints:
-            raise ExperimentError(f"--pose {text}: {unknown('joint', joint, joints)}")
-        pose[joint] = value_from(
-            value, quantity="position", axis=experiment.axis(joint), where=f"--pose {text}"
-        )
+            raise ExperimentError(f"{where}: {unknown('joint', joint, joints)}")
+        axis = experiment.axis(joint)
+        pose[joint] = value_from(value, quantity="position", axis=axis, where=where)
     return pose
 
 

@@ -52,10 +52,6 @@ def claim_data(entry: TopicClaim) -> dict[str, Any]:
     }
 
 
-#: options that describe a compensator or choose a body of a diagnosis
-BESIDE_A_DIAGRAM = ("answer", "body", "dahl", "smoothed-coulomb", "wall")
-
-
 def is_diagram(source: Path) -> bool:
     """Whether a source is a diagram: a TOML file other than experiment.toml, or a shipped name."""
     from ..diagrams import SHIPPED

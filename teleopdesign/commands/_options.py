@@ -1,23 +1,20 @@
 """Arguments, paths and messages that several commands share.
 
 Values on the command line: a number, and a unit unless the number is in SI.
-
-The names of the options decide which paths are read and which are written, so that no command has
-to declare them.
 """
 
 from __future__ import annotations
 
 import argparse
-import os
+import math
 import shlex
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
-from ..base.files import check_writable, read_whole, write_json
+from ..base.files import check_writable, write_json
 from ..base.units import AXES, QUANTITIES, to_si, unit_of
 
 if TYPE_CHECKING:
@@ -131,6 +128,35 @@ def say_written(*paths: Path) -> None:
         print(f"\nwritten: {', '.join(map(str, paths))}")
 
 
+def refuse_options(options: argparse.Namespace, names: Iterable[str], why: str) -> None:
+    """Raise ExperimentError for the first of these options that is stated.
+
+    names: as the options are stored;  why: words after the option
+    """
+    for name in names:
+        if getattr(options, name, None) not in (None, False, []):
+            raise ExperimentError(f"--{name.replace('_', '-')}: {why}")
+
+
+def require_positive(options: argparse.Namespace, names: Iterable[str], unit: str = "") -> None:
+    """Raise ExperimentError for the first of these options that is not above 0; None is allowed."""
+    for name in names:
+        value = getattr(options, name)
+        if value is not None and not (math.isfinite(value) and value > 0):
+            raise ExperimentError(f"--{name}: found {value:g}, expected more than 0{unit}")
+
+
+def split_pairs(texts: Iterable[str], option: str, form: str = "NAME=VALUE") -> dict[str, str]:
+    """Name -> value of texts "NAME=VALUE"; the last sign of equality separates both."""
+    pairs = {}
+    for text in texts:
+        name, sign, value = (part.strip() for part in text.rpartition("="))
+        if not (sign and name and value):
+            raise ExperimentError(f"{option}: found {text!r}, expected {form}")
+        pairs[name] = value
+    return pairs
+
+
 def make_folder(path: Path) -> Path:
     """The folder, which is created if it does not exist.
 
@@ -220,74 +246,6 @@ def value_in(text: str, *, unit: str, where: str) -> float:
     return value_from(text, quantity=quantity, axis=axis, where=where)
 
 
-#: options that name what a command reads, and what it writes: a file or a folder
-INPUTS = (
-    *("folder", "logs", "source", "file", "diagram", "answer", "check", "effect", "law", "design"),
-    *("without", "like"),
-)
-OUTPUTS = ("json", "predictions", "figure", "report", "output", "out", "effect_file")
-
-
 def shell_word(path: Path | str) -> str:
     """A path as it is typed in a shell: in quotes if it contains spaces."""
     return shlex.quote(str(path))
-
-
-def inputs(options: argparse.Namespace | None) -> Iterator[Path]:
-    """The paths that a command reads, as the user wrote them."""
-    return _paths(options, INPUTS)
-
-
-def outputs(options: argparse.Namespace | None) -> Iterator[Path]:
-    """The paths that a command writes."""
-    return _paths(options, OUTPUTS)
-
-
-def python_files(options: argparse.Namespace | None) -> Iterator[Path]:
-    """The user's Python files that a command runs: effects and studies."""
-    return (path for path in inputs(options) if path.suffix == ".py")
-
-
-def _paths(options: argparse.Namespace | None, names: tuple[str, ...]) -> Iterator[Path]:
-    for name in names:
-        value = getattr(options, name, None)
-        for one in value if isinstance(value, list) else [value]:
-            if isinstance(one, str | Path) and str(one):
-                yield Path(one)
-
-
-def check_paths(options: argparse.Namespace) -> None:
-    """Raise ExperimentError if an output is also an input, or if two outputs are the same file.
-
-    Records that an experiment names count as inputs; so do files that another TOML file names.
-    """
-    read = {os.path.realpath(p): p for p in _files_read(options)}
-    written: dict[str, Path] = {}
-    for path in outputs(options):
-        if path.is_dir():
-            continue
-        real = os.path.realpath(path)
-        if real in read:
-            raise ExperimentError(f"{path}: is read by this command, expected another file")
-        if real in written:
-            raise ExperimentError(f"{path}: is to hold two results, expected a file for each")
-        written[real] = path
-
-
-def _files_read(options: argparse.Namespace) -> Iterator[Path]:
-    for path in inputs(options):
-        file = path / "experiment.toml" if path.is_dir() else path
-        yield file
-        if file.suffix == ".toml":
-            yield from (file.parent / text for text in _texts_of(file))
-
-
-def _texts_of(file: Path) -> Iterator[str]:
-    """Every text in a TOML file; none for an invalid file, which is reported when it is read."""
-    from ..base.toml import parse_toml, texts_in
-
-    try:
-        content = parse_toml(read_whole(file).decode("utf-8-sig"))
-        yield from texts_in(content)
-    except (OSError, ValueError, RecursionError):
-        return

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import ModelError
 from ..base.toml import read_toml
 from ._diagnosis import (
     answer_in,
@@ -16,11 +15,12 @@ from ._diagnosis import (
     experiment_or_diagram,
     print_diagnosis,
 )
-from ._options import write_requested
+from ._options import refuse_options, write_requested
 
 if TYPE_CHECKING:
     from ..block_cuts import BlockDiagnosis, DiagramExperiment
 
+WHY = "is for experiments of bodies, found a whole diagram"
 #: options of other commands that ask for one body
 _OF_ONE_BODY = ("as_is", "effect_file", "simulate", "limit")
 #: options of `diagnose` that ask for what only an experiment of bodies has
@@ -30,13 +30,11 @@ _OF_BODIES = ("predictions", "simulate", "loop")
 def diagnose_diagram(experiment: DiagramExperiment, options: argparse.Namespace) -> int:
     """Compare every tested block; print the ladder; write the requested files.
 
-    raises ModelError: an option that only an experiment of bodies has
+    raises ExperimentError: an option that only an experiment of bodies has
     """
     from ..block_cuts import BlockDiagnosis, write_answer
 
-    for name in _OF_BODIES:
-        if getattr(options, name):
-            raise ModelError(f"--{name}: is for experiments of bodies, found a whole diagram")
+    refuse_options(options, _OF_BODIES, WHY)
     print(f"{experiment}\n")
     diagnosis = diagnose_now(experiment, options)
     assert isinstance(diagnosis, BlockDiagnosis)
@@ -57,13 +55,12 @@ def diagnose_diagram(experiment: DiagramExperiment, options: argparse.Namespace)
 def check_diagram(experiment: DiagramExperiment, options: argparse.Namespace) -> int:
     """Print the cuts of a whole diagram, and whether the rows are passes of its computer.
 
-    raises ModelError: --json, which only an experiment of bodies has
+    raises ExperimentError: --json, which only an experiment of bodies has
     """
     from ..block_cuts.channel_doubts import doubt_channels
     from ..block_cuts.computer import UnevenRows, passes_of
 
-    if options.json is not None:
-        raise ModelError("--json: is for experiments of bodies, found a whole diagram")
+    refuse_options(options, ("json",), WHY)
     print(experiment)
     for log in experiment.logs if experiment.cuts.of("computer") else ():
         try:
@@ -78,7 +75,7 @@ def check_diagram(experiment: DiagramExperiment, options: argparse.Namespace) ->
 def diagnosed_diagram(options: argparse.Namespace) -> BlockDiagnosis | None:
     """The diagnosis of a whole diagram: read from an answer, or computed now; None: of bodies.
 
-    raises ModelError: an option that asks for one body
+    raises ExperimentError: an option that asks for one body
     """
     from ..block_cuts import BlockDiagnosis, load_answer
     from ..block_cuts.saved import is_block_answer
@@ -88,10 +85,7 @@ def diagnosed_diagram(options: argparse.Namespace) -> BlockDiagnosis | None:
         return None
     if answer is not None and not is_block_answer(answer):
         return None
-    for name in _OF_ONE_BODY:
-        if getattr(options, name, None):
-            option = name.replace("_", "-")
-            raise ModelError(f"--{option}: is for experiments of bodies, found a whole diagram")
+    refuse_options(options, _OF_ONE_BODY, WHY)
     if answer is not None:
         options.answer = answer
         diagnosis = load_answer(answer, effects_by_name(options))

@@ -6,7 +6,7 @@ import argparse
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
 from ..base.sentences import WIDTH, wrap
@@ -56,8 +56,9 @@ def run(options: argparse.Namespace) -> int:
         print()
         findings = check_experiment(experiment, _model_of(experiment, options))
     print(text_of(findings))
-    content = {"findings": [finding_data(f) for f in findings]}
-    write_requested(options, json=lambda: content)
+    parts = ("topic", "concern", "stops", "where", "sentence", "numbers")
+    rows = [{part: getattr(f, part) for part in parts} for f in findings]
+    write_requested(options, json=lambda: {"findings": rows})
     return 0
 
 
@@ -129,9 +130,3 @@ def _wrap_lines(finding: Finding, width: int) -> str:
         text = wrap(" ".join(line.split()), first=indent, rest=indent, width=width)
         lines.append(INDENT + line if len(INDENT + line) <= width else text)
     return "\n".join(lines)
-
-
-def finding_data(finding: Finding) -> dict[str, Any]:
-    """A finding as plain data, numbers in SI; in JSON a number that is not finite is null."""
-    parts = ("topic", "concern", "stops", "where", "sentence")
-    return {n: getattr(finding, n) for n in parts} | {"numbers": dict(finding.numbers)}

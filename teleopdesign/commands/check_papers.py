@@ -45,7 +45,9 @@ def run(options: argparse.Namespace) -> int:
     print(
         "\n".join(_full(r, width) for r in results) if options.statement else _table(results, width)
     )
-    print(_summary(results))
+    counts = Counter(r.outcome for r in results).most_common()
+    counted = ", ".join(f"{n} {outcome}" for outcome, n in counts)
+    print(f"{len(results)} statements in {sum(r.seconds for r in results):.0f} s: {counted}.")
     write_requested(options, json=lambda: [result_data(r) for r in results])
     return 0 if all(r.as_stated for r in results) else 1
 
@@ -104,13 +106,6 @@ def _full(result: Result, width: int) -> str:
     return "\n".join([*lines, ""])
 
 
-def _summary(results: list[Result]) -> str:
-    counts = Counter(r.outcome for r in results)
-    seconds = sum(r.seconds for r in results)
-    counted = ", ".join(f"{n} {outcome}" for outcome, n in counts.most_common())
-    return f"{len(results)} statements in {seconds:.0f} s: {counted}."
-
-
 def result_data(result: Result) -> dict[str, Any]:
     """A result as plain data; each figure has the range in which it must lie and its margin."""
     s = result.statement
@@ -119,12 +114,8 @@ def result_data(result: Result) -> dict[str, Any]:
         "statement": s.name,
         "outcome": result.outcome,
         "as_stated": result.as_stated,
-        "words": s.words,
-        "formula": s.formula,
-        "printed": s.printed,
-        "assumes": s.assumes,
+        **{n: getattr(s, n) for n in ("words", "formula", "printed", "assumes", "place")},
         "paper": s.paper.full,
-        "place": s.place,
         "code": s.code and f"teleopdesign.papers.{s.code}",
         "see": [f"P{n}" for n in s.see],
         "found": list(result.details),

@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING
 from ..base.errors import ModelError, did_you_mean
 from ._arms import add_body
 from ._diagnosis import body_of_source
-from ._options import add_answer, add_effect_files, add_law_files, add_output, write_requested
+from ._options import (
+    add_answer,
+    add_effect_files,
+    add_law_files,
+    add_output,
+    refuse_options,
+    write_requested,
+)
 
 if TYPE_CHECKING:
     from ..derive import Transfers
@@ -80,9 +87,9 @@ def diagram_from(options: argparse.Namespace) -> Diagram:
     is_experiment = source.name == "experiment.toml" or source.is_dir()
     if options.diagram not in SHIPPED and (is_experiment or source.suffix == ".json"):
         return haptic_interface(body_of_source(source, options)[0])
-    for option in ("answer", "body", "pose"):
-        if getattr(options, option):
-            raise ModelError(f"--{option}: found beside a diagram, which has its own blocks")
+    refuse_options(
+        options, ("answer", "body", "pose"), "found beside a diagram, which has its own blocks"
+    )
     return diagram_of(options.diagram, options.effect, options.law)
 
 

@@ -30,6 +30,7 @@ from ._options import (
     add_search,
     count_argument,
     make_folder,
+    refuse_options,
     shell_word,
     write_requested,
 )
@@ -40,7 +41,7 @@ from .report import write_page
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis, SimulationComparison
     from ..measurement import Experiment
-    from ..studies.folders import DiagnosedFolder, FolderSearch
+    from ..studies.folders import DiagnosedFolder
 
 EXAMPLES = """
   teleopdesign diagnose rod
@@ -196,20 +197,21 @@ def diagnose_all(options: argparse.Namespace) -> int:
     """Diagnose every folder, print and write the table; returns 2 if one was not diagnosed."""
     if options.output is None:
         raise ExperimentError(f"{len(options.folder)} folders: expected --output DIR beside them")
-    for name in ("json", "predictions", "figure", "report"):
-        if getattr(options, name) is not None:
-            raise ExperimentError(
-                f"--{name}: is for one folder, found it with --output: every answer goes there, "
-                "and `teleopdesign report ANSWER` makes its page"
-            )
-    if options.simulate:
-        raise ExperimentError("--simulate: is for one folder, found it with --output")
+    refuse_options(
+        options,
+        ("json", "predictions", "figure", "report", "simulate"),
+        "is for one folder, found it with --output: every answer goes there, and `teleopdesign "
+        "report ANSWER` makes its page",
+    )
     for folder in options.folder:
         if not folder.is_dir():
             raise ExperimentError(f"{folder}: no such folder")
-    search = _search(options)
+    from ..studies.folders import FolderSearch, diagnose_folders
+
+    known = effects_by_name(options)
+    among = candidate_effects(known, options.only, options.exclude)
+    search = FolderSearch(dict(known), among, options.quick)
     output = make_folder(options.output)
-    from ..studies.folders import diagnose_folders
 
     reporter = PointReporter()
     try:
@@ -230,14 +232,6 @@ def diagnose_all(options: argparse.Namespace) -> int:
     failed = sum(bool(row.failure) for row in rows)
     print(f"\n{len(rows) - failed} of {len(rows)} folders diagnosed; answers and {TABLE}: {output}")
     return BAD_INPUT if failed else 0
-
-
-def _search(options: argparse.Namespace) -> FolderSearch:
-    from ..studies.folders import FolderSearch
-
-    known = effects_by_name(options)
-    among = candidate_effects(known, options.only, options.exclude)
-    return FolderSearch(dict(known), among, options.quick)
 
 
 def table_lines(rows: Sequence[DiagnosedFolder]) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +15,10 @@ from ._options import (
     add_experiment,
     add_output,
     add_repeated,
+    refuse_options,
+    require_positive,
     say_written,
+    split_pairs,
     value_from,
     write_requested,
 )
@@ -79,8 +81,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the proposed experiment and what it will show; write the requested files."""
-    if not (math.isfinite(options.duration) and options.duration > 0):
-        raise ExperimentError(f"--duration: found {options.duration:g}, expected more than 0 s")
+    require_positive(options, ("duration",), " s")
     if is_diagram(options.folder):
         return print_what_to_log(options.folder)
     if (whole := diagnosed_diagram(options)) is not None:
@@ -113,11 +114,9 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
     """Propose paths of all joints of an arm; with --body, `run` plans one joint instead."""
     from ..next_experiment import propose_paths, shown_limits
 
-    for value, option in ((options.figure, "--figure"), (options.simulate, "--simulate")):
-        if value is not None:
-            raise ExperimentError(
-                f"{option}: not available for an arm: use --output, or --body JOINT"
-            )
+    refuse_options(
+        options, ("figure", "simulate"), "not available for an arm: use --output, or --body JOINT"
+    )
     stated = _read_limits(options.limit, experiment)
     diagnosis = diagnosis_of(experiment, options)
     limits = {
@@ -179,21 +178,16 @@ def _read_limits(texts: Sequence[str], experiment: Experiment) -> dict[str, dict
     """
     bodies = tuple(experiment.bodies)
     limits: dict[str, dict[str, float]] = {}
-    for text in texts:
-        name, _, value = text.partition("=")
-        body, _, name_of_limit = name.rpartition(".")
-        body = body or bodies[0]
+    for name, value in split_pairs(texts, "--limit").items():
+        body, _, limit = name.rpartition(".")
+        body, where = body or bodies[0], f"--limit {name}={value}"
         if body not in bodies:
-            raise ExperimentError(f"--limit {text}: {unknown('body', body, bodies)}")
-        if name_of_limit not in QUANTITY:
-            raise ExperimentError(f"--limit {text}: {unknown('limit', name_of_limit, QUANTITY)}")
-        size = value_from(
-            value,
-            quantity=QUANTITY[name_of_limit],
-            axis=experiment.axis(body),
-            where=f"--limit {text}",
-        )
-        limits.setdefault(body, {})[name_of_limit] = size
+            raise ExperimentError(f"{where}: {unknown('body', body, bodies)}")
+        if limit not in QUANTITY:
+            raise ExperimentError(f"{where}: {unknown('limit', limit, QUANTITY)}")
+        axis, quantity = experiment.axis(body), QUANTITY[limit]
+        size = value_from(value, quantity=quantity, axis=axis, where=where)
+        limits.setdefault(body, {})[limit] = size
     return limits
 
 

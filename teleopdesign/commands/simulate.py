@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import ExperimentError
-from ._options import add_output, add_repeated, value_in, write_requested
+from ._options import add_output, add_repeated, split_pairs, value_in, write_requested
 from .derive import add_diagram, diagram_from
 
 if TYPE_CHECKING:
@@ -115,10 +114,7 @@ def _case(options: argparse.Namespace) -> SimulatedCase:
 def _values(texts: list[str], case: SimulatedCase) -> dict[str, float]:
     """Values by name, in SI, of texts such as "C.dahl.level=0.8N"."""
     values = {}
-    for text in texts:
-        name, sign, value = (part.strip() for part in text.partition("="))
-        if not sign:
-            raise ExperimentError(f"--value: found {text!r}, expected NAME=VALUE")
+    for name, value in split_pairs(texts, "--value").items():
         case.check_names([name])
         values[name] = value_in(value, unit=case.unit(name), where=f"--value {name}")
     return values
