@@ -157,16 +157,13 @@ def shows(
     """
 
     def made(function: Callable[[], StatementEvidence]) -> Statement:
-        words, *parts = map(_one_line, _PART.split(inspect.getdoc(function) or ""))
+        texts = _PART.split(inspect.getdoc(function) or "")
+        words, *parts = (" ".join(text.split()) for text in texts)
         named = dict(zip(parts[::2], parts[1::2], strict=True))
-        texts = named.get("formula", ""), named.get("printed", ""), named.get("assumes", "")
-        return Statement(number, paper, place, words, how, function, *texts, numbers)
+        more = named.get("formula", ""), named.get("printed", ""), named.get("assumes", "")
+        return Statement(number, paper, place, words, how, function, *more, numbers)
 
     return made
-
-
-def _one_line(text: str) -> str:
-    return " ".join(line.strip() for line in text.strip().splitlines())
 
 
 def claim(number: int, paper: Paper, place: str, words: str, see: tuple[int, ...]) -> Statement:
