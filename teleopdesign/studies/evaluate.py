@@ -75,7 +75,8 @@ def evaluate(
         (name, "text" if isinstance(a.value, str) else "number", a.unit, a.text, *(a.over or ()))
         for name, a in amounts.items()
     )
-    return PointOutcome(index, form, tuple(_list_as_tuple(a.value) for a in amounts.values()))
+    results = (tuple(a.value) if isinstance(a.value, list) else a.value for a in amounts.values())
+    return PointOutcome(index, form, tuple(results))
 
 
 def _check_names(task: StudyTask, measure: str, name: str, amount: Amount) -> None:
@@ -120,10 +121,6 @@ def check_parameters(model: Callable[..., Any], points: Points) -> None:
 def _shorten(text: str) -> str:
     line = " ".join(text.split())
     return line if len(line) <= _LONGEST_REASON else line[: _LONGEST_REASON - 3] + "..."
-
-
-def _list_as_tuple(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
 
 
 #: points that a process receives at once: a range is simulated side by side

@@ -160,7 +160,8 @@ def _with_file(
     journal = Journal(part, key, len(task.points))
     try:
         run(journal)
-        by_axis = _units(task, words.units)
+        case = task.model if isinstance(task.model, SimulatedCase) else None
+        by_axis = {n: case.unit(n) for n in task.points.names} if case else words.units
         result = label_outcomes(task.points, journal.outcomes, units=by_axis, attributes=attributes)
         _write_words(result, words)
         if target is not None:
@@ -217,14 +218,6 @@ def _remove_finished(part: Path, key: str, points: int) -> None:
     if part.exists():
         with suppress(ExperimentError):
             Journal(part, key, points).remove()
-
-
-def _units(task: StudyTask, units: Mapping[str, str]) -> dict[str, str]:
-    """Units of the parameters."""
-    if isinstance(task.model, SimulatedCase):
-        case = task.model
-        return {n: case.unit(n) for n in task.points.names}
-    return {n: units.get(n, "1") for n in task.points.names}
 
 
 def _write_words(result: Study, words: _Words) -> None:

@@ -25,9 +25,10 @@ def block_diagnosis_text(diagnosis: BlockDiagnosis) -> str:
         lines.append(_line(label, errors, f"{100 * row.check_error:.3g}%"))
         if row.added is not None:
             lines += [f"      {text}" for text in _parameters(diagnosis, row.added)]
-            lines += [
-                f"      not determined: {text}" for text in _looks_alike(diagnosis, row.added)
-            ]
+            body = diagnosis.bodies.get(row.added[1])
+            for open_value in () if body is None else body.undetermined:
+                if open_value.candidate.key == row.added:
+                    lines.append(f"      not determined: {open_value.sentence}")
     floors = [f"{100 * diagnosis.floors[c.name]:.3g}%" for c in cuts]
     lines.append(_line("noise floor", floors, ""))
     lines += ["", *map(str, diagnosis.cuts.tested)]
@@ -74,12 +75,6 @@ def _parameters(diagnosis: BlockDiagnosis, key: Key) -> list[str]:
             if p.key == key
         ]
     return [f"{n} = {with_standard_error(v, e)} {u}".removesuffix(" 1") for n, v, e, u in rows]
-
-
-def _looks_alike(diagnosis: BlockDiagnosis, key: Key) -> list[str]:
-    """What else the records would show in the same way, such as the scale of a sensor."""
-    body = diagnosis.bodies.get(key[1])
-    return [] if body is None else [u.sentence for u in body.undetermined if u.candidate.key == key]
 
 
 def _verdict(diagnosis: BlockDiagnosis) -> str:

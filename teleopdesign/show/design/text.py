@@ -35,7 +35,7 @@ def design_text(design: Design) -> str:
         _assumptions(design),
         _proposals(design),
         _predictions(design),
-        _impedance(design),
+        _list_felt(design.impedance, unit_of("stiffness", design.body.axis)),
         _residuals(design),
         _passivity(design),
     ]
@@ -140,20 +140,15 @@ def _predictions(design: Design) -> list[str]:
     return lines
 
 
-def _impedance(design: Design) -> list[str]:
-    """Zhat_M of the four cases over frequency, at the peak speed of the stated motion."""
-    unit = unit_of("stiffness", design.body.axis)
-    head = f"felt impedance at that peak speed, dB re 1 {unit} and deg: simulated (describing "
-    return [f"{head}functions)", *_list_felt(design.impedance)]
-
-
-def _list_felt(felt: FeltImpedance) -> list[str]:
-    """A table of cases by frequency: magnitude and phase, predicted ones in brackets."""
+def _list_felt(felt: FeltImpedance, unit: str) -> list[str]:
+    """Zhat_M of the cases by frequency: magnitude and phase, predicted ones in brackets."""
     impedance = felt.simulated or felt.predicted
+    head = f"felt impedance at that peak speed, dB re 1 {unit} and deg: simulated (describing "
+    rows = [f"{head}functions)"]
     if impedance is None:
-        return [f"  none: {why}" for why in felt.missing]
+        return rows + [f"  none: {why}" for why in felt.missing]
     frequency = impedance.data["frequency"].values
-    rows = [f"  {'at Hz':<8}" + "".join(f"{f:>22.3g}" for f in frequency)]
+    rows.append(f"  {'at Hz':<8}" + "".join(f"{f:>22.3g}" for f in frequency))
     for case in map(str, impedance.data["case"].values):
         cells = (_felt_cell(felt, case, i) for i in range(len(frequency)))
         rows.append(f"  {case:<8}" + "".join(f"{cell:>22}" for cell in cells))

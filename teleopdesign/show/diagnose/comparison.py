@@ -17,10 +17,9 @@ from ..figures.carrier import carrier_of_change, with_carrier
 from ..figures.diagnosis import (
     check_rows,
     direction_legend,
+    draw_before_and_after,
     draw_by_direction,
     draw_courses,
-    label_of,
-    share_scale,
 )
 from ..figures.friction_curve import curve_graph
 from ..figures.graph import draw_graph
@@ -142,11 +141,7 @@ def _plot_change(before: Comparison, after: Comparison) -> Figure:
     figure, axes = plt.subplot_mosaic("ft;ba", figsize=(7.16, 4.6))
     words = ("before", "after")
     draw_courses(axes["f"], axes["t"], dict(zip(words, rows, strict=True)))
-    for data, word in zip(rows, words, strict=True):
-        panel = axes[word[0]]
-        draw_by_direction(panel, data, "carrier")
-        panel.set_ylabel(label_of(data, "residual").replace("residual", f"residual {word}"))
-    share_scale(axes["b"], axes["a"])
+    draw_before_and_after((axes["b"], axes["a"]), rows, "carrier")
     direction_legend(axes["b"])
     for one, name in ((before, "b"), (after, "a")):
         errors = {"check error": one.check_error, "fit error": one.fit_error}

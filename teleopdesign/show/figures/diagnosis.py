@@ -104,8 +104,11 @@ def direction_legend(ax: Axes) -> None:
         handle.set_markersize(6.0)
 
 
-def share_scale(*panels: Axes) -> None:
-    """One vertical scale for panels, on which all of their points are seen."""
+def draw_before_and_after(panels: Sequence[Axes], rows: Sequence[Any], over: str) -> None:
+    """The residuals before and after over a variable, on one scale that shows all points."""
+    for ax, data, word in zip(panels, rows, ("before", "after"), strict=False):
+        draw_by_direction(ax, data, over)
+        ax.set_ylabel(label_of(data, "residual").replace("residual", f"residual {word}"))
     low, high = zip(*(ax.get_ylim() for ax in panels), strict=True)
     for ax in panels:
         ax.set_ylim(min(low), max(high))
@@ -167,7 +170,12 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
     draw_courses(axes["force"], axes["time"], models)
     # anybody's text: no formula in it
     figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
-    _residual_maps(axes, before, after, changed=changed)
+    rows = (before, after)[: 1 + changed]
+    for over, names in (("velocity", ("v0", "v1")), ("carrier", ("x0", "x1"))):
+        draw_before_and_after([axes[n] for n in names[: len(rows)]], rows, over)
+        for name in names[len(rows) :]:
+            axes[name].set_axis_off()
+    direction_legend(axes["v0"])
     _plot_ladder(axes["ladder"], diagnosis)
     return figure
 
@@ -187,12 +195,10 @@ def _plot_friction_curve(diagnosis: Diagnosis) -> Figure:
     )
     draw_graph(curve_graph(diagnosis.prepared, models), axes["curve"])
     figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
-    for ax, data, word in zip((axes["v0"], axes["v1"]), rows, ("before", "after"), strict=True):
-        draw_by_direction(ax, data, "velocity")
-        ax.set_ylabel(label_of(data, "residual").replace("residual", f"residual {word}"))
-        for points in ax.lines:
-            points.set_markersize(3.0)
-    share_scale(axes["v0"], axes["v1"])
+    panels = axes["v0"], axes["v1"]
+    draw_before_and_after(panels, rows, "velocity")
+    for points in (line for ax in panels for line in ax.lines):
+        points.set_markersize(3.0)
     _plot_ladder(axes["ladder"], diagnosis)
     return figure
 
@@ -250,20 +256,6 @@ def _plot_joint(
 def _first_record(data: Any) -> Any:
     """The rows of the first record; over time, several records would lie on each other."""
     return data.isel(sample=data["record"].values == data["record"].values[0])
-
-
-def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None:
-    for over, first, second in (("velocity", "v0", "v1"), ("carrier", "x0", "x1")):
-        draw_by_direction(axes[first], before, over)
-        axes[first].set_ylabel(label_of(before, "residual").replace("residual", "residual before"))
-        if changed:
-            draw_by_direction(axes[second], after, over)
-            share_scale(axes[first], axes[second])
-            left = label_of(after, "residual").replace("residual", "residual after")
-            axes[second].set_ylabel(left)
-        else:
-            axes[second].set_axis_off()
-    direction_legend(axes["v0"])
 
 
 def _plot_ladder(ax: Axes, diagnosis: Diagnosis, *, of: str = "the measured force") -> None:

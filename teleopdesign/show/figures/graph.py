@@ -112,12 +112,9 @@ def _draw(series: Series, axes: Axes, colour: str) -> None:
         style = {"linestyle": "--", "linewidth": 0.8}
     else:
         style = {"linestyle": "-", "linewidth": 2.6 if series.kind == "course" else 1.0}
-    axes.plot(series.x, series.y, color=colour, label=_label(series), **style)
-
-
-def _label(series: Series) -> str:
     # matplotlib leaves labels with a leading underscore out of the legend
-    return f"\u200b{series.name}" if series.name.startswith("_") else series.name
+    label = f"\u200b{series.name}" if series.name.startswith("_") else series.name
+    axes.plot(series.x, series.y, color=colour, label=label, **style)
 
 
 def _logarithmic(graph: Graph, axes: Axes) -> None:

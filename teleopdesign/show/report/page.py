@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
 import json
 import math
 import re
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from ...base.files import make_plain, write_text
-from ...base.finding import Finding, Graph
+from ...base.finding import Finding, Series
 from ...base.sentences import number_on_page as number
 from ...base.sentences import percent_on_page as percent
 from ...base.sentences import short_on_page as short
@@ -146,18 +146,13 @@ def _joint(
 def limit_size(findings: Sequence[Finding]) -> tuple[Finding, ...]:
     """The findings, with few enough points in their graphs that the page stays small."""
     return tuple(
-        f if f.graph is None else dataclasses.replace(f, graph=_thin(f.graph)) for f in findings
+        f if f.graph is None else replace(f, graph=replace(f.graph, series=_thin(f.graph.series)))
+        for f in findings
     )
 
 
-def _thin(graph: Graph) -> Graph:
-    series = tuple(thin_series(s, POINTS) for s in graph.series)
-    return dataclasses.replace(graph, series=series)
-
-
-def page_data(page: PageRow, diagnosis: Diagnosis) -> dict[str, Any]:
-    """Data embedded in the page: the answer, and every number that the page shows."""
-    return {"answer": make_plain(answer(diagnosis)), "report": make_plain(page, digits=DIGITS)}
+def _thin(series: tuple[Series, ...]) -> tuple[Series, ...]:
+    return tuple(thin_series(s, POINTS) for s in series)
 
 
 TEMPLATES = Path(__file__).with_name("templates")
@@ -197,7 +192,8 @@ def write_report(
         next_steps=next_steps,
         simulation=simulation,
     )
-    write_text(path, render(page, page_data(page, diagnosis)))
+    data = {"answer": make_plain(answer(diagnosis)), "report": make_plain(page, digits=DIGITS)}
+    write_text(path, render(page, data))
 
 
 def render(
@@ -206,12 +202,13 @@ def render(
     """The page as HTML with embedded data, all its texts escaped; figures: those of `FIGURES`."""
     template = _environment().get_template("report.html.jinja")
     script = figure_script()
+    digest = hashlib.sha256(script.encode()).digest()  # of the only script that the policy allows
     text = template.render(
         page=page,
         figures=figures,
         data=embedded_json(data),
         script=script,
-        script_digest=_digest_of(script),
+        script_digest=f"sha256-{b64encode(digest).decode('ascii')}",
     )
     return text + "\n"
 
@@ -219,12 +216,6 @@ def render(
 def figure_script() -> Markup:
     """The only script of the page, which opens figures; it contains no text from a file."""
     return Markup((TEMPLATES / "figures.js.jinja").read_text(encoding="utf-8"))
-
-
-def _digest_of(script: str) -> str:
-    """Digest of the only script that the policy of the page allows to run."""
-    digest = b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii")
-    return f"sha256-{digest}"
 
 
 def embedded_json(data: dict[str, Any]) -> Markup:

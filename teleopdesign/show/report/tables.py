@@ -72,7 +72,8 @@ def _row(
     model: Model, name: str, stated: Mapping[str, float], before: Value | None
 ) -> dict[str, Any]:
     """The row of a parameter, without what was estimated at the end;  before: its first estimate"""
-    place, effect, parameter = _parts(name)
+    place, _, local = name.partition(".")
+    effect, _, parameter = local.rpartition(".")
     return {
         "name": name,
         "at": place,
@@ -88,13 +89,6 @@ def _row(
         **dict.fromkeys(("at_bound", "added"), False),
         "gave_way_to": "",
     }
-
-
-def _parts(name: str) -> tuple[str, str, str]:
-    """Place, effect ("" for a parameter of the body) and parameter in a full name."""
-    place, _, local = name.partition(".")
-    effect, _, parameter = local.rpartition(".")
-    return place, effect, parameter
 
 
 def added_effects(diagnosis: Diagnosis, rows: tuple[PageRow, ...]) -> tuple[PageRow, ...]:

@@ -121,10 +121,12 @@ def _draw_mesh(
 ) -> Any:
     study.label_axis(axis, "x", across)
     study.label_axis(axis, "y", up)
+    field = values.transpose(up, across).values  # infinite values have the colours of the ends
+    shown = np.nan_to_num(field, nan=np.nan, neginf=limits[0], posinf=limits[1])
     mesh = axis.pcolormesh(
         _borders(study.data[across].values, axis.get_xscale()),
         _borders(study.data[up].values, axis.get_yscale()),
-        np.ma.masked_invalid(_clip_infinite(values.transpose(up, across).values, limits)),
+        np.ma.masked_invalid(shown),
         cmap="RdBu_r" if limits[0] < 0 and limits[1] == -limits[0] else "viridis",
         vmin=limits[0],
         vmax=limits[1],
@@ -226,11 +228,6 @@ def _limits(values: xarray.DataArray, onset: float | None) -> tuple[float, float
         most = float(np.percentile(np.abs(finite), 95))
         return -most, most
     return float(finite.min()), float(finite.max())
-
-
-def _clip_infinite(values: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
-    """The values, infinite ones at the ends of the colour scale."""
-    return np.asarray(np.nan_to_num(values, nan=np.nan, neginf=limits[0], posinf=limits[1]))
 
 
 def _extend(values: xarray.DataArray, limits: tuple[float, float]) -> str:
