@@ -11,6 +11,7 @@ from ..base.units import si_factor
 from ..diagnose.noise_floor import say_floors
 from ..next_experiment.prediction import DECIDES, SAME
 from .figures.graph import draw_graph
+from .figures.style import plt
 from .registry import shows
 
 if TYPE_CHECKING:
@@ -238,8 +239,6 @@ def plot_proposal(proposal: Proposal) -> Figure:
 
     If no motion is proposed, the figure shows only the sentence of the proposal.
     """
-    import matplotlib.pyplot as plt
-
     if proposal.reference is None:
         figure, ax = plt.subplots(figsize=(7.16, 1.2))
         ax.text(0.0, 0.5, proposal.sentence, wrap=True, va="center")

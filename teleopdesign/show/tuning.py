@@ -11,7 +11,7 @@ from ..base.shown import html_table
 from ..base.units import unit_after_number
 from ..simulate.units import signal_units
 from ..tuning.follow import MOST_APART
-from .figures.style import ONE_COLUMN, symbol
+from .figures.style import ONE_COLUMN, plt, symbol
 from .registry import shows
 from .studies.data import words
 
@@ -94,8 +94,6 @@ def front_text(front: ParetoFront) -> str:
 @shows("figure")
 def plot_pareto(front: ParetoFront) -> matplotlib.figure.Figure:
     """The front as steps; points that keep the limits in grey; the untuned diagram as a cross."""
-    import matplotlib.pyplot as plt
-
     x, y = front.objectives.T
     figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN))
     axes.plot(*front.evaluated.T, ".", color=GREY, markersize=2.5, label="keeps the limits")
@@ -175,8 +173,6 @@ def fit_table(fitted: SimulationFit) -> str:
 @shows("figure")
 def plot_simulation_fit(fitted: SimulationFit) -> matplotlib.figure.Figure:
     """For each signal: measured points and the simulation as a line; below, their difference."""
-    import matplotlib.pyplot as plt
-
     names = tuple(fitted.rms)
     time = fitted.data["time"].values
     figure, axes = plt.subplots(

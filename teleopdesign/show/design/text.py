@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...base.sentences import unit_at_axis, with_standard_error
 from ...base.units import unit_of
-from ..figures.style import CASES, TWO_COLUMNS
+from ..figures.style import CASES, TWO_COLUMNS, plt
 from ..frequency.impedance import draw_interval, keep_scale
 from ..registry import shows
 from .headline import headline
@@ -211,8 +211,6 @@ def tuned_text(tuned: TunedControllers) -> str:
 @shows("figure")
 def plot_design(design: Design) -> matplotlib.figure.Figure:
     """Three panels that compare the designed cases with no compensation, a line for each case."""
-    import matplotlib.pyplot as plt
-
     figure, axes = plt.subplots(1, 3, figsize=(TWO_COLUMNS, 2.7))
     _force_error(axes[0], design)
     _residual(axes[1], design)

@@ -23,7 +23,7 @@ from ..figures.diagnosis import (
 )
 from ..figures.friction_curve import curve_graph
 from ..figures.graph import draw_graph
-from ..figures.style import AFTER, TWO_COLUMNS
+from ..figures.style import AFTER, TWO_COLUMNS, plt
 from ..registry import shows
 from ..report.motion import simulated_motions
 
@@ -109,8 +109,6 @@ def plot_comparison(comparison: Comparison, *, before: Comparison | None = None)
     before: the figure shows this comparison beside another one, over the variable that carries the
         effect by which their models differ
     """
-    import matplotlib.pyplot as plt
-
     if before is not None and not comparison.prepared.is_curve:
         return _plot_change(before, comparison)
     if comparison.prepared.is_curve:
@@ -132,8 +130,6 @@ def plot_comparison(comparison: Comparison, *, before: Comparison | None = None)
 
 def _plot_change(before: Comparison, after: Comparison) -> Figure:
     """Forces and residual over time, and over what carries the changed effect: before and after."""
-    import matplotlib.pyplot as plt
-
     at = next(iter(after.model.bodies))
     bodies = [one.model.body(at) for one in (before, after)]
     carrier = carrier_of_change(*bodies)
@@ -157,8 +153,6 @@ def plot_simulation(comparison: SimulationComparison) -> Figure:
     Correlations are those of the residual force with itself and with the command, with the band of
     99 %; an arm's figure has none.
     """
-    import matplotlib.pyplot as plt
-
     alone = not comparison.prepared.joints
     layout = "mm;oc" if alone else "mm"
     figure, axes = plt.subplot_mosaic(layout, figsize=(TWO_COLUMNS, 4.2 if alone else 2.3))

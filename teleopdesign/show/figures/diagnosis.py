@@ -15,7 +15,7 @@ from ..registry import shows
 from .carrier import CarryingVariable, carrier_of, with_carrier
 from .friction_curve import curve_graph
 from .graph import draw_graph
-from .style import AFTER, BACKWARD, BEFORE, FORWARD, MEASURED, UNTOLD
+from .style import AFTER, BACKWARD, BEFORE, FORWARD, MEASURED, UNTOLD, plt
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -140,8 +140,6 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
     curves are low-passed forces of the check records (of the fit records if there is no check
     record).
     """
-    import matplotlib.pyplot as plt
-
     if diagnosis.joints:
         return _plot_joints(diagnosis)
     if diagnosis.kind:
@@ -182,8 +180,6 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
 
 def _plot_friction_curve(diagnosis: Diagnosis) -> Figure:
     """The points of a friction curve and the models' curves, the residual, and the ladder."""
-    import matplotlib.pyplot as plt
-
     rows = [residual_data(r.model, diagnosis.prepared) for r in (diagnosis.before, diagnosis.after)]
     changed = len(diagnosis.rungs) > 1
     models = {"your model": diagnosis.fit(diagnosis.before.model)}
@@ -209,8 +205,6 @@ def _plot_joints(diagnosis: Diagnosis) -> Figure:
     The models are those in which all joints agree on the links. The panels over time show the first
     of the records.
     """
-    import matplotlib.pyplot as plt
-
     joints = list(diagnosis.joints)
     ends = [dict(zip(joints, diagnosis.parts(row), strict=True)) for row in (0, -1)]
     height, below = ROW * len(joints) + AROUND, LADDER + RUNG * len(diagnosis.rungs)

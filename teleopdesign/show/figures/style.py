@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable
 from functools import cache, wraps
+from importlib import import_module
 from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, cast
@@ -18,8 +19,19 @@ from ...base.files import write_beside
 
 if TYPE_CHECKING:
     import matplotlib.figure
+    import matplotlib.pyplot as plt
     import numpy as np
     from matplotlib.axes import Axes
+
+else:
+
+    class _Pyplot:
+        """`matplotlib.pyplot`, which is loaded when the first figure is drawn, not with a text."""
+
+        def __getattr__(self, name: str) -> Any:
+            return getattr(import_module("matplotlib.pyplot"), name)
+
+    plt = _Pyplot()
 
 Draw = TypeVar("Draw", bound=Callable[..., Any])
 
@@ -89,8 +101,6 @@ def save_figure(
     path: its suffix is replaced by each of `suffixes`; an older file is replaced only when the new
         file is complete
     """
-    import matplotlib.pyplot as plt
-
     files = [Path(path).with_suffix(suffix) for suffix in suffixes]
     # fonts and resolution are taken when it is drawn; what has no layout keeps none
     layout = {"figure.constrained_layout.use": figure.get_layout_engine() is not None}
@@ -106,8 +116,6 @@ def as_svg(figure: matplotlib.figure.Figure, *, title: str = "", dpi: float = 10
 
     title: alternative text;  dpi: of parts that are drawn as pixels
     """
-    import matplotlib.pyplot as plt
-
     out = StringIO()
     with plt.rc_context({"svg.hashsalt": "teleopdesign"}):  # the same identifiers in every process
         named = {"Title": title} if title else {}
@@ -148,8 +156,6 @@ def in_house_style(draw: Draw) -> Draw:
 
     @wraps(draw)
     def drawn(*arguments: Any, **options: Any) -> Any:
-        import matplotlib.pyplot as plt
-
         with plt.style.context(house_style()):
             return draw(*arguments, **options)
 

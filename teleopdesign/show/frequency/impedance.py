@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...base.sentences import unit_at_axis
-from ..figures.style import CASES, ONE_COLUMN, TWO_COLUMNS, in_house_style
+from ..figures.style import CASES, ONE_COLUMN, TWO_COLUMNS, in_house_style, plt
 from ..registry import shows
 
 if TYPE_CHECKING:
@@ -51,8 +51,6 @@ def panels(columns: PageColumns, count: int = 2) -> tuple[matplotlib.figure.Figu
 
     A third panel is lower than the others.
     """
-    import matplotlib.pyplot as plt
-
     if columns == 2:
         return plt.subplots(1, count, sharex=True, figsize=(TWO_COLUMNS, 2.4))
     heights = [1.0, 1.0, 0.55][:count]

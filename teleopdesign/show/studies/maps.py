@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.errors import ModelError
-from ..figures.style import ONE_COLUMN, TWO_COLUMNS, hatch_region
+from ..figures.style import ONE_COLUMN, TWO_COLUMNS, hatch_region, plt
 from ..registry import shows
 from .data import StudyData, data_of, label, sort_axes, spread
 
@@ -46,8 +46,6 @@ def draw_map(
     marks: Marks,
 ) -> matplotlib.figure.Figure:
     """One map;  along: axes across and up, "" for the default: see `StudyPlots.map`."""
-    import matplotlib.pyplot as plt
-
     study, over = data_of(plots), Overlay(*marks)
     values = study.at(study.measure(measure), at)
     across, up = study.pair(values, *along)
@@ -69,8 +67,6 @@ def draw_panels(
     marks: Marks,
 ) -> matplotlib.figure.Figure:
     """Maps side by side;  along: axes across, up and by: see `StudyPlots.panels`."""
-    import matplotlib.pyplot as plt
-
     study, over = data_of(plots), Overlay(*marks)
     *plane, by = along
     whole = study.measure(measure)

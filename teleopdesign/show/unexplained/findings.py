@@ -19,7 +19,7 @@ from ...unexplained.dependence import ALARM
 from ...unexplained.shapes import SHAPES
 from ..figures.diagnosis import direction_legend
 from ..figures.graph import draw_graph
-from ..figures.style import AFTER, BACKWARD, FORWARD, MEASURED
+from ..figures.style import AFTER, BACKWARD, FORWARD, MEASURED, plt
 from ..registry import shows
 
 if TYPE_CHECKING:
@@ -142,8 +142,6 @@ COLOURS = {
 @shows("figure")
 def plot_unexplained(failure: ResidualDescription) -> Figure:
     """The sentences of all findings, and below them the graphs of each body, dependences first."""
-    import matplotlib.pyplot as plt
-
     panels = [p for part in failure.parts for p in _panels(part, name=len(failure.parts) > 1)]
     lines = [part for one in failure.findings for part in textwrap.wrap(_line(one), LETTERS)]
     rows = math.ceil(len(panels) / COLUMNS)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ....base.files import write_text
-from ..style import as_svg, house_style
+from ..style import as_svg, house_style, plt
 from .shapes import (
     BASELINE,
     FONT,
@@ -38,8 +38,6 @@ LINE = 0.8
 
 def figure(shapes: Sequence[SheetShape], *, width: float, height: float) -> Figure:
     """A matplotlib figure with the shapes on a sheet of that size (points)."""
-    import matplotlib.pyplot as plt
-
     with plt.style.context(house_style()):
         size = width / POINTS_PER_INCH, height / POINTS_PER_INCH
         page = plt.figure(figsize=size, layout="none")
