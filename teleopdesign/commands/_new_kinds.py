@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 import shutil
 import sys
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -87,7 +87,7 @@ def make_diagram(
     stated = split_pairs(options.signal, "--signal", "NAME=COLUMN or NAME=none")
     proposal = propose_channels(diagram, log, file=name, choices=choices, stated=stated)
     if proposal.open and not options.yes and sys.stdin.isatty():
-        stated |= _ask_about(proposal, input)
+        stated |= _ask_about(proposal)
         proposal = propose_channels(diagram, log, file=name, choices=choices, stated=stated)
     title = options.title or name.split(".")[0]
     make_diagram_folder(proposal, options.logs, options.diagram, folder, title=title, spans=spans)
@@ -98,16 +98,18 @@ def make_diagram(
     return 0
 
 
-def _ask_about(proposal: ChannelProposal, ask: Callable[[str], str]) -> dict[str, str]:
+def ask_about(guess: str, kind: str = "value") -> str:
+    """The user's answer to a guess; "" accepts the guess."""
+    return input(f"{guess}\n  Enter accepts this; or type another {kind}: ").strip()
+
+
+def _ask_about(proposal: ChannelProposal) -> dict[str, str]:
     """The user's columns for signals of which another choice is about as likely."""
     stated = {}
     for signal in proposal.open:
         column = proposal.channels[signal]["column"]
         why = proposal.guesses[f"channels.{signal}.column"]
-        text = (
-            f"{signal}: {column!r}: {why}\n  Enter accepts this; or type another column, or none: "
-        )
-        stated[signal] = ask(text).strip() or column
+        stated[signal] = ask_about(f"{signal}: {column!r}: {why}", "column, or none") or column
     return stated
 
 

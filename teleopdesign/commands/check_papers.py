@@ -6,6 +6,7 @@ import argparse
 import shutil
 import textwrap
 from collections import Counter
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
 from ._options import add_output, write_requested
@@ -56,21 +57,23 @@ def _table(results: list[Result], width: int) -> str:
     """Lines for each statement: name, outcome, words, formula, source, place of the code."""
     first, second = 5, 20
     third = width - first - second - 2
-    lines = []
+    lines = [
+        f"{'':<{first}}{'outcome':<{second}}statement; source; code that shows it",
+        "-" * width,
+    ]
     for r in results:
-        s = r.statement
-        cell = [*textwrap.wrap(s.words, third)]
-        for head, text in (("", s.formula), ("printed: ", s.printed), ("given: ", s.assumes)):
-            cell += textwrap.wrap(f"{head}{text}", third, subsequent_indent="  ") if text else []
+        s, cell = r.statement, [*textwrap.wrap(r.statement.words, third)]
+        for word, text in (("", s.formula), ("printed: ", s.printed), ("given: ", s.assumes)):
+            cell += textwrap.wrap(f"{word}{text}", third, subsequent_indent="  ") if text else []
         cell += textwrap.wrap(f"{s.paper.short}, {s.place}; {_code(s)}", third)
-        named = [s.name, *[""] * len(cell)]
-        known = textwrap.wrap(r.outcome, second - 1) + [""] * len(cell)
-        rows = zip(named, known, cell, strict=False)
+        columns = [s.name], textwrap.wrap(r.outcome, second - 1), cell
+        rows = zip_longest(*columns, fillvalue="")
         lines += [f"{a:<{first}}{b:<{second}}{c}".rstrip() for a, b, c in rows]
-        lines += [f"{'':<{first + second}}{why}" for why in _explain_failure(r)]
+        if r.outcome == "failed":
+            why = [*r.details, *(str(f) for f in r.figures if not f.margin >= 0)]
+            lines += [f"{'':<{first + second}}{line}" for line in why]
         lines.append("")
-    head = f"{'':<{first}}{'outcome':<{second}}statement; source; code that shows it"
-    return "\n".join([head, "-" * width, *lines])
+    return "\n".join(lines)
 
 
 def _code(statement: Statement) -> str:
@@ -79,30 +82,22 @@ def _code(statement: Statement) -> str:
     return f"no code, see {', '.join(f'P{n}' for n in statement.see)}"
 
 
-def _explain_failure(result: Result) -> list[str]:
-    if result.outcome != "failed":
-        return []
-    return [*result.details, *(str(f) for f in result.figures if not f.margin >= 0)]
-
-
 def _full(result: Result, width: int) -> str:
     """All information on one statement, with every step and number."""
     s = result.statement
+    code = f"teleopdesign.papers.{s.code}" if s.code else _code(s)
+    parts = [(s.words, 4), (s.formula and f"    {s.formula}", 4), ("\n", 0)]
+    parts += [
+        (s.printed and f"printed: {s.printed}", 9),
+        (s.assumes and f"given:   {s.assumes}", 9),
+    ]
+    parts += [(f"source:  {s.paper.full}; {s.place}", 9), (f"code:    {code}", 9)]
+    parts += [(f"{i:>3}. {step}", 5) for i, step in enumerate(result.details, 1)]
+    parts += [(f"   - {figure}", 5) for figure in result.figures]
     lines = [f"{s.name}  {result.outcome}", ""]
-    for text in (s.words, s.formula and f"    {s.formula}"):
-        lines += textwrap.wrap(text, width, subsequent_indent="    ") if text else []
-    lines.append("")
-    for head, text in (
-        ("printed: ", s.printed),
-        ("given:   ", s.assumes),
-        ("source:  ", f"{s.paper.full}; {s.place}"),
-        ("code:    ", f"teleopdesign.papers.{s.code}" if s.code else _code(s)),
-    ):
-        lines += textwrap.wrap(head + text, width, subsequent_indent=" " * 9) if text else []
-    for i, step in enumerate(result.details, 1):
-        lines += textwrap.wrap(f"{i:>3}. {step}", width, subsequent_indent=" " * 5)
-    for figure in result.figures:
-        lines += textwrap.wrap(f"   - {figure}", width, subsequent_indent=" " * 5)
+    for text, indent in parts:
+        if text:
+            lines += textwrap.wrap(text, width, subsequent_indent=" " * indent) or [""]
     return "\n".join([*lines, ""])
 
 

@@ -67,11 +67,15 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the design of each body; write the requested files."""
+    from ..design import Assumptions
+
     if options.answer is not None:
         check_output(options.answer, (".json",))
     if options.output is not None:
         make_folder(options.output)
-    assumptions = _assumptions(options)
+    names = {f.name for f in fields(Assumptions)}
+    stated = {n: v for n in STATED if (v := getattr(options, n)) is not None and n in names}
+    assumptions = Assumptions(**stated)
     if (whole := diagnosed_diagram(options)) is not None:
         return _run_diagram(whole, assumptions, options)
     experiment = experiment_and_answer(options)
@@ -99,14 +103,6 @@ def _run_diagram(
     print(designs[place])
     _write(designs, options)
     return 0
-
-
-def _assumptions(options: argparse.Namespace) -> Assumptions:
-    from ..design import Assumptions
-
-    names = {f.name for f in fields(Assumptions)}
-    stated = {n: v for n in STATED if (v := getattr(options, n)) is not None and n in names}
-    return Assumptions(**stated)
 
 
 def _places(options: argparse.Namespace, experiment: Experiment) -> list[str]:

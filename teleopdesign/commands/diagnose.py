@@ -206,17 +206,22 @@ def diagnose_all(options: argparse.Namespace) -> int:
     for folder in options.folder:
         if not folder.is_dir():
             raise ExperimentError(f"{folder}: no such folder")
-    from ..studies.folders import FolderSearch, diagnose_folders
+    from ..studies.folders import diagnose_folders
 
     known = effects_by_name(options)
     among = candidate_effects(known, options.only, options.exclude)
-    search = FolderSearch(dict(known), among, options.quick)
     output = make_folder(options.output)
 
     reporter = PointReporter()
     try:
         rows = diagnose_folders(
-            options.folder, output, search=search, workers=options.workers, progress=reporter
+            options.folder,
+            output,
+            known=dict(known),
+            among=among,
+            quick=options.quick,
+            workers=options.workers,
+            progress=reporter,
         )
     except KeyboardInterrupt:
         reporter.clear()

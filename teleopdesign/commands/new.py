@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ..base.errors import ExperimentError
 from ._new_kinds import (
     add_diagram_options,
+    ask_about,
     describe_survey,
     is_curve,
     make_curve,
@@ -139,7 +140,7 @@ def _run(options: argparse.Namespace) -> int:
     survey = survey_logs(logs, files, choices)
     ask = not options.yes and sys.stdin.isatty()
     if ask:
-        choices = _ask_about(survey, choices, input)
+        choices = _ask_about(survey, choices)
         survey = survey_logs(logs, files, choices)
     make_folder(
         survey,
@@ -205,7 +206,7 @@ def _choices(options: argparse.Namespace) -> Choices:
     )
 
 
-def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> Choices:
+def _ask_about(survey: Survey, choices: Choices) -> Choices:
     """The choices, with the user's answers on the guesses; an empty answer accepts a guess."""
     from ..measurement.description import lever_arm, motor_constant, plain_number
 
@@ -220,8 +221,7 @@ def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> C
         name = {"model.device.axis": "axis", "sample_rate": key}.get(key, part)
         if name not in ("unit", "column", "axis", *numbers):
             continue
-        answer = ask(f"{key}: {why}\n  Enter accepts this; or type another value: ").strip()
-        if not answer:
+        if not (answer := ask_about(f"{key}: {why}")):
             continue
         value: Any = numbers[name](answer, where=key) if name in numbers else answer
         if name == "unit":

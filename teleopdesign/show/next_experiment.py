@@ -11,7 +11,7 @@ from ..base.units import si_factor
 from ..diagnose.noise_floor import say_floors
 from ..next_experiment.prediction import DECIDES, SAME
 from .figures.graph import draw_graph
-from .figures.style import plt
+from .figures.style import AFTER, BEFORE, MEASURED, plt
 from .registry import shows
 
 if TYPE_CHECKING:
@@ -230,9 +230,6 @@ def paths_text(paths: ArmPaths) -> str:
     return f"no path is better than the present records: {text}"
 
 
-TRUTH, OTHER, NOW = "0.55", "#D55E00", "#0072B2"
-
-
 @shows("figure")
 def plot_proposal(proposal: Proposal) -> Figure:
     """The proposed motion, the force that a wrong model would leave, and the separation of rivals.
@@ -261,8 +258,8 @@ def _plot_separation(ax: Axes, proposal: Proposal) -> None:
     """Force left for the best separated pair: of the wrong model and of the right model."""
     widest = max(proposal.separations, key=lambda s: s.predicted)
     curves = proposal.curves[proposal.separations.index(widest)]
-    ax.plot(curves.time, curves.left, lw=0.8, color=OTHER, label=f"{widest.other} (wrong)")
-    ax.plot(curves.time, curves.noise, lw=0.8, color=TRUTH, label=f"{widest.truth} (right)")
+    ax.plot(curves.time, curves.left, lw=0.8, color=BEFORE, label=f"{widest.other} (wrong)")
+    ax.plot(curves.time, curves.noise, lw=0.8, color=MEASURED, label=f"{widest.truth} (right)")
     ax.set(xlabel="time (s)", ylabel=f"force left ({curves.unit})")
     ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
 
@@ -273,14 +270,14 @@ def _separations(ax: Axes, proposal: Proposal) -> None:
         [i - 0.18 for i in rows],
         [s.predicted for s in proposal.separations],
         height=0.34,
-        color=OTHER,
+        color=BEFORE,
         label="with the proposed records (predicted)",
     )
     ax.barh(
         [i + 0.18 for i in rows],
         [s.present for s in proposal.separations],
         height=0.34,
-        color=NOW,
+        color=AFTER,
         label="on the present records",
     )
     ax.axvline(1.0, color="k", lw=0.6, ls="--")

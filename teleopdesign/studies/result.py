@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -125,10 +126,9 @@ def read_study(path: str | Path) -> Study:
     attributes = [data.attrs.get(n) for n in ("study", "model", "axes")]
     if REASON not in data or not all(isinstance(text, str) for text in attributes):
         raise ExperimentError(f"{path}: holds no study")
-    try:
+    axes = None
+    with suppress(ValueError, RecursionError):
         axes = json.loads(data.attrs["axes"])
-    except (ValueError, RecursionError):
-        axes = None
     if not isinstance(axes, list) or not all(isinstance(a, str) and a in data for a in axes):
         raise ExperimentError(f"{path}: axes: expected a list of names of variables, as JSON")
     return Study(data)

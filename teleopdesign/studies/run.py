@@ -152,7 +152,9 @@ def _with_file(
         part = target.with_name(f"{target.name}.part")
         if target.exists():
             stored = _load_stored(target, key)
-            _remove_finished(part, key, len(task.points))
+            with suppress(ExperimentError):  # of another study, or in use: it is kept
+                if part.exists():  # a kill between the file and the end of its journal
+                    Journal(part, key, len(task.points)).remove()
             _write_words(stored, words)
             return stored
         if not target.parent.is_dir():
@@ -208,16 +210,6 @@ def _load_stored(target: Path, key: str) -> Study:
             "another file, or remove it"
         )
     return stored
-
-
-def _remove_finished(part: Path, key: str, points: int) -> None:
-    """Remove the journal of a study that is complete in its file, after a kill between both steps.
-
-    A journal of another study, or one that another process writes, is kept.
-    """
-    if part.exists():
-        with suppress(ExperimentError):
-            Journal(part, key, points).remove()
 
 
 def _write_words(result: Study, words: _Words) -> None:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from ...base.sentences import unit_at_axis, with_standard_error
 from ...base.units import unit_of
+from ..figures.graph import draw_interval
 from ..figures.style import CASES, TWO_COLUMNS, plt
-from ..frequency.impedance import draw_interval, keep_scale
+from ..frequency.impedance import keep_scale
 from ..registry import shows
 from .headline import headline
 

@@ -71,16 +71,11 @@ def draw_by_direction(ax: Axes, data: Any, over: str) -> None:
     ax.set_ylabel(label_of(data, "residual"))
 
 
-def _runs(data: Any) -> list[slice]:
-    """Slices of consecutive samples of one record and segment; no line joins two segments."""
-    segment = data["segment"].values
-    edges = [0, *(np.flatnonzero(np.diff(segment)) + 1), len(segment)]
-    return [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)]
-
-
 def draw_over_time(ax: Axes, data: Any, name: str, color: str, label: str, width: float) -> None:
     """A variable of the data over time; width: line width (points)."""
-    for i, run in enumerate(_runs(data)):
+    # no line joins two segments
+    edges = np.flatnonzero(np.diff(data["segment"].values)) + 1
+    for i, run in enumerate(np.split(np.arange(data.sizes["sample"]), edges)):
         ax.plot(
             data["time"].values[run],
             data[name].values[run],

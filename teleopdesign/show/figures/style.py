@@ -19,10 +19,11 @@ from ...base.files import write_beside
 
 if TYPE_CHECKING:
     import matplotlib.figure
-    import matplotlib.pyplot as plt
+    import matplotlib.pyplot
     import numpy as np
     from matplotlib.axes import Axes
 
+    plt = matplotlib.pyplot
 else:
 
     class _Pyplot:

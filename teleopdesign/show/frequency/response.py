@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...base.sentences import unit_at_axis
+from ..figures.graph import draw_interval
 from ..figures.style import ONE_COLUMN, TWO_COLUMNS, plt
 from ..registry import shows
 from .impedance import (
     PageColumns,
-    draw_interval,
     keep_scale,
     legend_below,
     look,

@@ -115,6 +115,8 @@ def _draw_mesh(
     up: str,
     limits: tuple[float, float],
 ) -> Any:
+    from matplotlib.ticker import FixedLocator, MaxNLocator
+
     study.label_axis(axis, "x", across)
     study.label_axis(axis, "y", up)
     field = values.transpose(up, across).values  # infinite values have the colours of the ends
@@ -137,7 +139,8 @@ def _draw_mesh(
         if places is not values_of:
             one.set_ticks(places, labels=[str(value) for value in values_of])
         elif scale == "linear":
-            _place_ticks(one, places)
+            few = len(places) <= _FEW_TICKS  # else some, so that labels are apart
+            one.set_major_locator(FixedLocator(places) if few else MaxNLocator(_FEW_TICKS))
     return mesh
 
 
@@ -153,14 +156,6 @@ def _borders(values: np.ndarray, scale: str) -> np.ndarray:
     middle = at[:-1] + 0.5 * apart[: len(at) - 1]
     borders = np.concatenate([[at[0] - 0.5 * apart[0]], middle, [at[-1] + 0.5 * apart[-1]]])
     return np.exp(borders) if scale == "log" else borders
-
-
-def _place_ticks(axis: Any, values: np.ndarray) -> None:
-    """Ticks at the values of a linear axis if they are few, else some, so that labels are apart."""
-    from matplotlib.ticker import FixedLocator, MaxNLocator
-
-    few = len(values) <= _FEW_TICKS
-    axis.set_major_locator(FixedLocator(values.tolist()) if few else MaxNLocator(_FEW_TICKS))
 
 
 def _draw_marks(
