@@ -158,7 +158,7 @@ def shows(
 
     def made(function: Callable[[], StatementEvidence]) -> Statement:
         texts = _PART.split(inspect.getdoc(function) or "")
-        words, *parts = (" ".join(text.split()) for text in texts)
+        words, *parts = (" ".join(map(str.strip, text.strip().splitlines())) for text in texts)
         named = dict(zip(parts[::2], parts[1::2], strict=True))
         more = named.get("formula", ""), named.get("printed", ""), named.get("assumes", "")
         return Statement(number, paper, place, words, how, function, *more, numbers)

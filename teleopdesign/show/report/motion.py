@@ -66,18 +66,12 @@ def plot_over_carrier(
     quantity = "force" if carrier.name == "command" else carrier.name
     places = carrier.values(vars(rows))
     scale = choose_prefix(quantity, axis, size_of(places))
-    series = [
-        Series(
-            name=name,
-            x=scale.factor * np.array([p[0] for p in profile]),
-            y=force.factor * np.array([p[1] for p in profile]),
-            kind="model",
-            low=force.factor * np.array([p[2] for p in profile]),
-            high=force.factor * np.array([p[3] for p in profile]),
-        )
-        for name, r in _first_and_last(rows.residual)
-        if (profile := _profile(rows, places, r))
-    ]
+    series = []
+    for name, residual in _first_and_last(rows.residual):
+        if profile := _profile(rows, places, residual):
+            place, *force_lines = np.array(profile).T
+            mean, low, high = (force.factor * line for line in force_lines)
+            series.append(Series(name, scale.factor * place, mean, "model", low, high))
     label = f"residual force ({force.unit})"
     return Graph(f"{carrier.label(axis)} ({scale.unit})", label, tuple(series))
 
@@ -119,6 +113,7 @@ def excerpt(rows: BodySamples, axis: str, bandwidth: float) -> Graph:
 
 
 def _window(rows: BodySamples, bandwidth: float) -> NDArray[np.intp]:
+    """Rows of a window of one stretch: that in which the residual decreased most for its force."""
     gain = rows.residual[0] ** 2
     if len(rows.residual) > 1:
         gain = gain - rows.residual[-1] ** 2
@@ -126,24 +121,17 @@ def _window(rows: BodySamples, bandwidth: float) -> NDArray[np.intp]:
     least = QUIET * float(np.mean(force))
     best, window = -np.inf, np.arange(len(rows.time))
     for number in np.unique(rows.stretch):
-        of_stretch = np.flatnonzero(rows.stretch == number)
-        step = float(np.median(np.diff(rows.time[of_stretch]))) if len(of_stretch) > 1 else 1.0
-        length = max(2, int(min(PERIODS / bandwidth, PART * len(of_stretch) * step) / step))
-        if len(of_stretch) < length:
+        here = np.flatnonzero(rows.stretch == number)
+        step = float(np.median(np.diff(rows.time[here]))) if len(here) > 1 else 1.0
+        length = max(2, int(min(PERIODS / bandwidth, PART * len(here) * step) / step))
+        if len(here) < length:
             continue
-        share = _moving_mean(gain[of_stretch], length) / (
-            _moving_mean(force[of_stretch], length) + least
-        )
+        gained, pushed = (np.convolve(x[here], np.ones(length), "valid") for x in (gain, force))
+        share = gained / (pushed + length * least)
         if share.max() > best:
             start = int(np.argmax(share))
-            best, window = float(share.max()), of_stretch[start : start + length]
+            best, window = float(share.max()), here[start : start + length]
     return window
-
-
-def _moving_mean(values: Array, length: int) -> Array:
-    """Mean of each window of `length` samples."""
-    sums = np.concatenate([[0.0], np.cumsum(values)])
-    return np.asarray((sums[length:] - sums[:-length]) / length)
 
 
 @dataclass(frozen=True)

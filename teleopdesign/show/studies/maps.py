@@ -140,7 +140,7 @@ def _draw_mesh(
             one.set_ticks(places, labels=[str(value) for value in values_of])
         elif scale == "linear":
             few = len(places) <= _FEW_TICKS  # else some, so that labels are apart
-            one.set_major_locator(FixedLocator(places) if few else MaxNLocator(_FEW_TICKS))
+            one.set_major_locator(FixedLocator(places.tolist()) if few else MaxNLocator(_FEW_TICKS))
     return mesh
 
 
