@@ -149,7 +149,12 @@ WIDTH = 100
 def wrap(text: str, *, first: str = "", rest: str = "", width: int = WIDTH) -> str:
     """The text in lines of a width;  first, rest: indents of the first line and of the others."""
     return textwrap.fill(
-        text, width, initial_indent=first, subsequent_indent=rest, break_on_hyphens=False
+        text,
+        width,
+        initial_indent=first,
+        subsequent_indent=rest,
+        break_on_hyphens=False,
+        break_long_words=False,
     )
 
 

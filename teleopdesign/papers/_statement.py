@@ -78,6 +78,11 @@ class Numbers:
         return ()
 
 
+def numbers_of(*figures: Figure) -> Numbers:
+    """These numbers."""
+    return Numbers(figures)
+
+
 StatementEvidence = ProofSteps | Correction | Numbers
 
 

@@ -14,7 +14,7 @@ from ..diagrams import haptic_interface
 from ..simulate import Trajectory, simulate
 from ._laws import dahl_rate, dahl_step
 from ._proof import Correction, Equal, Grows, Holds, NotNegative, ProofStep, ProofSteps, proof
-from ._statement import MAHVASH, Numbers, figure_near, shows
+from ._statement import MAHVASH, Numbers, figure_near, numbers_of, shows
 
 f, v, new = sp.symbols("f v f_next", real=True)
 f_c, sigma, T, q, d, e = sp.symbols("f_c sigma T q d e", positive=True)
@@ -162,9 +162,8 @@ def sampled_compensator() -> Numbers:
         step = dahl_step(f, d, 1 if dx >= 0 else -1, f_c, sigma)
         force = float(step.subs({f: force, d: abs(dx), f_c: level, sigma: stiffness}))
         worst = max(worst, abs(float(sampled) - force))
-    return Numbers(
-        (figure_near("largest difference", worst, 0.0, 1e-13, "N"),)
-    )  # rounding of doubles
+    # rounding of doubles
+    return numbers_of(figure_near("largest difference", worst, 0.0, 1e-13, "N"))
 
 
 @shows(31, MAHVASH, "eq (9)", numbers=sampled_compensator)

@@ -19,7 +19,7 @@ from ..effects import EFFECTS
 from ..simulate import Trajectory, simulate
 from ._laws import dahl_rate, dahl_step
 from ._proof import Correction, Equal, Holds, NotNegative, ProofSteps, proof
-from ._statement import DERIVED, Figure, Numbers, shows
+from ._statement import DERIVED, Figure, Numbers, numbers_of, shows
 from .dahl_loop import BEND, BENDS, SHARE
 
 f_D, sigma, f_1, f_2, k, u = sp.symbols("f_D sigma_D f_1 f_2 k u", positive=True)
@@ -53,11 +53,9 @@ def stepping_motor() -> Numbers:
     plain = energy_of_cycle((0.5, -0.5))
     # a percent of what friction takes: the contact gives before it slides
     within = 0.01 * 2 * FRICTION
-    return Numbers(
-        (
-            Figure("plain cycle, f_1 = 1/12 f_D, u_2 = 1/2", plain, high=-within, unit="J"),
-            Figure("with a step of 0.1 at each reversal", steps, low=within, unit="J"),
-        )
+    return numbers_of(
+        Figure("plain cycle, f_1 = 1/12 f_D, u_2 = 1/2", plain, high=-within, unit="J"),
+        Figure("with a step of 0.1 at each reversal", steps, low=within, unit="J"),
     )
 
 

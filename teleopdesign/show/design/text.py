@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from typing import TYPE_CHECKING
 
-from ...base.sentences import unit_at_axis, with_standard_error
+from ...base.sentences import WIDTH, unit_at_axis, with_standard_error, wrap
 from ...base.units import unit_of
 from ..figures.graph import draw_interval
 from ..figures.style import CASES, TWO_COLUMNS, plt
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
     from ...design.prediction import FeltImpedance
 
 
-WIDTH = 100
 #: every tenth speed of the residual friction is printed: half a decade apart
 SHOWN = 10
 
@@ -49,9 +47,7 @@ def _wrap(line: str) -> str:
     if len(line) <= WIDTH:
         return line
     indent = " " * (len(line) - len(line.lstrip()) + 2)
-    return textwrap.fill(
-        line, WIDTH, subsequent_indent=indent, break_on_hyphens=False, break_long_words=False
-    )
+    return wrap(line, rest=indent)
 
 
 def _friction(design: Design) -> list[str]:

@@ -118,7 +118,8 @@ def as_svg(figure: matplotlib.figure.Figure, *, title: str = "", dpi: float = 10
     title: alternative text;  dpi: of parts that are drawn as pixels
     """
     out = StringIO()
-    with plt.rc_context({"svg.hashsalt": "teleopdesign"}):  # the same identifiers in every process
+    # the same identifiers in every process; text stays text: small, and sharp at every size
+    with plt.rc_context({"svg.hashsalt": "teleopdesign", "svg.fonttype": "none"}):
         named = {"Title": title} if title else {}
         figure.savefig(out, format="svg", metadata={"Date": None, **named}, dpi=dpi)
     plt.close(figure)

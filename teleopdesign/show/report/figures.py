@@ -179,7 +179,6 @@ def impedance_figure(view: ImpedanceView) -> Markup:
 
 #: settings of matplotlib for pictures of a page, besides the house style
 SETTINGS: Any = {
-    "svg.fonttype": "none",  # text stays text: small, and sharp at every size
     "text.parse_math": False,  # a name from a file may hold a dollar sign
     "axes.formatter.use_mathtext": False,
     "axes.formatter.limits": (-4, 5),
