@@ -134,7 +134,8 @@ def refuse_options(options: argparse.Namespace, names: Iterable[str], why: str) 
     names: as the options are stored;  why: words after the option
     """
     for name in names:
-        if getattr(options, name, None) not in (None, False, []):
+        value = getattr(options, name, None)
+        if not (value is None or value is False or value == []):
             raise ExperimentError(f"--{name.replace('_', '-')}: {why}")
 
 
@@ -146,11 +147,13 @@ def require_positive(options: argparse.Namespace, names: Iterable[str], unit: st
             raise ExperimentError(f"--{name}: found {value:g}, expected more than 0{unit}")
 
 
-def split_pairs(texts: Iterable[str], option: str, form: str = "NAME=VALUE") -> dict[str, str]:
-    """Name -> value of texts "NAME=VALUE"; the last sign of equality separates both."""
+def split_pairs(
+    texts: Iterable[str], option: str, form: str = "NAME=VALUE", *, at_last: bool = False
+) -> dict[str, str]:
+    """Name -> value of texts "NAME=VALUE";  at_last: the name may hold signs of equality."""
     pairs = {}
     for text in texts:
-        name, sign, value = (part.strip() for part in text.rpartition("="))
+        name, sign, value = text.rpartition("=") if at_last else text.partition("=")
         if not (sign and name and value):
             raise ExperimentError(f"{option}: found {text!r}, expected {form}")
         pairs[name] = value

@@ -44,8 +44,8 @@ def diagnose_diagram(experiment: DiagramExperiment, options: argparse.Namespace)
     write_requested(
         options,
         {
-            "report": lambda path: write_block_report(diagnosis, path),
             "json": lambda path: write_answer(diagnosis, path),
+            "report": lambda path: write_block_report(diagnosis, path),
         },
         figure=diagnosis.plot,
     )

@@ -125,9 +125,9 @@ def run(options: argparse.Namespace) -> int:
     write_requested(
         options,
         {
-            "report": lambda path: write_page(diagnosis, path, simulation),
             "json": lambda path: write_answer(diagnosis, path, simulation=simulation),
             "predictions": lambda path: write_predictions(diagnosis, path),
+            "report": lambda path: write_page(diagnosis, path, simulation),
         },
         figure=diagnosis.plot,
     )

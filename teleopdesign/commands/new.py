@@ -200,7 +200,7 @@ def _choices(options: argparse.Namespace) -> Choices:
         **{name: getattr(options, name) for name in same},
         actuator_force=options.force,
         interaction_force=options.hand,
-        units=split_pairs(options.unit, "--unit", "COLUMN=UNIT"),
+        units=split_pairs(options.unit, "--unit", "COLUMN=UNIT", at_last=True),
         torque_constant=constant and motor_constant(constant, where="--torque-constant"),
         lever_arm=arm and lever_arm(arm, where="--lever-arm"),
     )

@@ -114,7 +114,8 @@ def _case(options: argparse.Namespace) -> SimulatedCase:
 def _values(texts: list[str], case: SimulatedCase) -> dict[str, float]:
     """Values by name, in SI, of texts such as "C.dahl.level=0.8N"."""
     values = {}
-    for name, value in split_pairs(texts, "--value").items():
+    for text, value in split_pairs(texts, "--value").items():
+        name = text.strip()
         case.check_names([name])
         values[name] = value_in(value, unit=case.unit(name), where=f"--value {name}")
     return values
