@@ -264,9 +264,9 @@ def test_a_column_of_the_table_of_candidates_is_one_line(copy, tmp_path):
     run(copy, "diagnose", str(td.example("rod")), *few, "--json", str(answer))
     table = copy / ROOT.name / "show/report/candidate_table.py"
     before = table.read_text(encoding="utf-8")
-    line = 'COLUMNS = (NumberColumn("throw-away", lambda one: 100.0 * one.check_error),'
+    line = '= {"throw-away": (lambda one: 100.0 * one.check_error, 0.0), "probability": ('
     try:
-        table.write_text(before.replace("COLUMNS = (", line), encoding="utf-8")
+        table.write_text(before.replace('= {\n    "probability": (', line), encoding="utf-8")
         run(copy, "report", str(answer))
     finally:
         table.write_text(before, encoding="utf-8")

@@ -15,7 +15,7 @@ from ..diagnose.comparison import residual_data
 from ..diagnose.evidence import floors_left, is_adequate
 from ..diagnose.noise_floor import say_floors
 from ..show.figures.carrier import carrier_of_change, with_carrier
-from ..show.report.parameter_table import correlation_rows
+from ..show.report.tables import correlation_rows
 from .workbench import Workbench
 
 if TYPE_CHECKING:
@@ -141,7 +141,7 @@ def correlations(bench: Workbench) -> str:
     numbers = [str(k + 1) for k in range(len(rows))]
     head = f"| correlation of the estimates | {' | '.join(numbers)} |"
     lines = [
-        f"| {k} `{row.name}` | {' | '.join(f'{r:.2f}' for r in row.values)} |"
+        f"| {k} `{row['name']}` | {' | '.join(f'{r:.2f}' for r in row['values'])} |"
         for k, row in zip(numbers, rows, strict=True)
     ]
     return "\n".join([head, f"|:---|{'---:|' * len(rows)}", *lines])

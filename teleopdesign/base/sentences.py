@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+import textwrap
 from collections.abc import Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
@@ -139,6 +140,22 @@ def duration_text(seconds: float) -> str:
         return f"{seconds / 60:.0f} min"
     hours = seconds / 3600
     return f"{hours:.3g} h" if hours < 48 else f"{hours / 24:.3g} days"
+
+
+#: columns of a line of text
+WIDTH = 100
+
+
+def wrap(text: str, *, first: str = "", rest: str = "", width: int = WIDTH) -> str:
+    """The text in lines of a width;  first, rest: indents of the first line and of the others."""
+    return textwrap.fill(
+        text,
+        width,
+        initial_indent=first,
+        subsequent_indent=rest,
+        break_on_hyphens=False,
+        break_long_words=False,
+    )
 
 
 def join_names(names: Sequence[str], last: str = "and") -> str:

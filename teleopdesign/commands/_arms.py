@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError, unknown
-from ._options import value_from
+from ._options import add_repeated, split_pairs, value_from
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis
@@ -22,31 +23,27 @@ def add_body(parser: argparse.ArgumentParser, *, pose: bool = False) -> None:
         help="one body of a teleoperator, or one joint of an arm (required for an arm)",
     )
     if pose:
-        parser.add_argument(
+        add_repeated(
+            parser,
             "--pose",
-            action="append",
-            default=[],
-            metavar="JOINT=VALUE[UNIT]",
-            help="for an arm: position of a joint in the pose for which the inertia of the chosen "
-            "joint is computed (may be repeated); a joint without a position is at 0; without "
-            "--pose, the inertia is the mean over the recorded poses",
+            "JOINT=VALUE[UNIT]",
+            "for an arm: position of a joint in the pose for which the inertia of the chosen joint "
+            "is computed; a joint without a position is at 0; without --pose, the inertia is the "
+            "mean over the recorded poses",
         )
 
 
-def joint_of(experiment: Experiment, options: argparse.Namespace) -> str:
-    """The joint of an arm that the options name.
+def chosen_body(bodies: Iterable[str], options: argparse.Namespace, where: object) -> str:
+    """The body, or the joint of an arm, that the options name; by default the only one.
 
-    raises ExperimentError: the options name no joint, or none of this arm; it lists all joints
+    raises ExperimentError: no such body, or several ones and none is chosen; it lists all of them
     """
-    joints, chosen = list(experiment.bodies), options.body
-    if chosen is None:
-        raise ExperimentError(
-            f"{experiment.folder.name}: an arm with joints {', '.join(joints)}: choose one with "
-            "--body"
-        )
-    if chosen not in joints:
-        raise ExperimentError(f"--body: {unknown('joint', chosen, joints)}")
-    return str(chosen)
+    known, chosen = list(bodies), options.body
+    if chosen is None and len(known) > 1:
+        raise ExperimentError(f"{where}: {', '.join(known)}: choose one with --body")
+    if chosen is not None and chosen not in known:
+        raise ExperimentError(f"--body: {unknown('body', chosen, known)}")
+    return chosen or known[0]
 
 
 def place_at_pose(diagnosis: Diagnosis, joint: str, options: argparse.Namespace) -> Model:
@@ -86,13 +83,12 @@ def place_at_pose(diagnosis: Diagnosis, joint: str, options: argparse.Namespace)
 def _read_pose(texts: list[str], experiment: Experiment) -> dict[str, float]:
     """Joint -> position (SI), from texts JOINT=VALUE[UNIT]."""
     pose, joints = {}, list(experiment.bodies)
-    for text in texts:
-        joint, _, value = text.partition("=")
+    for joint, value in split_pairs(texts, "--pose", "JOINT=VALUE").items():
+        where = f"--pose {joint}={value}"
         if joint not in joints:
-            raise ExperimentError(f"--pose {text}: {unknown('joint', joint, joints)}")
-        pose[joint] = value_from(
-            value, quantity="position", axis=experiment.axis(joint), where=f"--pose {text}"
-        )
+            raise ExperimentError(f"{where}: {unknown('joint', joint, joints)}")
+        axis = experiment.axis(joint)
+        pose[joint] = value_from(value, quantity="position", axis=axis, where=where)
     return pose
 
 

@@ -6,13 +6,12 @@ Passivity at the ports of a diagram from a file, or of a shipped diagram.
 from __future__ import annotations
 
 import argparse
-import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.files import write_json
-from ._options import say_written
+from ..base.sentences import wrap
+from ._options import write_requested
 from .derive import diagram_of
 
 if TYPE_CHECKING:
@@ -21,8 +20,8 @@ if TYPE_CHECKING:
     from ..simulate import Sampling
 
 
-#: columns of the terminal
-WIDTH = 100
+#: before the texts of a claim
+SPACE = " " * 10
 
 
 def claim_lines(claims: Sequence[TopicClaim]) -> list[str]:
@@ -30,17 +29,11 @@ def claim_lines(claims: Sequence[TopicClaim]) -> list[str]:
     lines = []
     for one in claims:
         lines += ["", f"{one.heading:<9} {one.topic}"]
-        lines += _wrap_text(one.claim.statement) + _wrap_text(str(one.claim.verdict))
+        texts = [one.claim.statement, str(one.claim.verdict)]
         if one.motion is not None:
-            lines += _wrap_text(f"replayed in simulation: releases {one.replayed:.4g} J")
+            texts.append(f"replayed in simulation: releases {one.replayed:.4g} J")
+        lines += [wrap(text, first=SPACE, rest=SPACE) for text in texts]
     return lines
-
-
-def _wrap_text(text: str) -> list[str]:
-    space = " " * 10
-    return textwrap.wrap(
-        text, WIDTH, initial_indent=space, subsequent_indent=space, break_on_hyphens=False
-    )
 
 
 def claim_data(entry: TopicClaim) -> dict[str, Any]:
@@ -57,10 +50,6 @@ def claim_data(entry: TopicClaim) -> dict[str, Any]:
         "motion": claim.record.as_dict() if claim.status == "refuted" else None,
         "replayed": None if entry.motion is None else entry.motion.as_dict(),
     }
-
-
-#: options that describe a compensator or choose a body of a diagnosis
-BESIDE_A_DIAGRAM = ("answer", "body", "dahl", "smoothed-coulomb", "wall")
 
 
 def is_diagram(source: Path) -> bool:
@@ -82,15 +71,13 @@ def settle_diagram(options: argparse.Namespace, computer: Sampling | None) -> in
     diagram = diagram_of(str(options.source), options.effect, options.law)
     claims = diagram_claims(diagram, rng=np.random.default_rng(1), search=search)
     print(_text(claims))
-    if options.json is not None:
-        content = {
-            "diagram": repr(claims.diagram),
-            "ports": [str(port) for port in claims.ports],
-            "nonlinear": list(claims.nonlinear),
-            "claims": [claim_data(s) for s in claims.claims],
-        }
-        write_json(options.json, content)
-    say_written(options.json)
+    content = {
+        "diagram": repr(claims.diagram),
+        "ports": [str(port) for port in claims.ports],
+        "nonlinear": list(claims.nonlinear),
+        "claims": [claim_data(s) for s in claims.claims],
+    }
+    write_requested(options, json=lambda: content)
     return 0
 
 

@@ -26,7 +26,8 @@ import teleopdesign
 
 from .. import __version__, commands
 from ..base.errors import TeleopDesignError, did_you_mean, printable
-from ._options import check_outputs, check_paths, inputs, python_files
+from ._options import check_outputs
+from ._paths import check_paths, inputs, python_files
 from ._terminal import plain_warnings, printable_streams
 
 #: exit status of bad input, and of a mistake of the package (EX_SOFTWARE of sysexits.h)

@@ -13,8 +13,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..base.errors import ExperimentError, ModelError, unknown
-from ._arms import inertia_line, joint_of, place_at_pose
+from ..base.errors import ExperimentError, ModelError
+from ._arms import chosen_body, inertia_line, place_at_pose
 from ._terminal import Reporter, print_styled
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def experiment_and_answer(options: argparse.Namespace) -> Experiment:
 
 def answer_in(path: Path) -> Path | None:
     """A path that is an answer, or answer.json of a folder without experiment; else None."""
-    if path.suffix == ".json" and path.is_file():
+    if path.suffix == ".json" and not path.is_dir():
         return path
     saved = path / "answer.json"
     if saved.is_file() and not (path / "experiment.toml").exists():
@@ -128,7 +128,7 @@ def diagnosis_of_part(experiment: Experiment, options: argparse.Namespace) -> Di
     """As `diagnosis_of`; of an arm that of the joint that the options name."""
     if experiment.arm is None:
         return diagnosis_of(experiment, options)
-    joint = joint_of(experiment, options)
+    joint = chosen_body(experiment.bodies, options, experiment.folder.name)
     return diagnosis_of(experiment, options).joints[joint]
 
 
@@ -178,30 +178,42 @@ def print_diagnosis(text: str) -> None:
     print_styled(text, style)
 
 
-def model_of_source(options: argparse.Namespace) -> tuple[Model, Path]:
-    """The diagnosed model, and the answer or folder from which it comes; for an arm, of one joint.
+def read_source(
+    options: argparse.Namespace, *, one_body: bool
+) -> tuple[Diagnosis, Experiment | None]:
+    """The diagnosis of the options' answer or folder; None: an answer alone needs no records.
 
-    An answer alone (.json) needs no records. A folder without an answer is diagnosed now.
+    one_body: one body must be chosen; a wrong choice is refused before any diagnosis
     """
     from ..diagnose import load_answer
 
     alone = answer_in(options.folder)
     if alone is not None and options.answer is None:
-        diagnosis, source = load_answer(alone, effects_by_name(options)), alone
-    else:
-        experiment = experiment_and_answer(options)
-        diagnosis = diagnosis_of(experiment, options)
-        source = options.folder if options.answer is None else options.answer
+        options.answer = alone
+        return load_answer(alone, effects_by_name(options)), None
+    experiment = experiment_and_answer(options)
+    if one_body or options.body is not None or experiment.arm is not None:
+        chosen_body(experiment.bodies, options, options.folder)
+    return diagnosis_of(experiment, options), experiment
+
+
+def model_of_source(options: argparse.Namespace) -> tuple[Model, Path]:
+    """The diagnosed model, and the answer or folder from which it comes; for an arm, of one joint.
+
+    An answer alone (.json) needs no records. A folder without an answer is diagnosed now.
+    """
+    diagnosis, _ = read_source(options, one_body=False)
+    source = options.answer or options.folder
     if options.body is None and not diagnosis.joints:
         return diagnosis.model, source
-    return model_at_place(diagnosis, source, options), source
+    return model_at_place(diagnosis, options), source
 
 
-def model_at_place(diagnosis: Diagnosis, source: Path, options: argparse.Namespace) -> Model:
+def model_at_place(diagnosis: Diagnosis, options: argparse.Namespace) -> Model:
     """The final model of one body; for a joint of an arm, at the pose that the options state."""
     from ..diagnose.model_data import model_of_body
 
-    place = _place(list(diagnosis.model.bodies), source, options.body)
+    place = chosen_body(diagnosis.model.bodies, options, options.answer or options.folder)
     if diagnosis.joints:
         return place_at_pose(diagnosis, place, options)
     return model_of_body(diagnosis.model, place)
@@ -217,25 +229,20 @@ def body_of_source(source: Path, options: argparse.Namespace) -> tuple[Body, Rea
         of its friction rest on
     """
     from ..design.assumptions import reach_of
-    from ..diagnose import load_answer
 
-    if source.suffix == ".json" and not source.is_dir():
-        if options.answer is not None:
-            raise ExperimentError(f"--answer: found beside {source}, which is an answer itself")
-        diagnosis = load_answer(source, effects_by_name(options))
-        ((place, body),) = model_at_place(diagnosis, source, options).bodies.items()
-        return body, None, basis_of(diagnosis, place)
-    experiment = experiment_of(source)
-    place = _place(list(experiment.bodies), source, options.body)
-    diagnosis = diagnosis_of(experiment, options)
+    options.folder = source
+    diagnosis, experiment = read_source(options, one_body=True)
     if options.answer is None:
         print_diagnosis(str(diagnosis))
         print()
-    model = model_at_place(diagnosis, source, options)
+    model = model_at_place(diagnosis, options)
+    ((place, body),) = model.bodies.items()
+    if experiment is None:
+        return body, None, basis_of(diagnosis, place)
     if diagnosis.joints:
         print(inertia_line(model, place, options))
         experiment = diagnosis.joints[place].experiment
-    return model.bodies[place], reach_of(experiment, place), basis_of(diagnosis, place)
+    return body, reach_of(experiment, place), basis_of(diagnosis, place)
 
 
 def basis_of(diagnosis: Diagnosis, place: str) -> Basis:
@@ -257,15 +264,3 @@ def basis_of(diagnosis: Diagnosis, place: str) -> Basis:
             pass  # no records: the limits then say that none is certain
     shown = FrictionCells(cells) if cells else None
     return Basis(diagnosis.verdict, diagnosis.left, is_adequate, shown)
-
-
-def _place(bodies: list[str], source: Path, body: str | None) -> str:
-    """The place of the chosen body; by default the only body.
-
-    raises ExperimentError: no such body, or several bodies and none is chosen
-    """
-    if body is None and len(bodies) > 1:
-        raise ExperimentError(f"{source}: bodies {', '.join(bodies)}: choose one with --body")
-    if body is not None and body not in bodies:
-        raise ExperimentError(f"--body: {unknown('body', body, bodies)}")
-    return body or bodies[0]

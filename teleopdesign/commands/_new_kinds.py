@@ -9,13 +9,13 @@ from __future__ import annotations
 import argparse
 import shutil
 import sys
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
 from ..base.files import read_whole, write_text
-from ._options import shell_word
+from ._options import add_repeated, refuse_options, shell_word, split_pairs
 
 if TYPE_CHECKING:
     from ..block_cuts import ChannelProposal
@@ -42,13 +42,8 @@ def add_diagram_options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="compare this diagram, not one body",
     )
-    parser.add_argument(
-        "--signal",
-        action="append",
-        default=[],
-        metavar="NAME=COLUMN",
-        help="the column of a signal of the diagram, or none (may be repeated)",
-    )
+    text = "the column of a signal of the diagram, or none"
+    add_repeated(parser, "--signal", "NAME=COLUMN", text)
 
 
 def say_what_stops(experiment: Experiment) -> None:
@@ -85,17 +80,14 @@ def make_diagram(
 
     if options.diagram is None:
         raise ExperimentError("--signal: is for signals of a diagram, expected --diagram FILE")
-    for name in _OF_ONE_BODY:
-        if getattr(options, name) is not None:
-            option = name.replace("_", "-")
-            raise ExperimentError(
-                f"--{option}: is for experiments of one body, expected --signal NAME=COLUMN"
-            )
+    refuse_options(
+        options, _OF_ONE_BODY, "is for experiments of one body, expected --signal NAME=COLUMN"
+    )
     diagram, name = read_diagram(options.diagram), options.logs[0].name
-    stated = _columns_of_signals(options.signal)
+    stated = split_pairs(options.signal, "--signal", "NAME=COLUMN or NAME=none")
     proposal = propose_channels(diagram, log, file=name, choices=choices, stated=stated)
     if proposal.open and not options.yes and sys.stdin.isatty():
-        stated |= _ask_about(proposal, input)
+        stated |= _ask_about(proposal)
         proposal = propose_channels(diagram, log, file=name, choices=choices, stated=stated)
     title = options.title or name.split(".")[0]
     make_diagram_folder(proposal, options.logs, options.diagram, folder, title=title, spans=spans)
@@ -106,27 +98,18 @@ def make_diagram(
     return 0
 
 
-def _columns_of_signals(texts: list[str]) -> dict[str, str]:
-    """Signal -> column, of the option --signal."""
-    stated = {}
-    for text in texts:
-        signal, equals, column = text.partition("=")
-        if not equals or not signal or not column:
-            raise ExperimentError(f"--signal: found {text!r}, expected NAME=COLUMN or NAME=none")
-        stated[signal] = column
-    return stated
+def ask_about(guess: str, kind: str = "value") -> str:
+    """The user's answer to a guess; "" accepts the guess."""
+    return input(f"{guess}\n  Enter accepts this; or type another {kind}: ").strip()
 
 
-def _ask_about(proposal: ChannelProposal, ask: Callable[[str], str]) -> dict[str, str]:
+def _ask_about(proposal: ChannelProposal) -> dict[str, str]:
     """The user's columns for signals of which another choice is about as likely."""
     stated = {}
     for signal in proposal.open:
         column = proposal.channels[signal]["column"]
         why = proposal.guesses[f"channels.{signal}.column"]
-        text = (
-            f"{signal}: {column!r}: {why}\n  Enter accepts this; or type another column, or none: "
-        )
-        stated[signal] = ask(text).strip() or column
+        stated[signal] = ask_about(f"{signal}: {column!r}: {why}", "column, or none") or column
     return stated
 
 
@@ -143,10 +126,9 @@ def make_like(
     from ..measurement.new_folder import make_folder_like
     from ..measurement.survey import Choices
 
-    stated = [
-        n for n in ("kind", "diagram", "signal", "velocity", "inertia") if getattr(options, n)
-    ]
-    if stated or choices != Choices():
+    beside = "found beside --like, which states each channel"
+    refuse_options(options, ("kind", "diagram", "signal", "velocity", "inertia"), beside)
+    if choices != Choices():
         raise ExperimentError("--like: found beside an option that states a channel: expected one")
     source = folder_of_experiment(options.like)
     written = folder / "experiment.toml"
@@ -209,9 +191,8 @@ def make_curve(
     from ..measurement import load_experiment
     from ..measurement.new_curve import curve_columns, make_curve_folder
 
-    for name in (*_OVER_TIME, "hand", "lever_arm", "counts_per_turn", "inertia"):
-        if getattr(options, name) is not None:
-            raise ExperimentError(f"--{name.replace('_', '-')}: says nothing of a friction curve")
+    other = (*_OVER_TIME, "hand", "lever_arm", "counts_per_turn", "inertia")
+    refuse_options(options, other, "says nothing of a friction curve")
     curve = curve_columns(
         log,
         options.logs[0].name,
@@ -223,7 +204,8 @@ def make_curve(
         gear_ratio=choices.gear_ratio,
     )
     make_curve_folder(curve, options.logs, folder, title=title)
-    print(_text_of(curve, options.logs[0].name))
+    print(describe_survey(curve, f"{options.logs[0].name}: a friction curve"))
+    print("    otherwise: --sample-rate HZ, for a log over time without its clock")
     experiment = load_experiment(folder)
     print(f"\n{experiment}")
     say_what_stops(experiment)
@@ -232,12 +214,55 @@ def make_curve(
     return 0
 
 
-def _text_of(curve: Survey, name: str) -> str:
-    lines = [f"{name}: a friction curve; {curve.axis} axis"]
-    for channel, entry in curve.channels.items():
-        lines.append(f'  {channel:<18} "{entry["column"]}" in {entry["unit"]}')
-    if curve.guesses:
+def describe_survey(survey: Survey, head: str) -> str:
+    """Lines on what was understood, one for each channel, and on what was guessed."""
+    lines = [f"{head}; {survey.axis} axis"]
+    for key, entry in survey.channels.items():
+        keys = ("column", "unit") if "column" in entry else entry
+        rest = {k: v for k, v in entry.items() if k not in keys}
+        more = ", ".join(f"{k} {_shorten(v)}" for k, v in rest.items())
+        column = f'"{entry["column"]}"' if "column" in entry else _shorten(entry)
+        unit = f" in {entry['unit']}" if "unit" in entry and "column" in entry else ""
+        lines.append(f"  {key:<18} {column}{unit}{', ' + more if more else ''}")
+    lines += [f"  {note}" for note in survey.notes]
+    if survey.unused:
+        lines.append("not used:")
+        width = max(18, *map(len, survey.unused))
+        lines += [f"  {column:<{width}} {why}" for column, why in survey.unused.items()]
+    if survey.guesses:
         lines.append("guessed:")
-    lines += [f"  {key}: {why}" for key, why in curve.guesses.items()]
-    lines.append("    otherwise: --sample-rate HZ, --velocity COLUMN, --force COLUMN, --unit")
+        for key, why in survey.guesses.items():
+            lines.append(f"  {key}: {why}")
+            if (option := _option_of(key, survey)) and "--" not in why:
+                lines.append(f"    otherwise: {option}")
     return "\n".join(lines)
+
+
+def _option_of(key: str, survey: Survey) -> str:
+    """The option that replaces a wrong guess; "" if no option does."""
+    _, quantity, part = (*key.split("."), "", "")[:3]
+    columns = {"actuator_force": "force", "interaction_force": "hand"}
+    if part == "column":
+        return f"--{columns.get(quantity, quantity)} COLUMN"
+    if part == "unit":
+        column = survey.channels.get(quantity, {}).get("column", "COLUMN")
+        return f"--unit {shell_word(f'{column}=UNIT')}"
+    if part == "gear_ratio":
+        return "--gear-ratio N (1: none)"
+    if part == "torque_constant":
+        unit = survey.channels[quantity][part]["unit"]
+        return f'--torque-constant "VALUE {unit}"'
+    if part == "lever_arm":
+        return '--lever-arm "VALUE m"'
+    other = "revolute" if survey.axis == "prismatic" else "prismatic"
+    return {
+        "channels.position.counts_per_turn": "--counts-per-turn N",
+        "model.device.axis": f"--axis {other}",
+        "sample_rate": "--sample-rate HZ",
+    }.get(key, "")
+
+
+def _shorten(value: object) -> str:
+    if isinstance(value, dict):
+        return f"{value['value']:g} {value['unit']}"
+    return f"{value:g}" if isinstance(value, int | float) and value is not True else str(value)

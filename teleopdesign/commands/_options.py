@@ -1,63 +1,61 @@
 """Arguments, paths and messages that several commands share.
 
 Values on the command line: a number, and a unit unless the number is in SI.
-
-The names of the options decide which paths are read and which are written, so that no command has
-to declare them.
 """
 
 from __future__ import annotations
 
 import argparse
-import os
+import math
 import shlex
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Mapping
 from itertools import product
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
-from ..base.files import check_writable, read_whole
+from ..base.files import check_writable, write_json
 from ..base.units import AXES, QUANTITIES, to_si, unit_of
 
-
-def add_folder(parser: argparse.ArgumentParser) -> None:
-    """Argument: the experiment's folder."""
-    parser.add_argument(
-        "folder",
-        type=Path,
-        help="folder with experiment.toml and its records, or an answer for this folder (.json)",
-    )
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def add_effect_files(parser: argparse.ArgumentParser) -> None:
     """Argument: the user's effect files."""
-    parser.add_argument(
-        "--effect",
-        action="append",
-        default=[],
-        type=Path,
-        metavar="FILE",
-        help="file that defines a further effect (may be repeated)",
-    )
+    add_repeated(parser, "--effect", "FILE", "file that defines a further effect", kind=Path)
 
 
 def add_law_files(parser: argparse.ArgumentParser) -> None:
     """Argument: the user's files of control laws."""
+    text = "file that defines a further control law for the diagram"
+    add_repeated(parser, "--law", "FILE", text, kind=Path)
+
+
+def add_repeated(
+    parser: argparse.ArgumentParser, option: str, metavar: str, text: str, *, kind: type = str
+) -> None:
+    """Argument: an option that may be repeated; its values are a list."""
     parser.add_argument(
-        "--law",
+        option,
         action="append",
         default=[],
-        type=Path,
-        metavar="FILE",
-        help="file that defines a further control law for the diagram (may be repeated)",
+        type=kind,
+        metavar=metavar,
+        help=f"{text} (may be repeated)",
     )
+
+
+#: option -> endings of its file, where no others are stated
+ENDINGS = {"--json": (".json",), "--figure": (".png", ".pdf", ".svg")}
 
 
 def add_output(parser: argparse.ArgumentParser, option: str, text: str, *endings: str) -> None:
     """Argument: a file that the command writes, which `check_outputs` checks before the work.
 
-    text: the help;  endings: endings of the file name that are allowed
+    text: the help;  endings: endings of the file name that are allowed, by default `ENDINGS`
     """
+    endings = endings or ENDINGS[option]
     action = parser.add_argument(
         option, type=Path, metavar="F", help=f"{text} ({', '.join(endings)})"
     )
@@ -96,10 +94,70 @@ def count_argument(text: str) -> int:
     return number
 
 
-def say_written(*paths: Path | None) -> None:
+Writer = Callable[[Path], object]
+
+
+def write_requested(
+    options: argparse.Namespace,
+    writers: Mapping[str, Writer] | None = None,
+    *,
+    json: Callable[[], object] | None = None,
+    figure: Callable[[], Figure] | None = None,
+) -> None:
+    """Write each file that the options request, and print their names in one line.
+
+    writers: option -> the function that writes its file
+    json: gives plain data;  figure: draws; both are called only if their file is requested
+    """
+    from ..show import save_figure
+
+    known = dict(writers or {})
+    if json is not None:
+        known["json"] = lambda path: write_json(path, json())
+    if figure is not None:
+        known["figure"] = lambda path: save_figure(figure(), path, suffixes=(path.suffix,))
+    paths = {name: path for name in known if (path := getattr(options, name)) is not None}
+    for name, path in paths.items():
+        known[name](path)
+    say_written(*paths.values())
+
+
+def say_written(*paths: Path) -> None:
     """Print the names of the files that were written, in one line; nothing if there are none."""
-    if written := [str(path) for path in paths if path is not None]:
-        print(f"\nwritten: {', '.join(written)}")
+    if paths:
+        print(f"\nwritten: {', '.join(map(str, paths))}")
+
+
+def refuse_options(options: argparse.Namespace, names: Iterable[str], why: str) -> None:
+    """Raise ExperimentError for the first of these options that is stated.
+
+    names: as the options are stored;  why: words after the option
+    """
+    for name in names:
+        value = getattr(options, name, None)
+        if not (value is None or value is False or value == []):
+            raise ExperimentError(f"--{name.replace('_', '-')}: {why}")
+
+
+def require_positive(options: argparse.Namespace, names: Iterable[str], unit: str = "") -> None:
+    """Raise ExperimentError for the first of these options that is not above 0; None is allowed."""
+    for name in names:
+        value = getattr(options, name)
+        if value is not None and not (math.isfinite(value) and value > 0):
+            raise ExperimentError(f"--{name}: found {value:g}, expected more than 0{unit}")
+
+
+def split_pairs(
+    texts: Iterable[str], option: str, form: str = "NAME=VALUE", *, at_last: bool = False
+) -> dict[str, str]:
+    """Name -> value of texts "NAME=VALUE";  at_last: the name may hold signs of equality."""
+    pairs = {}
+    for text in texts:
+        name, sign, value = text.rpartition("=") if at_last else text.partition("=")
+        if not (sign and name and value):
+            raise ExperimentError(f"{option}: found {text!r}, expected {form}")
+        pairs[name] = value
+    return pairs
 
 
 def make_folder(path: Path) -> Path:
@@ -119,16 +177,15 @@ def make_folder(path: Path) -> Path:
 
 def add_experiment(parser: argparse.ArgumentParser, *, answer: bool = True) -> None:
     """Arguments: the experiment's folder, the user's effects, and an answer to continue from."""
+    parser.add_argument(
+        "folder",
+        type=Path,
+        help="folder with experiment.toml and its records, or an answer of `teleopdesign "
+        "diagnose --json`",
+    )
     if answer:
-        parser.add_argument(
-            "folder",
-            type=Path,
-            help="folder with experiment.toml and its records, or an answer of `teleopdesign "
-            "diagnose --json`",
-        )
         add_answer(parser)
     else:
-        add_folder(parser)
         parser.set_defaults(answer=None)
     add_effect_files(parser)
 
@@ -192,74 +249,6 @@ def value_in(text: str, *, unit: str, where: str) -> float:
     return value_from(text, quantity=quantity, axis=axis, where=where)
 
 
-#: options that name what a command reads, and what it writes: a file or a folder
-INPUTS = (
-    *("folder", "logs", "source", "file", "diagram", "answer", "check", "effect", "law", "design"),
-    *("without", "like"),
-)
-OUTPUTS = ("json", "predictions", "figure", "report", "output", "out", "effect_file")
-
-
 def shell_word(path: Path | str) -> str:
     """A path as it is typed in a shell: in quotes if it contains spaces."""
     return shlex.quote(str(path))
-
-
-def inputs(options: argparse.Namespace | None) -> Iterator[Path]:
-    """The paths that a command reads, as the user wrote them."""
-    return _paths(options, INPUTS)
-
-
-def outputs(options: argparse.Namespace | None) -> Iterator[Path]:
-    """The paths that a command writes."""
-    return _paths(options, OUTPUTS)
-
-
-def python_files(options: argparse.Namespace | None) -> Iterator[Path]:
-    """The user's Python files that a command runs: effects and studies."""
-    return (path for path in inputs(options) if path.suffix == ".py")
-
-
-def _paths(options: argparse.Namespace | None, names: tuple[str, ...]) -> Iterator[Path]:
-    for name in names:
-        value = getattr(options, name, None)
-        for one in value if isinstance(value, list) else [value]:
-            if isinstance(one, str | Path) and str(one):
-                yield Path(one)
-
-
-def check_paths(options: argparse.Namespace) -> None:
-    """Raise ExperimentError if an output is also an input, or if two outputs are the same file.
-
-    Records that an experiment names count as inputs; so do files that another TOML file names.
-    """
-    read = {os.path.realpath(p): p for p in _files_read(options)}
-    written: dict[str, Path] = {}
-    for path in outputs(options):
-        if path.is_dir():
-            continue
-        real = os.path.realpath(path)
-        if real in read:
-            raise ExperimentError(f"{path}: is read by this command, expected another file")
-        if real in written:
-            raise ExperimentError(f"{path}: is to hold two results, expected a file for each")
-        written[real] = path
-
-
-def _files_read(options: argparse.Namespace) -> Iterator[Path]:
-    for path in inputs(options):
-        file = path / "experiment.toml" if path.is_dir() else path
-        yield file
-        if file.suffix == ".toml":
-            yield from (file.parent / text for text in _texts_of(file))
-
-
-def _texts_of(file: Path) -> Iterator[str]:
-    """Every text in a TOML file; none for an invalid file, which is reported when it is read."""
-    from ..base.toml import parse_toml, texts_in
-
-    try:
-        content = parse_toml(read_whole(file).decode("utf-8-sig"))
-        yield from texts_in(content)
-    except (OSError, ValueError, RecursionError):
-        return

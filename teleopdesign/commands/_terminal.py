@@ -87,18 +87,15 @@ def replace_line(text: str) -> None:
 STYLES = {"strong": "1", "faint": "2", "good": "32", "warning": "33", "bad": "31"}
 
 
-def shows_colours() -> bool:
-    """Whether standard output is a terminal whose user has not switched colours off (NO_COLOR)."""
-    off = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
-    return sys.stdout is not None and sys.stdout.isatty() and not off
-
-
 def print_styled(text: str, style_of: Callable[[str], str]) -> None:
     """Print lines, each in its style on a terminal that shows colours; elsewhere without styles.
 
+    NO_COLOR: a user has switched colours off
+
     style_of: line -> a key of `STYLES`, or "" for no style
     """
-    if not shows_colours():
+    off = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    if sys.stdout is None or not sys.stdout.isatty() or off:
         print(text)
         return
     terminal = getattr(sys.stdout, "stream", sys.stdout)  # codes go past what escapes them

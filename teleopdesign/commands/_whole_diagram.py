@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import ModelError
-from ..base.files import write_beside, write_json
 from ..base.toml import read_toml
 from ._diagnosis import (
     answer_in,
@@ -17,11 +15,12 @@ from ._diagnosis import (
     experiment_or_diagram,
     print_diagnosis,
 )
-from ._options import say_written
+from ._options import refuse_options, write_requested
 
 if TYPE_CHECKING:
     from ..block_cuts import BlockDiagnosis, DiagramExperiment
 
+WHY = "is for experiments of bodies, found a whole diagram"
 #: options of other commands that ask for one body
 _OF_ONE_BODY = ("as_is", "effect_file", "simulate", "limit")
 #: options of `diagnose` that ask for what only an experiment of bodies has
@@ -31,40 +30,37 @@ _OF_BODIES = ("predictions", "simulate", "loop")
 def diagnose_diagram(experiment: DiagramExperiment, options: argparse.Namespace) -> int:
     """Compare every tested block; print the ladder; write the requested files.
 
-    raises ModelError: an option that only an experiment of bodies has
+    raises ExperimentError: an option that only an experiment of bodies has
     """
     from ..block_cuts import BlockDiagnosis, write_answer
 
-    for name in _OF_BODIES:
-        if getattr(options, name):
-            raise ModelError(f"--{name}: is for experiments of bodies, found a whole diagram")
+    refuse_options(options, _OF_BODIES, WHY)
     print(f"{experiment}\n")
     diagnosis = diagnose_now(experiment, options)
     assert isinstance(diagnosis, BlockDiagnosis)
     print_diagnosis(str(diagnosis))
-    if options.json is not None:
-        write_answer(diagnosis, options.json)
-    if options.figure is not None:
-        with write_beside(options.figure) as part:
-            diagnosis.plot().savefig(part)
-    if options.report is not None:
-        from ..show.block_cuts.text import write_block_report
+    from ..show.block_cuts.text import write_block_report
 
-        write_block_report(diagnosis, options.report)
-    say_written(options.report, options.json, options.figure)
+    write_requested(
+        options,
+        {
+            "json": lambda path: write_answer(diagnosis, path),
+            "report": lambda path: write_block_report(diagnosis, path),
+        },
+        figure=diagnosis.plot,
+    )
     return 0
 
 
 def check_diagram(experiment: DiagramExperiment, options: argparse.Namespace) -> int:
     """Print the cuts of a whole diagram, and whether the rows are passes of its computer.
 
-    raises ModelError: --json, which only an experiment of bodies has
+    raises ExperimentError: --json, which only an experiment of bodies has
     """
     from ..block_cuts.channel_doubts import doubt_channels
     from ..block_cuts.computer import UnevenRows, passes_of
 
-    if options.json is not None:
-        raise ModelError("--json: is for experiments of bodies, found a whole diagram")
+    refuse_options(options, ("json",), WHY)
     print(experiment)
     for log in experiment.logs if experiment.cuts.of("computer") else ():
         try:
@@ -79,7 +75,7 @@ def check_diagram(experiment: DiagramExperiment, options: argparse.Namespace) ->
 def diagnosed_diagram(options: argparse.Namespace) -> BlockDiagnosis | None:
     """The diagnosis of a whole diagram: read from an answer, or computed now; None: of bodies.
 
-    raises ModelError: an option that asks for one body
+    raises ExperimentError: an option that asks for one body
     """
     from ..block_cuts import BlockDiagnosis, load_answer
     from ..block_cuts.saved import is_block_answer
@@ -89,10 +85,7 @@ def diagnosed_diagram(options: argparse.Namespace) -> BlockDiagnosis | None:
         return None
     if answer is not None and not is_block_answer(answer):
         return None
-    for name in _OF_ONE_BODY:
-        if getattr(options, name, None):
-            option = name.replace("_", "-")
-            raise ModelError(f"--{option}: is for experiments of bodies, found a whole diagram")
+    refuse_options(options, _OF_ONE_BODY, WHY)
     if answer is not None:
         options.answer = answer
         diagnosis = load_answer(answer, effects_by_name(options))
@@ -117,8 +110,7 @@ def describe_diagram(diagnosis: BlockDiagnosis, options: argparse.Namespace) -> 
     for name, body in diagnosis.bodies.items():
         described[name] = describe_residual(body.model, body.prepared, body.floor)
         print(f"\n{name}\n{described[name]}")
-    if options.json is not None:
-        write_json(options.json, {name: one.as_data() for name, one in described.items()})
+    write_requested(options, json=lambda: {name: one.as_data() for name, one in described.items()})
     return 0
 
 

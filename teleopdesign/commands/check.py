@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import argparse
 import shutil
-import textwrap
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
-from ..base.files import write_json
+from ..base.sentences import WIDTH, wrap
 from ._diagnosis import experiment_or_diagram, folder_of, stated_model
-from ._options import add_experiment, add_output, say_written, shell_word
+from ._options import add_experiment, add_output, shell_word, write_requested
 from ._whole_diagram import check_diagram
 
 if TYPE_CHECKING:
@@ -20,8 +19,8 @@ if TYPE_CHECKING:
     from ..measurement import Experiment
     from ..model import Model
 
-#: columns of a line, at most and at least; what it goes on with stands under its sentence
-WIDTH, NARROWEST, INDENT = 100, 40, 9
+#: columns of a line at least; what it goes on with stands under its sentence
+NARROWEST, INDENT = 40, " " * 9
 
 
 EXAMPLES = """
@@ -33,7 +32,7 @@ EXAMPLES = """
 def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser, answer=False)
-    add_output(parser, "--json", "write the findings", ".json")
+    add_output(parser, "--json", "write the findings")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -57,10 +56,9 @@ def run(options: argparse.Namespace) -> int:
         print()
         findings = check_experiment(experiment, _model_of(experiment, options))
     print(text_of(findings))
-    if options.json is not None:
-        content = {"findings": [finding_data(f) for f in findings]}
-        write_json(options.json, content)
-    say_written(options.json)
+    parts = ("topic", "concern", "stops", "where", "sentence", "numbers")
+    rows = [{part: getattr(f, part) for part in parts} for f in findings]
+    write_requested(options, json=lambda: {"findings": rows})
     return 0
 
 
@@ -126,31 +124,9 @@ def text_of(findings: Sequence[Finding]) -> str:
 def _wrap_lines(finding: Finding, width: int) -> str:
     """A finding with each line wrapped separately; rows of a table keep columns that fit."""
     first, *more = str(finding).split("\n")
-    indent = " " * INDENT
-    lines = [textwrap.fill(first, width, subsequent_indent=indent, break_on_hyphens=False)]
+    lines = [wrap(first, rest=INDENT, width=width)]
     for line in more:
-        fits = len(indent) + len(line) <= width
-        lines.append(
-            indent + line
-            if fits
-            else textwrap.fill(
-                " ".join(line.split()),
-                width,
-                initial_indent=indent + "  " * line.startswith(" "),
-                subsequent_indent=indent + "  " * line.startswith(" "),
-                break_on_hyphens=False,
-            )
-        )
+        indent = INDENT + "  " * line.startswith(" ")
+        text = wrap(" ".join(line.split()), first=indent, rest=indent, width=width)
+        lines.append(INDENT + line if len(INDENT + line) <= width else text)
     return "\n".join(lines)
-
-
-def finding_data(finding: Finding) -> dict[str, Any]:
-    """A finding as plain data, numbers in SI; in JSON a number that is not finite is null."""
-    return {
-        "topic": finding.topic,
-        "concern": finding.concern,
-        "stops": finding.stops,
-        "where": finding.where,
-        "sentence": finding.sentence,
-        "numbers": dict(finding.numbers),
-    }

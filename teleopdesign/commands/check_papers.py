@@ -6,10 +6,10 @@ import argparse
 import shutil
 import textwrap
 from collections import Counter
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
-from ..base.files import write_json
-from ._options import add_output
+from ._options import add_output, write_requested
 from ._terminal import replace_line
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         help="P1 to P65: check only these statements, and print every step and number",
     )
-    add_output(parser, "--json", "write the results", ".json")
+    add_output(parser, "--json", "write the results")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -46,9 +46,10 @@ def run(options: argparse.Namespace) -> int:
     print(
         "\n".join(_full(r, width) for r in results) if options.statement else _table(results, width)
     )
-    print(_summary(results))
-    if options.json is not None:
-        write_json(options.json, [as_json(r) for r in results])
+    counts = Counter(r.outcome for r in results).most_common()
+    counted = ", ".join(f"{n} {outcome}" for outcome, n in counts)
+    print(f"{len(results)} statements in {sum(r.seconds for r in results):.0f} s: {counted}.")
+    write_requested(options, json=lambda: [result_data(r) for r in results])
     return 0 if all(r.as_stated for r in results) else 1
 
 
@@ -56,21 +57,23 @@ def _table(results: list[Result], width: int) -> str:
     """Lines for each statement: name, outcome, words, formula, source, place of the code."""
     first, second = 5, 20
     third = width - first - second - 2
-    lines = []
+    lines = [
+        f"{'':<{first}}{'outcome':<{second}}statement; source; code that shows it",
+        "-" * width,
+    ]
     for r in results:
-        s = r.statement
-        cell = [*textwrap.wrap(s.words, third)]
-        for head, text in (("", s.formula), ("printed: ", s.printed), ("given: ", s.assumes)):
-            cell += textwrap.wrap(f"{head}{text}", third, subsequent_indent="  ") if text else []
+        s, cell = r.statement, [*textwrap.wrap(r.statement.words, third)]
+        for word, text in (("", s.formula), ("printed: ", s.printed), ("given: ", s.assumes)):
+            cell += textwrap.wrap(f"{word}{text}", third, subsequent_indent="  ") if text else []
         cell += textwrap.wrap(f"{s.paper.short}, {s.place}; {_code(s)}", third)
-        named = [s.name, *[""] * len(cell)]
-        known = textwrap.wrap(r.outcome, second - 1) + [""] * len(cell)
-        rows = zip(named, known, cell, strict=False)
+        columns = [s.name], textwrap.wrap(r.outcome, second - 1), cell
+        rows = zip_longest(*columns, fillvalue="")
         lines += [f"{a:<{first}}{b:<{second}}{c}".rstrip() for a, b, c in rows]
-        lines += [f"{'':<{first + second}}{why}" for why in _explain_failure(r)]
+        if r.outcome == "failed":
+            why = [*r.details, *(str(f) for f in r.figures if not f.margin >= 0)]
+            lines += [f"{'':<{first + second}}{line}" for line in why]
         lines.append("")
-    head = f"{'':<{first}}{'outcome':<{second}}statement; source; code that shows it"
-    return "\n".join([head, "-" * width, *lines])
+    return "\n".join(lines)
 
 
 def _code(statement: Statement) -> str:
@@ -79,41 +82,26 @@ def _code(statement: Statement) -> str:
     return f"no code, see {', '.join(f'P{n}' for n in statement.see)}"
 
 
-def _explain_failure(result: Result) -> list[str]:
-    if result.outcome != "failed":
-        return []
-    return [*result.details, *(str(f) for f in result.figures if not f.margin >= 0)]
-
-
 def _full(result: Result, width: int) -> str:
     """All information on one statement, with every step and number."""
     s = result.statement
+    code = f"teleopdesign.papers.{s.code}" if s.code else _code(s)
+    parts = [(s.words, 4), (s.formula and f"    {s.formula}", 4), ("\n", 0)]
+    parts += [
+        (s.printed and f"printed: {s.printed}", 9),
+        (s.assumes and f"given:   {s.assumes}", 9),
+    ]
+    parts += [(f"source:  {s.paper.full}; {s.place}", 9), (f"code:    {code}", 9)]
+    parts += [(f"{i:>3}. {step}", 5) for i, step in enumerate(result.details, 1)]
+    parts += [(f"   - {figure}", 5) for figure in result.figures]
     lines = [f"{s.name}  {result.outcome}", ""]
-    for text in (s.words, s.formula and f"    {s.formula}"):
-        lines += textwrap.wrap(text, width, subsequent_indent="    ") if text else []
-    lines.append("")
-    for head, text in (
-        ("printed: ", s.printed),
-        ("given:   ", s.assumes),
-        ("source:  ", f"{s.paper.full}; {s.place}"),
-        ("code:    ", f"teleopdesign.papers.{s.code}" if s.code else _code(s)),
-    ):
-        lines += textwrap.wrap(head + text, width, subsequent_indent=" " * 9) if text else []
-    for i, step in enumerate(result.details, 1):
-        lines += textwrap.wrap(f"{i:>3}. {step}", width, subsequent_indent=" " * 5)
-    for figure in result.figures:
-        lines += textwrap.wrap(f"   - {figure}", width, subsequent_indent=" " * 5)
+    for text, indent in parts:
+        if text:
+            lines += textwrap.wrap(text, width, subsequent_indent=" " * indent) or [""]
     return "\n".join([*lines, ""])
 
 
-def _summary(results: list[Result]) -> str:
-    counts = Counter(r.outcome for r in results)
-    seconds = sum(r.seconds for r in results)
-    counted = ", ".join(f"{n} {outcome}" for outcome, n in counts.most_common())
-    return f"{len(results)} statements in {seconds:.0f} s: {counted}."
-
-
-def as_json(result: Result) -> dict[str, Any]:
+def result_data(result: Result) -> dict[str, Any]:
     """A result as plain data; each figure has the range in which it must lie and its margin."""
     s = result.statement
 
@@ -121,12 +109,8 @@ def as_json(result: Result) -> dict[str, Any]:
         "statement": s.name,
         "outcome": result.outcome,
         "as_stated": result.as_stated,
-        "words": s.words,
-        "formula": s.formula,
-        "printed": s.printed,
-        "assumes": s.assumes,
+        **{n: getattr(s, n) for n in ("words", "formula", "printed", "assumes", "place")},
         "paper": s.paper.full,
-        "place": s.place,
         "code": s.code and f"teleopdesign.papers.{s.code}",
         "see": [f"P{n}" for n in s.see],
         "found": list(result.details),

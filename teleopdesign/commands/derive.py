@@ -8,10 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ModelError, did_you_mean
-from ..base.files import write_json
 from ._arms import add_body
 from ._diagnosis import body_of_source
-from ._options import add_answer, add_effect_files, add_law_files, add_output, say_written
+from ._options import (
+    add_answer,
+    add_effect_files,
+    add_law_files,
+    add_output,
+    refuse_options,
+    write_requested,
+)
 
 if TYPE_CHECKING:
     from ..derive import Transfers
@@ -31,8 +37,8 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--latex", action="store_true", help="print LaTeX, for an align environment"
     )
-    add_output(parser, "--json", "write expressions and numbers", ".json")
-    add_output(parser, "--figure", "draw the diagram", ".svg", ".pdf", ".png")
+    add_output(parser, "--json", "write expressions and numbers")
+    add_output(parser, "--figure", "draw the diagram")
     parser.add_argument(
         "--speed",
         type=float,
@@ -60,15 +66,16 @@ def add_diagram(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print the transfer functions, with numbers where the blocks have values."""
     from ..derive import all_transfers
+    from ..show import draw_diagram
 
     diagram = diagram_from(options)
     transfers = all_transfers(diagram)
     print(transfers.latex() if options.latex else _page(transfers, options.speed))
-    if options.json is not None:
-        write_json(options.json, transfers.as_data(speed=options.speed))
-    if options.figure is not None:
-        _draw(diagram, options.figure)
-    say_written(options.json, options.figure)
+    write_requested(
+        options,
+        json=lambda: transfers.as_data(speed=options.speed),
+        figure=lambda: draw_diagram(diagram).plot(),
+    )
     return 0
 
 
@@ -80,9 +87,9 @@ def diagram_from(options: argparse.Namespace) -> Diagram:
     is_experiment = source.name == "experiment.toml" or source.is_dir()
     if options.diagram not in SHIPPED and (is_experiment or source.suffix == ".json"):
         return haptic_interface(body_of_source(source, options)[0])
-    for option in ("answer", "body", "pose"):
-        if getattr(options, option):
-            raise ModelError(f"--{option}: found beside a diagram, which has its own blocks")
+    refuse_options(
+        options, ("answer", "body", "pose"), "found beside a diagram, which has its own blocks"
+    )
     return diagram_of(options.diagram, options.effect, options.law)
 
 
@@ -107,16 +114,6 @@ def diagram_of(name: str, effects: Sequence[Path] = (), laws: Sequence[Path] = (
         f'found "{name}", expected a file NAME.toml or one of {", ".join(SHIPPED)}'
         f"{did_you_mean(name, SHIPPED)}"
     )
-
-
-def _draw(diagram: Diagram, path: Path) -> None:
-    from ..show import draw_diagram, save_figure
-
-    drawing = draw_diagram(diagram)
-    if path.suffix == ".svg":
-        drawing.to_svg(path)
-    else:
-        save_figure(drawing.plot(), path, suffixes=(path.suffix,))
 
 
 def _page(transfers: Transfers, speed: float) -> str:

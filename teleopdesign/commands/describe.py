@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ModelError
-from ..base.files import write_beside, write_json
 from ._arms import add_body
 from ._diagnosis import diagnosis_of_part, experiment_and_answer, stated_model
-from ._options import add_experiment, add_output, shell_word
+from ._options import add_experiment, add_output, shell_word, write_requested
 from ._whole_diagram import describe_diagram, diagnosed_diagram
 
 if TYPE_CHECKING:
@@ -37,8 +36,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="describe where the model of experiment.toml fails: its parameters are estimated "
         "again, no effect is added",
     )
-    add_output(parser, "--figure", "write the figure", ".png", ".pdf", ".svg")
-    add_output(parser, "--json", "write the description", ".json")
+    add_output(parser, "--figure", "write the figure")
+    add_output(parser, "--json", "write the description")
     add_output(
         parser,
         "--effect-file",
@@ -60,11 +59,11 @@ def run(options: argparse.Namespace) -> int:
     print(f"{model_text}\n")
     description = describe_residual(model, prepared, floor)
     print(description)
-    if options.json is not None:
-        write_json(options.json, {"model": model_text, **description.as_data()})
-    if options.figure is not None:
-        with write_beside(options.figure) as part:
-            description.plot().savefig(part)
+    write_requested(
+        options,
+        json=lambda: {"model": model_text, **description.as_data()},
+        figure=description.plot,
+    )
     if options.effect_file is not None:
         _write(description, options.effect_file, options.folder)
     return 0

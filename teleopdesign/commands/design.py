@@ -7,11 +7,19 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..base.errors import ExperimentError, unknown
-from ..base.files import write_json, write_text
-from ._arms import add_body, inertia_line, joint_of, place_at_pose
+from ..base.errors import ExperimentError
+from ..base.files import write_text
+from ._arms import add_body, chosen_body, inertia_line, place_at_pose
 from ._diagnosis import diagnosis_of, experiment_and_answer, print_diagnosis
-from ._options import add_experiment, add_output, check_output, make_folder, say_written, shell_word
+from ._options import (
+    add_experiment,
+    add_output,
+    check_output,
+    make_folder,
+    say_written,
+    shell_word,
+    write_requested,
+)
 from ._terminal import replace_line
 from ._whole_diagram import diagnosed_diagram
 
@@ -47,8 +55,8 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_experiment(parser)
     add_body(parser, pose=True)
-    add_output(parser, "--json", "write the designs", ".json")
-    add_output(parser, "--figure", "write the figure", ".png", ".pdf", ".svg")
+    add_output(parser, "--json", "write the designs")
+    add_output(parser, "--figure", "write the figure")
     parser.add_argument(
         "--output", type=Path, metavar="DIR", help="folder for figures, data and controllers"
     )
@@ -59,16 +67,20 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the design of each body; write the requested files."""
+    from ..design import Assumptions
+
     if options.answer is not None:
         check_output(options.answer, (".json",))
     if options.output is not None:
         make_folder(options.output)
-    assumptions = _assumptions(options)
+    names = {f.name for f in fields(Assumptions)}
+    stated = {n: v for n in STATED if (v := getattr(options, n)) is not None and n in names}
+    assumptions = Assumptions(**stated)
     if (whole := diagnosed_diagram(options)) is not None:
         return _run_diagram(whole, assumptions, options)
     experiment = experiment_and_answer(options)
     places = _places(options, experiment)
-    diagnosis = _diagnosis_to_design_for(experiment, options)
+    diagnosis = _diagnosis_to_design_for(experiment, options, places[0])
     designs = {}
     for place in places:
         designs[place] = _design(diagnosis, place, assumptions)
@@ -93,41 +105,29 @@ def _run_diagram(
     return 0
 
 
-def _assumptions(options: argparse.Namespace) -> Assumptions:
-    from ..design import Assumptions
-
-    names = {f.name for f in fields(Assumptions)}
-    stated = {n: v for n in STATED if (v := getattr(options, n)) is not None and n in names}
-    return Assumptions(**stated)
-
-
 def _places(options: argparse.Namespace, experiment: Experiment) -> list[str]:
-    if experiment.arm is not None:
-        return [joint_of(experiment, options)]
-    bodies = list(experiment.bodies)
-    if options.body is None:
-        places = bodies
-    elif options.body in bodies:
-        places = [options.body]
-    else:
-        raise ExperimentError(f"--body: {unknown('body', options.body, bodies)}")
+    bodies = places = list(experiment.bodies)
+    if experiment.arm is not None or options.body is not None:
+        places = [chosen_body(bodies, options, experiment.folder.name)]
     if options.figure is not None and len(places) > 1:
         raise ExperimentError(f"--figure: shows one body, choose --body {' or '.join(bodies)}")
     return places
 
 
-def _diagnosis_to_design_for(experiment: Experiment, options: argparse.Namespace) -> Diagnosis:
+def _diagnosis_to_design_for(
+    experiment: Experiment, options: argparse.Namespace, place: str
+) -> Diagnosis:
     """The diagnosis, printed where it is computed now; of an arm, of one joint at a pose."""
-    diagnosis = diagnosis_of(experiment, options)
-    joint = None if experiment.arm is None else joint_of(experiment, options)
+    whole = diagnosis_of(experiment, options)
+    diagnosis = whole.joints.get(place, whole)
     if options.answer is None:
-        print_diagnosis(str(diagnosis if joint is None else diagnosis.joints[joint]))
+        print_diagnosis(str(diagnosis))
         print()
-    if joint is None:
-        return diagnosis
-    model = place_at_pose(diagnosis, joint, options)
-    print(f"{inertia_line(model, joint, options)}\n")
-    return diagnosis.joints[joint].with_final_model(model)
+    if diagnosis is whole:
+        return whole
+    model = place_at_pose(whole, place, options)
+    print(f"{inertia_line(model, place, options)}\n")
+    return diagnosis.with_final_model(model)
 
 
 def _design(diagnosis: Diagnosis | BlockDiagnosis, place: str, assumptions: Assumptions) -> Design:
@@ -142,14 +142,12 @@ def _design(diagnosis: Diagnosis | BlockDiagnosis, place: str, assumptions: Assu
 def _write(designs: dict[str, Design], options: argparse.Namespace) -> None:
     from ..show import save_figure
 
-    written: list[Path | None] = [options.json, options.figure]
-    content = {"bodies": {place: d.as_dict() for place, d in designs.items()}}
-    if options.json is not None:
-        write_json(options.json, content)
-    if options.figure is not None:
-        save_figure(
-            next(iter(designs.values())).plot(), options.figure, suffixes=(options.figure.suffix,)
-        )
+    write_requested(
+        options,
+        json=lambda: {"bodies": {place: d.as_dict() for place, d in designs.items()}},
+        figure=next(iter(designs.values())).plot,
+    )
+    written: list[Path] = []
     diagrams: list[Path] = []
     for place, proposal in designs.items() if options.output is not None else ():
         files = save_figure(proposal.plot(), options.output / f"{place}_design")

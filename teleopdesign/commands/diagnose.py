@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError, ModelError
-from ..base.files import harmless_cell, write_beside, write_text
+from ..base.files import harmless_cell, write_text
 from ..base.sentences import percent
 from . import STOPPED
 from ._command_line import BAD_INPUT
@@ -30,8 +30,9 @@ from ._options import (
     add_search,
     count_argument,
     make_folder,
-    say_written,
+    refuse_options,
     shell_word,
+    write_requested,
 )
 from ._terminal import PointReporter, replace_line
 from ._whole_diagram import diagnose_diagram
@@ -40,7 +41,7 @@ from .report import write_page
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis, SimulationComparison
     from ..measurement import Experiment
-    from ..studies.folders import DiagnosedFolder, FolderSearch
+    from ..studies.folders import DiagnosedFolder
 
 EXAMPLES = """
   teleopdesign diagnose rod
@@ -59,9 +60,9 @@ def add(parser: argparse.ArgumentParser) -> None:
         help="folder with experiment.toml and its records; several folders need --output",
     )
     parser.set_defaults(answer=None)
-    add_output(parser, "--json", "write the answer", ".json")
+    add_output(parser, "--json", "write the answer")
     add_output(parser, "--predictions", "write measured and modelled forces", ".csv", ".csv.gz")
-    add_output(parser, "--figure", "write the figure", ".png", ".pdf", ".svg")
+    add_output(parser, "--figure", "write the figure")
     parser.add_argument(
         "--simulate",
         action="store_true",
@@ -121,16 +122,15 @@ def run(options: argparse.Namespace) -> int:
     assert isinstance(diagnosis, Diagnosis)
     _print(diagnosis, experiment, verbose=options.verbose)
     simulation = _simulation(diagnosis, options)
-    if options.json is not None:
-        write_answer(diagnosis, options.json, simulation=simulation)
-    if options.predictions is not None:
-        write_predictions(diagnosis, options.predictions)
-    if options.figure is not None:
-        with write_beside(options.figure) as part:
-            diagnosis.plot().savefig(part)
-    if options.report is not None:
-        write_page(diagnosis, options.report, simulation)
-    say_written(options.report, options.json, options.predictions, options.figure)
+    write_requested(
+        options,
+        {
+            "json": lambda path: write_answer(diagnosis, path, simulation=simulation),
+            "predictions": lambda path: write_predictions(diagnosis, path),
+            "report": lambda path: write_page(diagnosis, path, simulation),
+        },
+        figure=diagnosis.plot,
+    )
     source = shell_word(options.json or folder)
     for line in _suggest_commands(diagnosis, source):
         print(line)
@@ -197,25 +197,31 @@ def diagnose_all(options: argparse.Namespace) -> int:
     """Diagnose every folder, print and write the table; returns 2 if one was not diagnosed."""
     if options.output is None:
         raise ExperimentError(f"{len(options.folder)} folders: expected --output DIR beside them")
-    for name in ("json", "predictions", "figure", "report"):
-        if getattr(options, name) is not None:
-            raise ExperimentError(
-                f"--{name}: is for one folder, found it with --output: every answer goes there, "
-                "and `teleopdesign report ANSWER` makes its page"
-            )
-    if options.simulate:
-        raise ExperimentError("--simulate: is for one folder, found it with --output")
+    refuse_options(
+        options,
+        ("json", "predictions", "figure", "report", "simulate"),
+        "is for one folder, found it with --output: every answer goes there, and `teleopdesign "
+        "report ANSWER` makes its page",
+    )
     for folder in options.folder:
         if not folder.is_dir():
             raise ExperimentError(f"{folder}: no such folder")
-    search = _search(options)
-    output = make_folder(options.output)
     from ..studies.folders import diagnose_folders
+
+    known = effects_by_name(options)
+    among = candidate_effects(known, options.only, options.exclude)
+    output = make_folder(options.output)
 
     reporter = PointReporter()
     try:
         rows = diagnose_folders(
-            options.folder, output, search=search, workers=options.workers, progress=reporter
+            options.folder,
+            output,
+            known=dict(known),
+            among=among,
+            quick=options.quick,
+            workers=options.workers,
+            progress=reporter,
         )
     except KeyboardInterrupt:
         reporter.clear()
@@ -231,14 +237,6 @@ def diagnose_all(options: argparse.Namespace) -> int:
     failed = sum(bool(row.failure) for row in rows)
     print(f"\n{len(rows) - failed} of {len(rows)} folders diagnosed; answers and {TABLE}: {output}")
     return BAD_INPUT if failed else 0
-
-
-def _search(options: argparse.Namespace) -> FolderSearch:
-    from ..studies.folders import FolderSearch
-
-    known = effects_by_name(options)
-    among = candidate_effects(known, options.only, options.exclude)
-    return FolderSearch(dict(known), among, options.quick)
 
 
 def table_lines(rows: Sequence[DiagnosedFolder]) -> list[str]:

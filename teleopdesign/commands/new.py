@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 from ..base.errors import ExperimentError
 from ._new_kinds import (
     add_diagram_options,
+    ask_about,
+    describe_survey,
     is_curve,
     make_curve,
     make_diagram,
@@ -20,7 +22,7 @@ from ._new_kinds import (
     say_next,
     say_what_stops,
 )
-from ._options import shell_word
+from ._options import add_repeated, split_pairs
 
 if TYPE_CHECKING:
     from ..measurement.experiment import Experiment
@@ -71,13 +73,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         ("hand", "the measured force of the hand or environment, or none"),
     ):
         parser.add_argument(f"--{name}", metavar="COLUMN", help=f"the column of {text}")
-    parser.add_argument(
-        "--unit",
-        action="append",
-        default=[],
-        metavar="COLUMN=UNIT",
-        help="the unit of a column (may be repeated)",
-    )
+    add_repeated(parser, "--unit", "COLUMN=UNIT", "the unit of a column")
     for option, text in (
         ("torque-constant", 'torque constant of the motor, such as "0.037 N*m/A"'),
         (
@@ -144,7 +140,7 @@ def _run(options: argparse.Namespace) -> int:
     survey = survey_logs(logs, files, choices)
     ask = not options.yes and sys.stdin.isatty()
     if ask:
-        choices = _ask_about(survey, choices, input)
+        choices = _ask_about(survey, choices)
         survey = survey_logs(logs, files, choices)
     make_folder(
         survey,
@@ -155,7 +151,8 @@ def _run(options: argparse.Namespace) -> int:
         spans=spans,
         overwrite=options.overwrite,
     )
-    print(survey_text(survey, options.logs[0].name))
+    head = f"{options.logs[0].name}: {survey.duration:.4g} s, {len(survey.columns)} columns"
+    print(describe_survey(survey, head))
     if survey.guesses and not options.yes and not ask:
         print("\nno terminal to ask on: every guess is accepted, as with --yes")
     experiment = load_experiment(folder)
@@ -193,92 +190,23 @@ def _spans(options: argparse.Namespace) -> FitAndCheck | None:
     return (fit[0], fit[1]), (check[0], check[1])
 
 
-def survey_text(survey: Survey, name: str) -> str:
-    """Lines on what was understood, one for each channel, and on what was guessed."""
-    lines = [f"{name}: {survey.duration:.4g} s, {len(survey.columns)} columns; {survey.axis} axis"]
-    for key, entry in survey.channels.items():
-        keys = ("column", "unit") if "column" in entry else entry
-        rest = {k: v for k, v in entry.items() if k not in keys}
-        more = ", ".join(f"{k} {_shorten(v)}" for k, v in rest.items())
-        column = f'"{entry["column"]}"' if "column" in entry else _shorten(entry)
-        unit = f" in {entry['unit']}" if "unit" in entry and "column" in entry else ""
-        lines.append(f"  {key:<18} {column}{unit}{', ' + more if more else ''}")
-    lines += [f"  {note}" for note in survey.notes]
-    if survey.unused:
-        lines.append("not used:")
-        width = max(18, *map(len, survey.unused))
-        lines += [f"  {column:<{width}} {why}" for column, why in survey.unused.items()]
-    if survey.guesses:
-        lines.append("guessed:")
-        for key, why in survey.guesses.items():
-            lines.append(f"  {key}: {why}")
-            if (option := _option_of(key, survey)) and "--" not in why:
-                lines.append(f"    otherwise: {option}")
-    return "\n".join(lines)
-
-
-def _option_of(key: str, survey: Survey) -> str:
-    """The option that replaces a wrong guess; "" if no option does."""
-    _, quantity, part = (*key.split("."), "", "")[:3]
-    columns = {"actuator_force": "force", "interaction_force": "hand"}
-    if part == "column":
-        return f"--{columns.get(quantity, quantity)} COLUMN"
-    if part == "unit":
-        column = survey.channels.get(quantity, {}).get("column", "COLUMN")
-        return f"--unit {shell_word(f'{column}=UNIT')}"
-    if part == "gear_ratio":
-        return "--gear-ratio N (1: none)"
-    if part == "torque_constant":
-        unit = survey.channels[quantity][part]["unit"]
-        return f'--torque-constant "VALUE {unit}"'
-    if part == "lever_arm":
-        return '--lever-arm "VALUE m"'
-    other = "revolute" if survey.axis == "prismatic" else "prismatic"
-    return {
-        "channels.position.counts_per_turn": "--counts-per-turn N",
-        "model.device.axis": f"--axis {other}",
-        "sample_rate": "--sample-rate HZ",
-    }.get(key, "")
-
-
-def _shorten(value: object) -> str:
-    if isinstance(value, dict):
-        return f"{value['value']:g} {value['unit']}"
-    return f"{value:g}" if isinstance(value, int | float) and value is not True else str(value)
-
-
 def _choices(options: argparse.Namespace) -> Choices:
     from ..measurement.description import lever_arm, motor_constant
     from ..measurement.survey import Choices
 
-    units = {}
-    for text in options.unit:
-        column, equals, unit = text.rpartition("=")
-        if not equals or not column or not unit:
-            raise ExperimentError(f"--unit: found {text!r}, expected COLUMN=UNIT")
-        units[column] = unit
-    constant = None
-    if options.torque_constant is not None:
-        constant = motor_constant(options.torque_constant, where="--torque-constant")
-    arm = None
-    if options.lever_arm is not None:
-        arm = lever_arm(options.lever_arm, where="--lever-arm")
+    constant, arm = options.torque_constant, options.lever_arm
+    same = ("axis", "time", "position", "gear_ratio", "counts_per_turn", "sample_rate")
     return Choices(
-        axis=options.axis,
-        time=options.time,
-        position=options.position,
+        **{name: getattr(options, name) for name in same},
         actuator_force=options.force,
         interaction_force=options.hand,
-        units=units,
-        torque_constant=constant,
-        lever_arm=arm,
-        gear_ratio=options.gear_ratio,
-        counts_per_turn=options.counts_per_turn,
-        sample_rate=options.sample_rate,
+        units=split_pairs(options.unit, "--unit", "COLUMN=UNIT", at_last=True),
+        torque_constant=constant and motor_constant(constant, where="--torque-constant"),
+        lever_arm=arm and lever_arm(arm, where="--lever-arm"),
     )
 
 
-def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> Choices:
+def _ask_about(survey: Survey, choices: Choices) -> Choices:
     """The choices, with the user's answers on the guesses; an empty answer accepts a guess."""
     from ..measurement.description import lever_arm, motor_constant, plain_number
 
@@ -293,8 +221,7 @@ def _ask_about(survey: Survey, choices: Choices, ask: Callable[[str], str]) -> C
         name = {"model.device.axis": "axis", "sample_rate": key}.get(key, part)
         if name not in ("unit", "column", "axis", *numbers):
             continue
-        answer = ask(f"{key}: {why}\n  Enter accepts this; or type another value: ").strip()
-        if not answer:
+        if not (answer := ask_about(f"{key}: {why}")):
             continue
         value: Any = numbers[name](answer, where=key) if name in numbers else answer
         if name == "unit":

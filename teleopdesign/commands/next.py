@@ -3,25 +3,32 @@
 from __future__ import annotations
 
 import argparse
-import math
-import textwrap
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import ExperimentError, unknown
-from ..base.files import write_beside, write_json
+from ..base.sentences import wrap
 from ._arms import add_body
 from ._diagnosis import diagnosis_of, diagnosis_of_part, experiment_and_answer, print_diagnosis
-from ._options import add_experiment, add_output, value_from
+from ._options import (
+    add_experiment,
+    add_output,
+    add_repeated,
+    refuse_options,
+    require_positive,
+    say_written,
+    split_pairs,
+    value_from,
+    write_requested,
+)
 from ._terminal import replace_line
 from ._whole_diagram import diagnosed_diagram, is_diagram, print_next, print_what_to_log
 
 if TYPE_CHECKING:
     from ..measurement import Experiment
-    from ..next_experiment import Limits, SimulatedDiagnosis
+    from ..next_experiment import Limits, Reference, SimulatedDiagnosis
 
-#: columns of the terminal
-WIDTH = 100
 #: limit -> its quantity, as units are checked
 QUANTITY = {
     "low": "position",
@@ -45,16 +52,14 @@ def add(parser: argparse.ArgumentParser) -> None:
     add_experiment(parser)
     add_body(parser)
     add_output(parser, "--output", "write the position reference", ".csv")
-    add_output(parser, "--json", "write the proposal", ".json")
-    add_output(parser, "--figure", "write the figure", ".png", ".pdf", ".svg")
-    parser.add_argument(
+    add_output(parser, "--json", "write the proposal")
+    add_output(parser, "--figure", "write the figure")
+    add_repeated(
+        parser,
         "--limit",
-        action="append",
-        default=[],
-        metavar="[BODY.]NAME=VALUE[UNIT]",
-        help="limit that replaces the largest value in the records: low, high, speed, "
-        "acceleration, jerk or force, such as speed=0.2m/s; without a unit, in SI (may be "
-        "repeated)",
+        "[BODY.]NAME=VALUE[UNIT]",
+        "limit that replaces the largest value in the records: low, high, speed, acceleration, "
+        "jerk or force, such as speed=0.2m/s; without a unit, in SI",
     )
     parser.add_argument(
         "--duration",
@@ -76,13 +81,12 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the proposed experiment and what it will show; write the requested files."""
-    if not (math.isfinite(options.duration) and options.duration > 0):
-        raise ExperimentError(f"--duration: found {options.duration:g}, expected more than 0 s")
+    require_positive(options, ("duration",), " s")
     if is_diagram(options.folder):
         return print_what_to_log(options.folder)
     if (whole := diagnosed_diagram(options)) is not None:
         return print_next(whole)
-    from ..next_experiment import propose, show_in_simulation, write_reference
+    from ..next_experiment import propose, show_in_simulation
 
     experiment = experiment_and_answer(options)
     if experiment.arm is not None and options.body is None:
@@ -100,30 +104,19 @@ def run(options: argparse.Namespace) -> int:
         replace_line("")
         print("\n".join(["", *map(str, shown)]))
         print(f"true effect named in simulation: {sum(s.named for s in shown)} of {len(shown)}")
-    if options.output is not None:
-        if proposal.reference is not None and proposal.is_useful:
-            write_reference(proposal.reference, experiment, options.output)
-            print(f"\nwritten: {options.output}")
-        else:
-            print(f"\nnot written: {options.output}, because no motion is proposed")
-    if options.json is not None:
-        content = _content(proposal, shown)
-        write_json(options.json, content)
-    if options.figure is not None:
-        with write_beside(options.figure) as part:
-            proposal.plot().savefig(part)
+    reference = proposal.reference if proposal.is_useful else None
+    _write_reference(reference, experiment, options.output)
+    write_requested(options, json=lambda: _content(proposal, shown), figure=proposal.plot)
     return 0
 
 
 def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
     """Propose paths of all joints of an arm; with --body, `run` plans one joint instead."""
-    from ..next_experiment import propose_paths, shown_limits, write_reference
+    from ..next_experiment import propose_paths, shown_limits
 
-    for value, option in ((options.figure, "--figure"), (options.simulate, "--simulate")):
-        if value is not None:
-            raise ExperimentError(
-                f"{option}: not available for an arm: use --output, or --body JOINT"
-            )
+    refuse_options(
+        options, ("figure", "simulate"), "not available for an arm: use --output, or --body JOINT"
+    )
     stated = _read_limits(options.limit, experiment)
     diagnosis = diagnosis_of(experiment, options)
     limits = {
@@ -136,22 +129,32 @@ def _run_arm(experiment: Experiment, options: argparse.Namespace) -> int:
     replace_line("")
     print_diagnosis(str(diagnosis))
     print(f"\n{_wrap('next experiment: ' + repr(paths))}")
-    if options.output is not None and paths.is_useful:
-        write_reference(paths.reference, experiment, options.output)
-        print(f"\nwritten: {options.output}")
-    elif options.output is not None:
-        print(f"\nnot written: {options.output}, because no motion is proposed")
-    if options.json is not None:
-        numbers = {"condition": paths.condition, "recorded": paths.recorded}
-        content = {**numbers, "period": paths.period, "standard_errors": dict(paths.errors)}
-        write_json(options.json, content)
+    _write_reference(paths.reference if paths.is_useful else None, experiment, options.output)
+    numbers = {n: getattr(paths, n) for n in ("condition", "recorded", "period")}
+    content = {**numbers, "standard_errors": dict(paths.errors)}
+    write_requested(options, json=lambda: content)
     return 0
+
+
+def _write_reference(
+    reference: Reference | None, experiment: Experiment, path: Path | None
+) -> None:
+    """Write the proposed motion, if a file is requested and a motion is proposed."""
+    from ..next_experiment import write_reference
+
+    if path is None:
+        return
+    if reference is None:
+        print(f"\nnot written: {path}, because no motion is proposed")
+        return
+    write_reference(reference, experiment, path)
+    say_written(path)
 
 
 def _wrap(text: str) -> str:
     """The text with its first line wrapped; the other lines, a table, stay unchanged."""
     first, *rest = text.split("\n")
-    return "\n".join([textwrap.fill(first, WIDTH, break_on_hyphens=False), *rest])
+    return "\n".join([wrap(first), *rest])
 
 
 def _content(proposal: Any, shown: Sequence[SimulatedDiagnosis]) -> dict[str, Any]:
@@ -175,21 +178,16 @@ def _read_limits(texts: Sequence[str], experiment: Experiment) -> dict[str, dict
     """
     bodies = tuple(experiment.bodies)
     limits: dict[str, dict[str, float]] = {}
-    for text in texts:
-        name, _, value = text.partition("=")
-        body, _, name_of_limit = name.rpartition(".")
-        body = body or bodies[0]
+    for name, value in split_pairs(texts, "--limit").items():
+        body, _, limit = name.rpartition(".")
+        body, where = body or bodies[0], f"--limit {name}={value}"
         if body not in bodies:
-            raise ExperimentError(f"--limit {text}: {unknown('body', body, bodies)}")
-        if name_of_limit not in QUANTITY:
-            raise ExperimentError(f"--limit {text}: {unknown('limit', name_of_limit, QUANTITY)}")
-        size = value_from(
-            value,
-            quantity=QUANTITY[name_of_limit],
-            axis=experiment.axis(body),
-            where=f"--limit {text}",
-        )
-        limits.setdefault(body, {})[name_of_limit] = size
+            raise ExperimentError(f"{where}: {unknown('body', body, bodies)}")
+        if limit not in QUANTITY:
+            raise ExperimentError(f"{where}: {unknown('limit', limit, QUANTITY)}")
+        axis, quantity = experiment.axis(body), QUANTITY[limit]
+        size = value_from(value, quantity=quantity, axis=axis, where=where)
+        limits.setdefault(body, {})[limit] = size
     return limits
 
 

@@ -5,17 +5,25 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..base.errors import ExperimentError
-from ..base.files import read_whole, write_json
+from ..base.files import read_whole
+from ..base.sentences import wrap
 from ._arms import add_body
-from ._claims import BESIDE_A_DIAGRAM, WIDTH, claim_data, claim_lines, is_diagram, settle_diagram
+from ._claims import claim_data, claim_lines, is_diagram, settle_diagram
 from ._diagnosis import body_of_source
-from ._options import add_answer, add_effect_files, add_law_files, add_output, say_written
+from ._options import (
+    add_answer,
+    add_effect_files,
+    add_law_files,
+    add_output,
+    refuse_options,
+    require_positive,
+    write_requested,
+)
 
 if TYPE_CHECKING:
     from ..passivity.device_claims import Compensator, Margin
@@ -23,6 +31,9 @@ if TYPE_CHECKING:
     from ..passivity.theorems import TopicClaim
     from ..simulate import Sampling
 
+
+#: options that describe a compensator or choose a body of a diagnosis
+OF_A_DEVICE = ("answer", "body", "dahl", "smoothed_coulomb", "wall")
 
 EXAMPLES = """
   teleopdesign passivity answer.json --dahl 0.8 20000 --period 0.001
@@ -59,7 +70,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="SPEED",
         help="for a diagram: largest speed in this search, m/s or rad/s (default: %(default)g)",
     )
-    add_output(parser, "--json", "write claims, certificates and motions", ".json")
+    add_output(parser, "--json", "write claims, certificates and motions")
     parser.add_argument(
         "--check",
         type=Path,
@@ -137,14 +148,12 @@ def run(options: argparse.Namespace) -> int:
     print(_describe_device(device, claims, limits))
     if options.period is not None and device.damping.low > 0:
         print("\n" + _describe_z_width(device, options.period, options.delay))
-    if options.json is not None:
-        content = {
-            "basis": basis.sentence(body.axis),
-            "claims": [claim_data(s) for s in claims],
-            "margins": [vars(m) for m in limits],
-        }
-        write_json(options.json, content)
-    say_written(options.json)
+    content = {
+        "basis": basis.sentence(body.axis),
+        "claims": [claim_data(s) for s in claims],
+        "margins": [vars(m) for m in limits],
+    }
+    write_requested(options, json=lambda: content)
     return 0
 
 
@@ -153,24 +162,16 @@ def _check_options(options: argparse.Namespace) -> None:
         raise ExperimentError(
             "passivity: expected a folder, an answer (.json), a diagram (.toml), or --check F"
         )
-    for name in ("stroke", "speed"):
-        value = getattr(options, name)
-        if not (math.isfinite(value) and value > 0):
-            raise ExperimentError(f"--{name}: found {value:g}, expected more than 0")
-    if is_diagram(options.source) and (
-        options_beside := [n for n in BESIDE_A_DIAGRAM if _is_stated(options, n)]
-    ):
-        raise ExperimentError(
-            f"--{options_beside[0]}: found beside a diagram, which has its own blocks"
-        )
+    require_positive(options, ("stroke", "speed"))
+    require_positive(options, ("period",), " s")
+    if is_diagram(options.source):
+        refuse_options(options, OF_A_DEVICE, "found beside a diagram, which has its own blocks")
     for name in ("dahl", "smoothed_coulomb"):
         values = getattr(options, name)
         if values is not None and not all(math.isfinite(x) and x > 0 for x in values):
             raise ExperimentError(
                 f"--{name.replace('_', '-')}: found {values}, expected two numbers > 0"
             )
-    if options.period is not None and not (math.isfinite(options.period) and options.period > 0):
-        raise ExperimentError(f"--period: found {options.period:g}, expected more than 0 s")
     if min(options.delay, options.encoder_step) < 0:
         raise ExperimentError("--delay, --encoder-step: expected no negative number")
     late = options.delay / options.period if options.period else 0.0
@@ -181,10 +182,6 @@ def _check_options(options: argparse.Namespace) -> None:
         )
     if options.period is None and (options.wall or options.delay or options.encoder_step):
         raise ExperimentError("--wall, --delay, --encoder-step: they need --period")
-
-
-def _is_stated(options: argparse.Namespace, name: str) -> bool:
-    return getattr(options, name.replace("-", "_")) is not None
 
 
 def _choose_compensator(options: argparse.Namespace) -> Compensator | None:
@@ -293,9 +290,8 @@ def _check_file(path: Path) -> int:
             except Refused as problem:
                 raise ExperimentError(f"{path}: {title}: {problem}") from None
             count += 1
-            print("\n".join(textwrap.wrap(f"proved: {shown}", WIDTH, subsequent_indent="    ")))
+            print(wrap(f"proved: {shown}", rest="    "))
         if certificates:
-            lines = textwrap.wrap(f"title, not checked: {title}", WIDTH, subsequent_indent="    ")
-            print("\n".join([*lines, ""]))
+            print(wrap(f"title, not checked: {title}", rest="    ") + "\n")
     print(f"{count} certificate{'s' * (count != 1)} of {len(certified)} claims verified")
     return 0

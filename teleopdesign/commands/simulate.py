@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import ExperimentError
-from ._options import add_output, say_written, value_in
+from ._options import add_output, add_repeated, split_pairs, value_in, write_requested
 from .derive import add_diagram, diagram_from
 
 if TYPE_CHECKING:
@@ -35,14 +34,13 @@ def add(parser: argparse.ArgumentParser) -> None:
             metavar=("SIGNAL", "AMPLITUDE", "FREQUENCY"),
             help=f"{text}: a sine, such as 10mm 2Hz (may be repeated)",
         )
-    parser.add_argument(
+    add_repeated(
+        parser,
         "--value",
-        action="append",
-        default=[],
-        metavar="NAME=VALUE",
-        help="another value, with or without a unit: of the diagram (C.dahl.level=0.8N), at the "
-        "start (initial.X=5mm), from outside (inputs.F=1N), of the computer (computer.delay=1ms, "
-        "computer.period) or of the simulation (step, give); may be repeated",
+        "NAME=VALUE",
+        "another value, with or without a unit: of the diagram (C.dahl.level=0.8N), at the start "
+        "(initial.X=5mm), from outside (inputs.F=1N), of the computer (computer.delay=1ms, "
+        "computer.period) or of the simulation (step, give)",
     )
     parser.add_argument(
         "--continuous",
@@ -57,16 +55,10 @@ def add(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="state the error of the step for each signal, by further runs (7 times the work)",
     )
-    parser.add_argument(
-        "--signal",
-        action="append",
-        default=[],
-        metavar="NAME",
-        help="a signal of the figure (may be repeated; default: motion, commanded force and force "
-        "of interaction)",
-    )
+    text = "a signal of the figure; default: motion, commanded force and force of interaction"
+    add_repeated(parser, "--signal", "NAME", text)
     add_output(parser, "--output", "write the signals over time", ".csv", ".nc")
-    add_output(parser, "--figure", "draw signals over time", ".pdf", ".svg", ".png")
+    add_output(parser, "--figure", "draw signals over time")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -78,15 +70,14 @@ def run(options: argparse.Namespace) -> int:
     for name in options.signal:
         result[name]  # refused here, before anything is written
     print(result)
-    if options.output is not None:
-        write = result.to_csv if options.output.suffix == ".csv" else result.to_netcdf
-        write(options.output)
-    if options.figure is not None:
-        from ..show import save_figure
-
-        figure = result.plot(*options.signal)
-        save_figure(figure, options.figure, suffixes=(options.figure.suffix,))
-    say_written(options.output, options.figure)
+    writers = {".csv": result.to_csv, ".nc": result.to_netcdf}
+    write_requested(
+        options,
+        {
+            "output": lambda path: writers[path.suffix](path),
+        },
+        figure=lambda: result.plot(*options.signal),
+    )
     return 0
 
 
@@ -123,10 +114,8 @@ def _case(options: argparse.Namespace) -> SimulatedCase:
 def _values(texts: list[str], case: SimulatedCase) -> dict[str, float]:
     """Values by name, in SI, of texts such as "C.dahl.level=0.8N"."""
     values = {}
-    for text in texts:
-        name, sign, value = (part.strip() for part in text.partition("="))
-        if not sign:
-            raise ExperimentError(f"--value: found {text!r}, expected NAME=VALUE")
+    for text, value in split_pairs(texts, "--value").items():
+        name = text.strip()
         case.check_names([name])
         values[name] = value_in(value, unit=case.unit(name), where=f"--value {name}")
     return values

@@ -11,7 +11,7 @@ from ..base.errors import ExperimentError, did_you_mean
 from ..base.files import read_whole
 from . import STOPPED
 from ._command_line import BAD_INPUT
-from ._options import add_effect_files, add_law_files, add_output, count_argument
+from ._options import add_effect_files, add_law_files, add_output, count_argument, write_requested
 from ._terminal import PointReporter, replace_line
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def add(parser: argparse.ArgumentParser) -> None:
         "from there",
         ".nc",
     )
-    add_output(parser, "--figure", "write the figure", ".pdf", ".svg", ".png")
+    add_output(parser, "--figure", "write the figure")
     add_effect_files(parser)
     add_law_files(parser)
 
@@ -79,10 +79,7 @@ def run(options: argparse.Namespace) -> int:
     _print_failures(result)
     if not result.measures and result.failures:
         return BAD_INPUT
-    if options.figure is not None:
-        from ..show import save_figure
-
-        save_figure(result.plot(), options.figure, suffixes=(options.figure.suffix,))
+    write_requested(options, figure=result.plot)
     return 0
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ._options import add_output, say_written
+from ._options import add_output, write_requested
 from ._terminal import replace_line
 
 EXAMPLES = """
@@ -30,14 +30,13 @@ def add(parser: argparse.ArgumentParser) -> None:
         choices=("MBC", "FF", "hybrid"),
         help="what was switched on, if not as designed",
     )
-    add_output(parser, "--figure", "write the figure", ".png", ".pdf", ".svg")
+    add_output(parser, "--figure", "write the figure")
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the comparison; status 0 whatever it says."""
     from ..design.verify import read_plan, verify
     from ..measurement import load_experiment
-    from ..show import save_figure
 
     plan = read_plan(options.design, options.body)
     experiment = load_experiment(options.folder)
@@ -46,7 +45,5 @@ def run(options: argparse.Namespace) -> int:
     verified = verify(plan, experiment, case=options.case, without=without)
     replace_line("")
     print(verified)
-    if options.figure is not None:
-        save_figure(verified.plot(), options.figure, suffixes=(options.figure.suffix,))
-        say_written(options.figure)
+    write_requested(options, figure=verified.plot)
     return 0

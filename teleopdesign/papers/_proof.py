@@ -1,14 +1,15 @@
 """Proofs as steps of sympy expressions; each step is checked exactly, without a float.
 
-A function only writes down the steps; this module decides whether they hold. A step may use the
-assumptions of the proof, the assumptions of the symbols (positive, real), and facts that an earlier
-step has established. The words of the steps say how the steps make up the statement.
+A step is data. This module decides whether it holds. A step may use the assumptions of the proof,
+the assumptions of the symbols (positive, real), and facts that an earlier step has established.
+The words of the steps say how the steps make up the statement.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import ClassVar, Literal
 
 import sympy as sp
 
@@ -19,6 +20,142 @@ _LONGEST = 48  # characters of an expression that a line of a proof shows
 
 class NotProved(Exception):
     """A step is false, or could not be shown to be true; the message says which step and why."""
+
+
+@dataclass(frozen=True)
+class ProofStep:
+    """One exact fact; words: its meaning in the chain of the proof."""
+
+    words: str
+
+
+@dataclass(frozen=True)
+class Equal(ProofStep):
+    """left = right for all values of the symbols, or for blocks that need not commute."""
+
+    left: sp.Expr
+    right: sp.Expr
+
+
+@dataclass(frozen=True)
+class BlocksDiffer(ProofStep):
+    """left != right for some blocks: rational matrices on which they differ exactly."""
+
+    left: sp.Expr
+    right: sp.Expr
+
+
+@dataclass(frozen=True)
+class NotNegative(ProofStep):
+    """expression >= 0: it equals `form`, whose sign sympy knows.
+
+    form: an expression of symbols whose sign sympy knows, and of the symbols in `signs`
+    signs: symbol >= 0 -> expression that the proof assumes, or has shown before, to be >= 0
+    strictly: expression > 0
+    """
+
+    expression: sp.Expr
+    form: sp.Expr
+    signs: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    strictly: bool = False
+
+
+@dataclass(frozen=True)
+class Grows(ProofStep):
+    """expression >= 0 for variable > 0: its start and its derivative `slope` are >= 0.
+
+    slope: a form of the derivative whose sign sympy knows, as in NotNegative
+    """
+
+    expression: sp.Expr
+    variable: sp.Symbol
+    slope: sp.Expr
+    signs: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Limit(ProofStep):
+    """expression -> value as variable -> at (from the right if `at` is finite)."""
+
+    expression: sp.Expr
+    variable: sp.Symbol
+    at: sp.Expr
+    value: sp.Expr
+
+
+@dataclass(frozen=True)
+class Holds(ProofStep):
+    """A relation between exact numbers is true: an example that a case can occur.
+
+    relation: "==", "!=", "<", "<=", ">" or ">="
+    """
+
+    left: sp.Expr
+    relation: str
+    right: sp.Expr
+
+
+def check_step(step: ProofStep, known: Sequence[sp.Expr]) -> list[sp.Expr]:
+    """Check a step exactly; returns expressions that it shows to be >= 0.
+
+    known: expressions that are assumed, or were shown, to be >= 0
+    raises NotProved: the step is not shown to hold
+    """
+    _without_floats(*(part for part in vars(step).values() if isinstance(part, sp.Basic)))
+    match step:
+        case Equal(_, left, right):
+            _require(_are_equal(left, right), step, f"no proof that {left} = {right}")
+        case BlocksDiffer(_, left, right):
+            _require(counterexample(left, right) is not None, step, "no counterexample found")
+        case Limit(_, expression, variable, at, value):
+            limit = sp.limit(expression, variable, at, "+")
+            _require(
+                limit == value or vanishes(limit - value),
+                step,
+                f"the limit is {limit}, not {value}",
+            )
+        case Holds(_, left, relation, right):
+            numbers = not sp.sympify(left).free_symbols | sp.sympify(right).free_symbols
+            _require(numbers, step, f"{left} or {right} is no number")
+            stated = sp.Rel(left, right, relation)
+            _require(sp.simplify(stated) == sp.true, step, f"{stated} is not true")
+        case Grows(words, expression, variable, slope, signs):
+            start = sp.limit(expression, variable, 0, "+")
+            _require(start.is_nonnegative, step, f"starts at {start}")
+            derivative = sp.diff(expression, variable)
+            _check_sign(NotNegative(words, derivative, slope, signs), known)
+            return [sp.sympify(expression)]
+        case NotNegative():
+            _check_sign(step, known)
+            return [sp.sympify(step.expression)]
+    return []
+
+
+def _check_sign(step: NotNegative, known: Sequence[sp.Expr]) -> None:
+    """Check the sign of the form by sympy's assumptions, and the equality exactly."""
+    form = sp.sympify(step.form)
+    _without_floats(*step.signs.values())
+    for symbol, used in step.signs.items():
+        _require(symbol.is_nonnegative, step, f"{symbol} is not declared >= 0")
+        shown = any(vanishes(used - k) for k in known)
+        _require(shown, step, f"{used} >= 0 is neither assumed nor shown")
+    has_sign = form.is_positive if step.strictly else form.is_nonnegative
+    _require(has_sign, step, f"the sign of {form} does not show")
+    equal = vanishes(step.expression - form.subs(dict(step.signs)))
+    _require(equal, step, f"no proof that {step.expression} = {form}")
+
+
+def _require(holds: bool | None, step: ProofStep, why: str) -> None:
+    if not holds:
+        raise NotProved(f"{step.words}: {why}")
+
+
+def _are_equal(left: sp.Expr, right: sp.Expr) -> bool:
+    """Whether sympy's zero test, or exact rewriting of blocks, shows that both are equal."""
+    left, right = sp.sympify(left), sp.sympify(right)
+    if left.is_commutative and right.is_commutative:
+        return vanishes(left - right)
+    return proved_equal(left, right)
 
 
 def vanishes(expression: sp.Expr) -> bool:
@@ -47,174 +184,17 @@ def _without_floats(*expressions: sp.Basic) -> None:
             raise NotProved(f"a float in {expression}: a number proves nothing")
 
 
-def _show_sign(sign: str, expression: sp.Expr) -> str:
-    text = str(expression).replace("**", "^")
-    return f"  [{sign} {text}]" if len(text) <= _LONGEST else ""
-
-
-@dataclass(frozen=True)
-class ProofStep:
-    """One exact fact; words: its meaning in the chain of the proof."""
-
-    words: str
-
-    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Check the step; returns expressions that it shows to be >= 0.
-
-        known: expressions that are assumed, or were shown, to be >= 0
-        raises NotProved: the step is not shown to hold
-        """
-        raise NotImplementedError
-
-    def as_text(self) -> str:
-        """The words of the step, with expressions that are short enough to print."""
-        return self.words
-
-
-@dataclass(frozen=True)
-class Equal(ProofStep):
-    """left = right for all values of the symbols (commuting)."""
-
-    left: sp.Expr
-    right: sp.Expr
-
-    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Check by sympy's exact zero test; returns no expressions."""
-        _without_floats(self.left, self.right)
-        if not vanishes(sp.sympify(self.left) - self.right):
-            raise NotProved(f"{self.words}: no proof that {self.left} = {self.right}")
-        return []
-
-    def as_text(self) -> str:
-        """The words with the right side."""
-        return self.words + _show_sign("=", self.right)
-
-
-@dataclass(frozen=True)
-class NotNegative(ProofStep):
-    """expression >= 0: it equals `form`, whose sign sympy knows.
-
-    form: an expression of symbols whose sign sympy knows, and of the symbols in `signs`
-    signs: symbol >= 0 -> expression that the proof assumes, or has shown before, to be >= 0
-    strictly: expression > 0
-    """
-
-    expression: sp.Expr
-    form: sp.Expr
-    signs: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    strictly: bool = False
-
-    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Check the sign by sympy's assumptions, and the equality exactly."""
-        form = sp.sympify(self.form)
-        _without_floats(self.expression, form, *self.signs.values())
-        for symbol, used in self.signs.items():
-            if not symbol.is_nonnegative:
-                raise NotProved(f"{self.words}: {symbol} is not declared >= 0")
-            if not any(vanishes(used - k) for k in known):
-                raise NotProved(f"{self.words}: {used} >= 0 is neither assumed nor shown")
-        if not (form.is_positive if self.strictly else form.is_nonnegative):
-            raise NotProved(f"{self.words}: the sign of {form} does not show")
-        if not vanishes(self.expression - form.subs(dict(self.signs))):
-            raise NotProved(f"{self.words}: no proof that {self.expression} = {form}")
-        return [sp.sympify(self.expression)]
-
-
-@dataclass(frozen=True)
-class Grows(ProofStep):
-    """expression >= 0 for variable > 0: its start and its derivative `slope` are >= 0.
-
-    slope: a form of the derivative whose sign sympy knows, as in NotNegative
-    """
-
-    expression: sp.Expr
-    variable: sp.Symbol
-    slope: sp.Expr
-    signs: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-
-    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Check the start by an exact limit from the right, the derivative as in NotNegative."""
-        start = sp.limit(self.expression, self.variable, 0, "+")
-        if not start.is_nonnegative:
-            raise NotProved(f"{self.words}: starts at {start}")
-        derivative = sp.diff(self.expression, self.variable)
-        NotNegative(self.words, derivative, self.slope, self.signs).check(known)
-        return [sp.sympify(self.expression)]
-
-
-@dataclass(frozen=True)
-class Limit(ProofStep):
-    """expression -> value as variable -> at (from the right if `at` is finite)."""
-
-    expression: sp.Expr
-    variable: sp.Symbol
-    at: sp.Expr
-    value: sp.Expr
-
-    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Check by sympy's limit; returns no expressions."""
-        _without_floats(self.expression, self.value)
-        limit = sp.limit(self.expression, self.variable, self.at, "+")
-        if limit != self.value and not vanishes(limit - self.value):
-            raise NotProved(f"{self.words}: the limit is {limit}, not {self.value}")
-        return []
-
-    def as_text(self) -> str:
-        """The words with the value of the limit."""
-        return self.words + _show_sign("->", self.value)
-
-
-@dataclass(frozen=True)
-class Holds(ProofStep):
-    """A relation between exact numbers is true: an example that a case can occur.
-
-    relation: "==", "!=", "<", "<=", ">" or ">="
-    """
-
-    left: sp.Expr
-    relation: str
-    right: sp.Expr
-
-    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Check by sympy; returns no expressions."""
-        left, right = sp.sympify(self.left), sp.sympify(self.right)
-        _without_floats(left, right)
-        if left.free_symbols or right.free_symbols:
-            raise NotProved(f"{self.words}: {left} or {right} is no number")
-        relation = sp.Rel(left, right, self.relation)
-        if sp.simplify(relation) != sp.true:
-            raise NotProved(f"{self.words}: {relation} is not true")
-        return []
-
-
-@dataclass(frozen=True)
-class BlocksEqual(ProofStep):
-    """left = right for blocks that need not commute."""
-
-    left: sp.Expr
-    right: sp.Expr
-
-    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Check by exact rewriting, see `derive.proved_equal`."""
-        _without_floats(self.left, self.right)
-        if not proved_equal(self.left, self.right):
-            raise NotProved(f"{self.words}: no proof that {self.left} = {self.right}")
-        return []
-
-
-@dataclass(frozen=True)
-class BlocksDiffer(ProofStep):
-    """left != right for some blocks: rational matrices on which they differ exactly."""
-
-    left: sp.Expr
-    right: sp.Expr
-
-    def check(self, known: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Check by a counterexample, see `derive.counterexample`."""
-        _without_floats(self.left, self.right)
-        if counterexample(self.left, self.right) is None:
-            raise NotProved(f"{self.words}: no counterexample found")
-        return []
+def step_text(step: ProofStep) -> str:
+    """The words of a step, with what it shows where that is short enough to print."""
+    match step:
+        case Equal(words, _, right) if sp.sympify(right).is_commutative:
+            sign, shown = "=", right
+        case Limit(words, _, _, _, value):
+            sign, shown = "->", value
+        case _:
+            return step.words
+    text = str(shown).replace("**", "^")
+    return f"{words}  [{sign} {text}]" if len(text) <= _LONGEST else words
 
 
 @dataclass(frozen=True)
@@ -226,6 +206,7 @@ class ProofSteps:
 
     steps: tuple[ProofStep, ...]
     assuming: tuple[sp.Expr, ...] = ()
+    outcome: ClassVar[Literal["proved"]] = "proved"
 
     def verify(self) -> tuple[str, ...]:
         """The words of every step; raises NotProved at the first step that does not hold."""
@@ -234,8 +215,8 @@ class ProofSteps:
         known: list[sp.Expr] = [sp.sympify(a) for a in self.assuming]
         _without_floats(*known)
         for step in self.steps:
-            known += step.check(known)
-        return tuple(step.as_text() for step in self.steps)
+            known += check_step(step, known)
+        return tuple(map(step_text, self.steps))
 
 
 def proof(*steps: ProofStep | Iterable[ProofStep], assuming: Iterable[sp.Expr] = ()) -> ProofSteps:
@@ -258,6 +239,7 @@ class Correction:
 
     printed: ProofSteps
     corrected: ProofSteps
+    outcome: ClassVar[Literal["refuted"]] = "refuted"
 
     def verify(self) -> tuple[str, ...]:
         """The words of all steps; raises NotProved if one does not hold."""

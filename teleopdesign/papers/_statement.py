@@ -8,7 +8,7 @@ import re
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 from ._proof import Correction, NotProved, ProofSteps
 
@@ -53,13 +53,12 @@ class Figure:
         return min(self.value - self.low, self.high - self.value)
 
     def __str__(self) -> str:
-        unit = f" {self.unit}" if self.unit else ""
-        if math.isinf(self.low) or math.isinf(self.high):
-            bound = (
-                f"at most {self.high:.4g}" if math.isinf(self.low) else f"at least {self.low:.4g}"
-            )
-            return f"{self.what}: {self.value:.4g}{unit}, must be {bound}"
-        return f"{self.what}: {self.value:.4g}{unit}, must be {self.low:.4g} to {self.high:.4g}"
+        bound = f"{self.low:.4g} to {self.high:.4g}"
+        if math.isinf(self.low):
+            bound = f"at most {self.high:.4g}"
+        elif math.isinf(self.high):
+            bound = f"at least {self.low:.4g}"
+        return f"{self.what}: {self.value:.4g} {self.unit}".rstrip() + f", must be {bound}"
 
 
 def figure_near(what: str, value: float, expected: float, within: float, unit: str = "") -> Figure:
@@ -72,10 +71,16 @@ class Numbers:
     """Computed numbers, each with the range in which it must lie."""
 
     figures: tuple[Figure, ...]
+    outcome: ClassVar[How] = "checked numerically"
 
-    def worst(self) -> Figure:
-        """The number with the smallest margin."""
-        return min(self.figures, key=lambda f: f.margin)
+    def verify(self) -> tuple[str, ...]:
+        """No exact steps."""
+        return ()
+
+
+def numbers_of(*figures: Figure) -> Numbers:
+    """These numbers."""
+    return Numbers(figures)
 
 
 StatementEvidence = ProofSteps | Correction | Numbers
@@ -157,16 +162,13 @@ def shows(
     """
 
     def made(function: Callable[[], StatementEvidence]) -> Statement:
-        words, *parts = map(_one_line, _PART.split(inspect.getdoc(function) or ""))
+        texts = _PART.split(inspect.getdoc(function) or "")
+        words, *parts = (" ".join(map(str.strip, text.strip().splitlines())) for text in texts)
         named = dict(zip(parts[::2], parts[1::2], strict=True))
-        texts = named.get("formula", ""), named.get("printed", ""), named.get("assumes", "")
-        return Statement(number, paper, place, words, how, function, *texts, numbers)
+        more = named.get("formula", ""), named.get("printed", ""), named.get("assumes", "")
+        return Statement(number, paper, place, words, how, function, *more, numbers)
 
     return made
-
-
-def _one_line(text: str) -> str:
-    return " ".join(line.strip() for line in text.strip().splitlines())
 
 
 def claim(number: int, paper: Paper, place: str, words: str, see: tuple[int, ...]) -> Statement:
@@ -181,15 +183,12 @@ def check(statement: Statement) -> Result:
     details: tuple[str, ...] = ()
     figures: tuple[Figure, ...] = ()
     try:
-        evidence = None if statement.shown_by is None else statement.shown_by()
-        if isinstance(evidence, Numbers):
-            outcome, figures = "checked numerically", evidence.figures
-        elif isinstance(evidence, Correction):
-            outcome, details = "refuted", evidence.verify()
-        elif isinstance(evidence, ProofSteps):
-            outcome, details = "proved", evidence.verify()
-        if statement.numbers is not None:
-            figures += statement.numbers().figures
+        for show in (statement.shown_by, statement.numbers):
+            if show is not None:
+                evidence = show()
+                details += evidence.verify()
+                figures += getattr(evidence, "figures", ())
+                outcome = evidence.outcome if show is statement.shown_by else outcome
     except NotProved as error:
         outcome, details = "failed", (str(error),)
     if any(not f.margin >= 0 for f in figures):

@@ -14,7 +14,7 @@ from ..effects import EFFECTS
 from ..frequency import describing_function, measured_impedance
 from ._laws import coulomb
 from ._proof import Correction, Equal, Holds, Limit, NotNegative, ProofSteps, proof
-from ._statement import BERNSTEIN, DERIVED, Figure, Numbers, figure_near, shows
+from ._statement import BERNSTEIN, DERIVED, Figure, Numbers, figure_near, numbers_of, shows
 from .describing_functions import first_harmonic
 
 m, A, a0, f, F_C, w, y, r = sp.symbols("m A a_0 f F_C omega y r", positive=True)
@@ -24,7 +24,7 @@ LOSS = sp.atan(r * y) - sp.atan(y)  # phase lost while the amplitude falls by r,
 
 def corner_at_20_hz() -> Numbers:
     """The ratio of friction to mass and amplitude for which the corner is at 20 Hz."""
-    return Numbers((figure_near("F_C/(m a_0) for 20 Hz", pi**3 * 20**1.2, 1130, 5, "N/(kg m)"),))
+    return numbers_of(figure_near("F_C/(m a_0) for 20 Hz", pi**3 * 20**1.2, 1130, 5, "N/(kg m)"))
 
 
 @shows(20, DERIVED, "from eq (9) of Bernstein 2005", numbers=corner_at_20_hz)
@@ -52,11 +52,9 @@ def degrees_lost() -> Numbers:
     """The greatest loss of phase (deg) over one and over two decades of amplitude."""
     loss = [np.degrees(2 * np.arctan(np.sqrt(10.0**n))) - 90 for n in (1, 2)]
     # half of the last digit printed
-    return Numbers(
-        (
-            figure_near("one decade", loss[0], 54.9, 0.05, "deg"),
-            figure_near("two decades", loss[1], 78.6, 0.05, "deg"),
-        )
+    return numbers_of(
+        figure_near("one decade", loss[0], 54.9, 0.05, "deg"),
+        figure_near("two decades", loss[1], 78.6, 0.05, "deg"),
     )
 
 
@@ -211,25 +209,21 @@ def bandwidth_of_force_feedback() -> Numbers:
     wide, narrow = ({f: run(b, f) for f in (1.0, 5.0)} for b in (20.0, 2.0))
     free = slope(none(1.0), none(5.0))
     # 1 dB/decade and 10 deg cannot be seen in a printed figure, several times that can
-    return Numbers(
-        (
-            figure_near(
-                "20 Hz: slope 1 to 5 Hz", slope(wide[1.0], wide[5.0]), free, 1.0, "dB/decade"
-            ),
-            Figure(
-                "2 Hz: slope 1 to 5 Hz",
-                slope(narrow[1.0], narrow[5.0]),
-                free + 5.0,
-                unit="dB/decade",
-            ),
-            figure_near(
-                "20 Hz: phase added at 5 Hz", phase(wide[5.0]) - phase(none(5.0)), 0, 10, "deg"
-            ),
-            figure_near(
-                "2 Hz: phase added at 5 Hz", phase(narrow[5.0]) - phase(none(5.0)), 40, 5, "deg"
-            ),
-            Figure("20 Hz: phase at 20 Hz", phase(run(20.0, 20.0)), high=180, unit="deg"),
-            Figure("20 Hz: phase at 30 Hz", phase(run(20.0, 30.0)), low=180, unit="deg"),
-            Figure("20 Hz: phase at 60 Hz", phase(run(20.0, 60.0)), low=180, unit="deg"),
-        )
+    return numbers_of(
+        figure_near("20 Hz: slope 1 to 5 Hz", slope(wide[1.0], wide[5.0]), free, 1.0, "dB/decade"),
+        Figure(
+            "2 Hz: slope 1 to 5 Hz",
+            slope(narrow[1.0], narrow[5.0]),
+            free + 5.0,
+            unit="dB/decade",
+        ),
+        figure_near(
+            "20 Hz: phase added at 5 Hz", phase(wide[5.0]) - phase(none(5.0)), 0, 10, "deg"
+        ),
+        figure_near(
+            "2 Hz: phase added at 5 Hz", phase(narrow[5.0]) - phase(none(5.0)), 40, 5, "deg"
+        ),
+        Figure("20 Hz: phase at 20 Hz", phase(run(20.0, 20.0)), high=180, unit="deg"),
+        Figure("20 Hz: phase at 30 Hz", phase(run(20.0, 30.0)), low=180, unit="deg"),
+        Figure("20 Hz: phase at 60 Hz", phase(run(20.0, 60.0)), low=180, unit="deg"),
     )

@@ -14,15 +14,11 @@ from ..effects import EFFECTS
 from ._laws import coulomb
 from ._proof import Equal, Grows, Limit, NotNegative, ProofStep, ProofSteps, proof
 from ._statement import DERIVED, MAHVASH, claim, shows
-from .dahl_loop import ENERGY
-from .dahl_loop import A as LOOP_AMPLITUDE
-from .dahl_loop import f_c as LOOP_LEVEL
-from .dahl_loop import sigma as LOOP_STIFFNESS
+from .dahl_loop import POSITIVE_SHARE, SHARE, loop_energy, rising_share
 
 f_D, sigma, f_1, f_2, k, c, A, u = sp.symbols("f_D sigma_D f_1 f_2 k c A u", positive=True)
 U = sigma * A / f_D
 W = 4 * f_D * (A - f_D / sigma * sp.tanh(U))  # of a cycle; shown to be the loop's in `rising_gain`
-SHARE = 1 - sp.tanh(u) / u
 CLAMPED = W - 4 * f_1 * A  # released a cycle, link stuck: the cable returns what it takes
 FREE = CLAMPED - 4 * f_2 * (A - f_2 / k)  # link sliding, A > f_2/k
 
@@ -75,15 +71,10 @@ def motor_side() -> ProofSteps:
 
 def rising_gain() -> list[ProofStep]:
     """The compensator's energy per travel, f_D (1 - tanh(u)/u), rises with u and tends to f_D."""
-    rest = sp.Symbol("rest", nonnegative=True)
-    bend = sp.tanh(u) - u / sp.cosh(u) ** 2
-    loop = ENERGY.subs({LOOP_LEVEL: f_D, LOOP_STIFFNESS: sigma, LOOP_AMPLITUDE: A})
     return [
-        Equal("energy of a cycle, from the loop", loop, W),
+        Equal("energy of a cycle, from the loop", loop_energy(f_D, sigma, A), W),
         Equal("per travel", W.subs(A, u * f_D / sigma) / (u * f_D / sigma), 4 * f_D * SHARE),
-        Grows("u/cosh^2 u <= tanh u", bend, u, 2 * u * sp.tanh(u) / sp.cosh(u) ** 2),
-        NotNegative("gain rises", sp.diff(SHARE, u), rest / u**2, {rest: bend}),
-        Limit("to f_D", SHARE, u, sp.oo, sp.S(1)),
+        *rising_share(),
     ]
 
 
@@ -141,7 +132,7 @@ def free_link() -> ProofSteps:
             sp.oo,
             4 * (2 - f_1 - f_2),
         ),
-        Grows("u >= tanh u", u - sp.tanh(u), u, sp.tanh(u) ** 2),
+        POSITIVE_SHARE,
         Grows(
             "1 - tanh(u)/u <= u^2/3, times u",
             u**3 / 3 - u + sp.tanh(u),

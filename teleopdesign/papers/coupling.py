@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 
 from ._proof import Equal, Grows, Limit, NotNegative, ProofStep, ProofSteps, proof
-from ._statement import MAHVASH, Figure, Numbers, Paper, figure_near, shows
+from ._statement import MAHVASH, Figure, Numbers, Paper, figure_near, numbers_of, shows
 
 
 def turned_about(coordinates: np.ndarray) -> np.ndarray:
@@ -46,15 +46,11 @@ def closed_paths() -> Numbers:
         velocity = to_velocity @ change
         plain -= float(2.0 * e @ velocity) / n
         mapped -= float(np.linalg.solve(to_velocity.T, 2.0 * e) @ velocity) / n
-    return Numbers(
-        (
-            figure_near(
-                "symmetric 6 x 6 over its size, one turn", released(spring) / size, 0, 1e-12
-            ),
-            figure_near("its skew part, against the formula", released(skew), expected, 1e-9, "J"),
-            figure_near("angles, torques by J^T", mapped, 0.0, 1e-12, "J"),
-            Figure("angles, torques as they are: size", abs(plain), low=0.01, unit="J"),
-        )
+    return numbers_of(
+        figure_near("symmetric 6 x 6 over its size, one turn", released(spring) / size, 0, 1e-12),
+        figure_near("its skew part, against the formula", released(skew), expected, 1e-9, "J"),
+        figure_near("angles, torques by J^T", mapped, 0.0, 1e-12, "J"),
+        Figure("angles, torques as they are: size", abs(plain), low=0.01, unit="J"),
     )
 
 

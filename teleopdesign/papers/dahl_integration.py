@@ -14,7 +14,7 @@ from ..diagrams import haptic_interface
 from ..simulate import Trajectory, simulate
 from ._laws import dahl_rate, dahl_step
 from ._proof import Correction, Equal, Grows, Holds, NotNegative, ProofStep, ProofSteps, proof
-from ._statement import MAHVASH, Numbers, figure_near, shows
+from ._statement import MAHVASH, Numbers, figure_near, numbers_of, shows
 
 f, v, new = sp.symbols("f v f_next", real=True)
 f_c, sigma, T, q, d, e = sp.symbols("f_c sigma T q d e", positive=True)
@@ -140,13 +140,6 @@ def bound_of_forward_euler() -> ProofSteps:
 SHARE = sp.exp(-sigma * d / f_c)  # remaining share of the distance to the level after the travel d
 
 
-def integrate_in_parts(direction: int) -> ProofStep:
-    """A travel in two parts gives the same force as the whole travel in one step."""
-    once = dahl_step(f, d + e, direction, f_c, sigma)
-    twice = dahl_step(dahl_step(f, d, direction, f_c, sigma), e, direction, f_c, sigma)
-    return Equal(f"two parts in direction {direction:+d} are the whole", twice, once)
-
-
 def sampled_compensator() -> Numbers:
     """The package's sampled compensator, compared with the step of the proof at every sample."""
     positions = 1e-4 * np.array([0.0, 0.3, 0.9, 0.9, 0.5, -0.4, -3.0, 2.0, 2.0, 2.1])
@@ -169,9 +162,8 @@ def sampled_compensator() -> Numbers:
         step = dahl_step(f, d, 1 if dx >= 0 else -1, f_c, sigma)
         force = float(step.subs({f: force, d: abs(dx), f_c: level, sigma: stiffness}))
         worst = max(worst, abs(float(sampled) - force))
-    return Numbers(
-        (figure_near("largest difference", worst, 0.0, 1e-13, "N"),)
-    )  # rounding of doubles
+    # rounding of doubles
+    return numbers_of(figure_near("largest difference", worst, 0.0, 1e-13, "N"))
 
 
 @shows(31, MAHVASH, "eq (9)", numbers=sampled_compensator)
@@ -195,7 +187,11 @@ def exact_step() -> ProofSteps:
                 sp.diff(step, d),
                 dahl_rate(step, sp.S(s), f_c, sigma),
             ),
-            integrate_in_parts(s),
+            Equal(
+                f"two parts in direction {s:+d} are the whole",
+                dahl_step(step, e, s, f_c, sigma),
+                dahl_step(f, d + e, s, f_c, sigma),
+            ),
             Equal("differences between two starts shrink by", sp.diff(step, f), SHARE),
         ]
     up = dahl_step(f, d, 1, f_c, sigma)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from ._laws import bristle_force, bristle_rate, dahl_loop, dahl_rate, dahl_step, stribeck_level
-from ._proof import Equal, Grows, Limit, NotNegative, ProofSteps, proof
+from ._proof import Equal, Grows, Limit, NotNegative, ProofStep, ProofSteps, proof
 from ._statement import DERIVED, MAHVASH, shows
 
 f, x, z = sp.symbols("f x z", real=True)
@@ -14,6 +14,26 @@ SCALED = {A: u * f_c / sigma}  # u = A/lambda
 PEAK = f_c * sp.tanh(sigma * A / f_c)
 RISING = dahl_loop(x, A, f_c, sigma)
 ENERGY = 2 * sp.integrate(RISING, (x, -A, A))  # the falling half is the point mirror
+SHARE = 1 - sp.tanh(u) / u  # of 4 f_c A that a cycle dissipates
+BEND = sp.tanh(u) - u / sp.cosh(u) ** 2
+BENDS = Grows("u/cosh^2 u <= tanh u", BEND, u, 2 * u * sp.tanh(u) / sp.cosh(u) ** 2)
+POSITIVE_SHARE = Grows("u >= tanh u", u - sp.tanh(u), u, sp.tanh(u) ** 2)
+
+
+def loop_energy(level: sp.Expr, stiffness: sp.Expr, amplitude: sp.Expr = A) -> sp.Expr:
+    """Energy that a steady cycle dissipates, for other symbols or values."""
+    values = {f_c: level, sigma: stiffness, A: amplitude}
+    return ENERGY.subs(values, simultaneous=True)
+
+
+def rising_share() -> list[ProofStep]:
+    """The energy per travel, level (1 - tanh(u)/u), rises with u and tends to the level."""
+    rest = sp.Symbol("rest", nonnegative=True)
+    return [
+        BENDS,
+        NotNegative("energy per travel rises", sp.diff(SHARE, u), rest / u**2, {rest: BEND}),
+        Limit("to the level", SHARE, u, sp.oo, sp.S(1)),
+    ]
 
 
 @shows(33, DERIVED, "from eq (9) of Mahvash 2006")
@@ -55,7 +75,7 @@ def energy_per_cycle() -> ProofSteps:
         Equal("integral of the force over the loop", ENERGY, form),
         Limit("small u: (4/3) sigma^2 A^3/f_c", scaled / u**3, u, sp.S(0), sp.Rational(4, 3)),
         Limit("large u: 4 f_c (A - lambda)", scaled - 4 * (u - 1), u, sp.oo, sp.S(0)),
-        Grows("never negative", u - sp.tanh(u), u, sp.tanh(u) ** 2),
+        POSITIVE_SHARE,
     )
 
 

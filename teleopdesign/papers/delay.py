@@ -7,8 +7,9 @@ import sympy as sp
 from scipy.optimize import brentq
 
 from ._laws import dahl_rate
-from ._proof import Equal, Grows, Holds, Limit, NotNegative, ProofSteps, proof
-from ._statement import BERNSTEIN, DERIVED, Numbers, figure_near, shows
+from ._proof import Equal, Holds, Limit, NotNegative, ProofSteps, proof
+from ._statement import BERNSTEIN, DERIVED, Numbers, figure_near, numbers_of, shows
+from .dahl_loop import POSITIVE_SHARE
 from .describing_functions import DAHL_FRICTION, DAHL_SPRING, u
 from .describing_functions import f as DAHL_LEVEL
 
@@ -61,9 +62,9 @@ def late_friction() -> ProofSteps:
             LATE_FRICTION.subs({a1: 0, b1: 4 * f_D / sp.pi}),
             4 * f_D * A * sp.cos(late),
         ),
-        Grows("Dahl: u >= tanh u, so b_1 >= 0", u - sp.tanh(u), u, sp.tanh(u) ** 2),
+        POSITIVE_SHARE,
         NotNegative(
-            "b_1",
+            "so b_1 >= 0 of Dahl",
             DAHL_FRICTION,
             4 * DAHL_LEVEL / sp.pi * FRICTIONLIKE / u,
             {FRICTIONLIKE: u - sp.tanh(u)},
@@ -115,9 +116,8 @@ def late_inertia() -> ProofSteps:
 def least_damping() -> Numbers:
     """The constant in the condition on the smallest damper, -min sin(x)/x."""
     x = float(brentq(lambda x: np.sin(x) - x * np.cos(x), np.pi, 1.5 * np.pi))
-    return Numbers(
-        (figure_near("-min sin(x)/x", -np.sin(x) / x, 0.2172, 5e-5),)
-    )  # half a last digit
+    # half a last digit
+    return numbers_of(figure_near("-min sin(x)/x", -np.sin(x) / x, 0.2172, 5e-5))
 
 
 @shows(49, DERIVED, "small motion on a presliding plant", numbers=least_damping)

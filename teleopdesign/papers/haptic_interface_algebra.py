@@ -12,7 +12,7 @@ import sympy as sp
 
 from ..derive import block_symbol, return_difference, transfer, transfer_functions
 from ..diagrams import ANY, Attached, haptic_interface
-from ._proof import BlocksDiffer, BlocksEqual, Equal, Holds, Limit, NotNegative, ProofSteps, proof
+from ._proof import BlocksDiffer, Equal, Holds, Limit, NotNegative, ProofSteps, proof
 from ._statement import BERNSTEIN, shows
 
 Z_M, Z_H, C, H, K = map(block_symbol, ("Z_M", "Z_H", "C", "H", "K"))
@@ -36,8 +36,8 @@ def sign_of_the_passive_hand() -> ProofSteps:
     turned = tuple(replace(b, sign=1) if isinstance(b, Attached) else b for b in base.blocks)
     other = transfer(replace(base, blocks=turned), "R_M", ("R_D",))["R_D"]
     return proof(
-        BlocksEqual("R_H = -Z_H L gives eq (2)", T["T_o"], Z_H * (Z_H + Z_M) ** -1),
-        BlocksEqual("R_H = +Z_H L gives another form", other, -Z_H * (Z_M - Z_H) ** -1),
+        Equal("R_H = -Z_H L gives eq (2)", T["T_o"], Z_H * (Z_H + Z_M) ** -1),
+        Equal("R_H = +Z_H L gives another form", other, -Z_H * (Z_M - Z_H) ** -1),
         BlocksDiffer("which is not eq (2)", other, T["T_o"]),
     )
 
@@ -51,7 +51,7 @@ def desired_to_felt_force() -> ProofSteps:
     """
     right = Z_H * (Z_H + Z_M) ** -1
     return proof(
-        BlocksEqual("the wiring without C and H gives eq (2)", T["T_o"], right),
+        Equal("the wiring without C and H gives eq (2)", T["T_o"], right),
         BlocksDiffer("the other order of factors fails", T["T_o"], (Z_H + Z_M) ** -1 * Z_H),
     )
 
@@ -63,7 +63,7 @@ def motion_based_cancellation() -> ProofSteps:
     formula: T_MBC = Z_H (Z_H + Z_M - C)^-1
     printed: the inverse and the minus sign are missing in the available text
     """
-    return proof(BlocksEqual("the wiring without H", T["T_MBC"], Z_H * (Z_H + Z_M - C) ** -1))
+    return proof(Equal("the wiring without H", T["T_MBC"], Z_H * (Z_H + Z_M - C) ** -1))
 
 
 @shows(4, BERNSTEIN, "eq (4)")
@@ -75,7 +75,7 @@ def force_feedback() -> ProofSteps:
     """
     denominator = Z_M * Z_H**-1 + GAMMA
     return proof(
-        BlocksEqual("the wiring without C", T["T_FF"], denominator**-1 * GAMMA),
+        Equal("the wiring without C", T["T_FF"], denominator**-1 * GAMMA),
         BlocksDiffer("the other order of factors fails", T["T_FF"], GAMMA * denominator**-1),
     )
 
@@ -89,8 +89,8 @@ def hybrid() -> ProofSteps:
     """
     form = ((Z_M - C) * Z_H**-1 + GAMMA) ** -1 * GAMMA
     return proof(
-        BlocksEqual("the wiring with C and H", T["T_H"], form),
-        BlocksEqual("by the apparent impedance", T["T_H"], Z_H * (ZHAT_M + Z_H) ** -1),
+        Equal("the wiring with C and H", T["T_H"], form),
+        Equal("by the apparent impedance", T["T_H"], Z_H * (ZHAT_M + Z_H) ** -1),
     )
 
 
@@ -104,8 +104,8 @@ def apparent_impedance() -> ProofSteps:
     other = (Z_M - C) * GAMMA**-1
     scalars = {s: sp.Symbol(f"scalar_{s}") for s in (Z_M, C, H)}
     return proof(
-        BlocksEqual("force error over motion, from the wiring", T["Zhat_M"], ZHAT_M),
-        BlocksEqual("its inverse", T["Zhat_M"], ((Z_M - C) ** -1 * GAMMA) ** -1),
+        Equal("force error over motion, from the wiring", T["Zhat_M"], ZHAT_M),
+        Equal("its inverse", T["Zhat_M"], ((Z_M - C) ** -1 * GAMMA) ** -1),
         BlocksDiffer("the other order fails for matrices", T["Zhat_M"], other),
         Equal("for scalars both orders are one", ZHAT_M.subs(scalars), other.subs(scalars)),
     )
@@ -119,9 +119,9 @@ def position_loop() -> ProofSteps:
     """
     closed = (ZHAT_M + Z_H + K) ** -1
     return proof(
-        BlocksEqual("response to the reference", T["L/L_D"], closed * K),
-        BlocksEqual("response to the hand", T["L/R_V"], closed),
-        BlocksEqual("Z_H is not in the measured impedance", sp.diff(T["Zhat_M"], Z_H), sp.S(0)),
+        Equal("response to the reference", T["L/L_D"], closed * K),
+        Equal("response to the hand", T["L/R_V"], closed),
+        Equal("Z_H is not in the measured impedance", sp.diff(T["Zhat_M"], Z_H), sp.S(0)),
         BlocksDiffer("it is in the loop", T["L/L_D"], T["L/L_D"].subs(Z_H, 2 * Z_H)),
     )
 
@@ -135,8 +135,8 @@ def free_space() -> ProofSteps:
     felt = transfer(FORCE, "R_M", ("L",), given="L")["L"]
     moved = transfer(FORCE, "L", ("R_V",))["R_V"]
     return proof(
-        BlocksEqual("force on the hand over motion", felt, -ZHAT_M),
-        BlocksEqual("motion over the hand's force", moved, (ZHAT_M + Z_H) ** -1),
+        Equal("force on the hand over motion", felt, -ZHAT_M),
+        Equal("motion over the hand's force", moved, (ZHAT_M + Z_H) ** -1),
     )
 
 
@@ -153,10 +153,10 @@ def limits() -> ProofSteps:
         return sp.sympify(T[name]).subs(values)
 
     return proof(
-        BlocksEqual("C = Z_M: T_MBC = I", at("T_MBC", {C: Z_M}), sp.S(1)),
-        BlocksEqual("C = Z_M: Zhat_M = 0", at("Zhat_M", {C: Z_M}), sp.S(0)),
-        BlocksEqual("what force feedback leaves", 1 - T["T_FF"], (x + GAMMA) ** -1 * x),
-        BlocksEqual(
+        Equal("C = Z_M: T_MBC = I", at("T_MBC", {C: Z_M}), sp.S(1)),
+        Equal("C = Z_M: Zhat_M = 0", at("Zhat_M", {C: Z_M}), sp.S(0)),
+        Equal("what force feedback leaves", 1 - T["T_FF"], (x + GAMMA) ** -1 * x),
+        Equal(
             "the same as (I + Y)^-1 Y with Y = Gamma^-1 Z_M Z_H^-1, of norm at most q = "
             "norm(Z_M Z_H^-1)/(smallest singular value of Gamma)",
             1 - T["T_FF"],
@@ -165,9 +165,9 @@ def limits() -> ProofSteps:
         Limit(
             "its norm is at most q + q^2 + ... = q/(1 - q), which goes to 0", q / (1 - q), q, 0, 0
         ),
-        BlocksEqual("H = 0: hybrid is MBC", at("T_H", {H: 0}), T["T_MBC"]),
-        BlocksEqual("C = 0: hybrid is FF", at("T_H", {C: 0}), T["T_FF"]),
-        BlocksEqual("both 0: nothing", at("T_H", {C: 0, H: 0}), T["T_o"]),
+        Equal("H = 0: hybrid is MBC", at("T_H", {H: 0}), T["T_MBC"]),
+        Equal("C = 0: hybrid is FF", at("T_H", {C: 0}), T["T_FF"]),
+        Equal("both 0: nothing", at("T_H", {C: 0, H: 0}), T["T_o"]),
     )
 
 
@@ -212,8 +212,8 @@ def loops() -> ProofSteps:
     loop = return_difference(FORCE.without("C"), "H")
     masses = sp.sympify(loop).subs({H: h, Z_M: m * s**2, Z_H: m_h * s**2})
     return proof(
-        BlocksEqual("force feedback", loop, 1 + H * (1 + Z_M * Z_H**-1) ** -1),
-        BlocksEqual(
+        Equal("force feedback", loop, 1 + H * (1 + Z_M * Z_H**-1) ** -1),
+        Equal(
             "cancellation", return_difference(FORCE.without("H"), "C"), 1 - C * (Z_H + Z_M) ** -1
         ),
         Equal("two masses: loop gain H m_H/(m + m_H)", masses - 1, h * m_h / (m + m_h)),

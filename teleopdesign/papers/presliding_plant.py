@@ -11,8 +11,7 @@ import sympy as sp
 from ._laws import bristle_force, bristle_rate, dahl_rate, stribeck_level, viscous
 from ._proof import Equal, Grows, Limit, NotNegative, ProofStep, ProofSteps, proof
 from ._statement import DERIVED, shows
-from .dahl_loop import ENERGY, A, f_c
-from .dahl_loop import sigma as STIFFNESS
+from .dahl_loop import A, loop_energy
 
 p, d = sp.symbols("p d", real=True)
 sP, sD, fC, fD, w, g = sp.symbols("sigma_p sigma_D f_C f_D w g", positive=True)
@@ -73,8 +72,7 @@ def stored_and_lost(level: sp.Expr) -> list[ProofStep]:
 
 def small_cycles(level: sp.Expr, stiffness: sp.Expr) -> sp.Expr:
     """Energy of a cycle over A^3 in the limit of small amplitude A, from the exact loop."""
-    scaled = ENERGY.subs({f_c: level, STIFFNESS: stiffness})
-    return sp.limit(scaled / A**3, A, 0, "+")
+    return sp.limit(loop_energy(level, stiffness) / A**3, A, 0, "+")
 
 
 @shows(43, DERIVED, "extends Mahvash 2006, section IV-B")
@@ -118,7 +116,7 @@ def matched_bristles() -> ProofSteps:
         ),
         Limit(
             "necessary: large cycles take in 4 A f_C of the plant and give 4 A f_D",
-            ENERGY.subs({f_c: 1, STIFFNESS: 1}) / A,
+            loop_energy(sp.S(1), sp.S(1)) / A,
             A,
             sp.oo,
             sp.S(4),

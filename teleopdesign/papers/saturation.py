@@ -19,10 +19,7 @@ from ..simulate import simulate
 from ._laws import coulomb, dahl_rate, dahl_step, smoothed_coulomb, viscous
 from ._proof import Equal, Grows, Holds, Limit, NotNegative, ProofStep, ProofSteps, proof
 from ._statement import DERIVED, MAHVASH, Figure, Numbers, claim, figure_near, shows
-from .dahl_loop import ENERGY
-from .dahl_loop import A as AMPLITUDE
-from .dahl_loop import f_c as LEVEL
-from .dahl_loop import sigma as STIFFNESS
+from .dahl_loop import SHARE, loop_energy, rising_share
 
 f_C, f_D, sigma, w, X, u, B, a, d = sp.symbols("f_C f_D sigma_D w X u B a d", positive=True)
 f = sp.Symbol("f", real=True)
@@ -197,28 +194,9 @@ def limited_motion() -> ProofSteps:
     formula: a cycle of amplitude A gives out energy iff f_D (1 - tanh(u)/u) > f_C,  u = sigma_D
         A/f_D
     """
-    cycle = ENERGY.subs({LEVEL: f_D, STIFFNESS: sigma, AMPLITUDE: u * f_D / sigma})
-    path = 4 * (u * f_D / sigma)
-    return proof(
-        Equal(
-            "energy given out per travel",
-            cycle / path - coulomb(w, f_C),
-            f_D * (1 - sp.tanh(u) / u) - f_C,
-        ),
-        Grows(
-            "u/cosh^2 u <= tanh u",
-            sp.tanh(u) - u / sp.cosh(u) ** 2,
-            u,
-            2 * u * sp.tanh(u) / sp.cosh(u) ** 2,
-        ),
-        NotNegative(
-            "so the gain per travel rises with u",
-            sp.diff(1 - sp.tanh(u) / u, u),
-            MORE / u**2,
-            {MORE: sp.tanh(u) - u / sp.cosh(u) ** 2},
-        ),
-        Limit("to f_D - f_C", 1 - sp.tanh(u) / u, u, sp.oo, sp.S(1)),
-    )
+    amplitude = u * f_D / sigma
+    released = loop_energy(f_D, sigma, amplitude) / (4 * amplitude) - coulomb(w, f_C)
+    return proof(Equal("energy given out per travel", released, f_D * SHARE - f_C), rising_share())
 
 
 onset = claim(

@@ -18,8 +18,9 @@ from ..diagrams import haptic_interface
 from ..effects import EFFECTS
 from ..simulate import Trajectory, simulate
 from ._laws import dahl_rate, dahl_step
-from ._proof import Correction, Equal, Grows, Holds, NotNegative, ProofSteps, proof
-from ._statement import DERIVED, Figure, Numbers, shows
+from ._proof import Correction, Equal, Holds, NotNegative, ProofSteps, proof
+from ._statement import DERIVED, Figure, Numbers, numbers_of, shows
+from .dahl_loop import BEND, BENDS, SHARE
 
 f_D, sigma, f_1, f_2, k, u = sp.symbols("f_D sigma_D f_1 f_2 k u", positive=True)
 SMALL = sp.Symbol("small", positive=True)
@@ -52,11 +53,9 @@ def stepping_motor() -> Numbers:
     plain = energy_of_cycle((0.5, -0.5))
     # a percent of what friction takes: the contact gives before it slides
     within = 0.01 * 2 * FRICTION
-    return Numbers(
-        (
-            Figure("plain cycle, f_1 = 1/12 f_D, u_2 = 1/2", plain, high=-within, unit="J"),
-            Figure("with a step of 0.1 at each reversal", steps, low=within, unit="J"),
-        )
+    return numbers_of(
+        Figure("plain cycle, f_1 = 1/12 f_D, u_2 = 1/2", plain, high=-within, unit="J"),
+        Figure("with a step of 0.1 at each reversal", steps, low=within, unit="J"),
     )
 
 
@@ -118,8 +117,7 @@ def steps_at_reversals() -> Correction:
         that gives out energy where P55 holds
     """
     net = dithered_cycle()
-    limit = 1 - sp.tanh(u) / u  # f_1 at the limit of P55
-    bend = sp.tanh(u) - u / sp.cosh(u) ** 2
+    limit = SHARE  # f_1 at the limit of P55
     slope = sp.diff(net, SMALL).subs(SMALL, 0)
     rest = sp.Symbol("rest", nonnegative=True)
     # f_D = sigma_D = f_2 = 1, k = 2, f_1 = 1/12: u_2 = 1/2, sigma_D = k sqrt(3 f_1 f_D)/f_2
@@ -128,12 +126,12 @@ def steps_at_reversals() -> Correction:
         proof(
             Equal("without steps: the plain cycle", net.subs(SMALL, 0), 2 * u * (limit - f_1)),
             Equal("each step adds at first", slope, 2 * (sp.tanh(u) ** 2 - f_1)),
-            Grows("u/cosh^2 u <= tanh u", bend, u, 2 * u * sp.tanh(u) / sp.cosh(u) ** 2),
+            BENDS,
             NotNegative(
                 "more than nothing where the plain cycle gives out nothing",
                 slope.subs(f_1, limit),
                 2 * rest / u,
-                {rest: bend},
+                {rest: BEND},
             ),
             Holds("a case within P55: f_D = 1 <= f_1 + f_2", 1, "<=", sp.Rational(1, 12) + 1),
             Holds("and within its simple bound", 1, "<=", 2 * sp.sqrt(3 * sp.Rational(1, 12))),

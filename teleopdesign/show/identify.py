@@ -8,7 +8,7 @@ import numpy as np
 
 from ..base.sentences import unit_at_axis, with_standard_error
 from ..base.units import unit_of
-from .figures.style import ONE_COLUMN
+from .figures.style import ONE_COLUMN, plt
 from .registry import shows
 
 if TYPE_CHECKING:
@@ -48,8 +48,6 @@ def coulomb_level_text(level: CoulombLevel) -> str:
 @shows("figure")
 def plot_force_velocity_curve(level: CoulombLevel) -> Figure:
     """Mean force of each run, and the fitted line (level and damping) of each direction."""
-    import matplotlib.pyplot as plt
-
     figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.6))
     axis.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
     axis.axvline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)

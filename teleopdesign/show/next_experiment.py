@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from ..base.finding import Finding, Graph, Series
@@ -11,6 +11,7 @@ from ..base.units import si_factor
 from ..diagnose.noise_floor import say_floors
 from ..next_experiment.prediction import DECIDES, SAME
 from .figures.graph import draw_graph
+from .figures.style import AFTER, BEFORE, MEASURED, plt
 from .registry import shows
 
 if TYPE_CHECKING:
@@ -30,28 +31,27 @@ def sentence_of(proposal: Proposal) -> str:
     return " ".join(_sentences(proposal))
 
 
-def _sentences(proposal: Proposal) -> list[str]:
+def _sentences(proposal: Proposal) -> Iterator[str]:
     if not proposal.rivals:
-        return [_explain_nothing_open(proposal)]
+        yield _explain_nothing_open(proposal)
+        return
     if proposal.reference is None:
-        return ["All candidate motions exceed the limits, so no motion is proposed."]
-    sentences = []
+        yield "All candidate motions exceed the limits, so no motion is proposed."
+        return
     decided = [p for p in proposal.pairs if proposal.decides(p)]
-    left_open = [p for p in proposal.pairs if not proposal.decides(p)]
     if proposal.is_useful:
-        sentences.append(_describe_motion(proposal))
+        yield _describe_motion(proposal)
     if len(decided) > FEW:
-        sentences.append(_describe_count(proposal, decided))
+        yield _describe_count(proposal, decided)
     else:
-        sentences += [_describe_gain(proposal, p) for p in decided]
-    sentences += [_describe_rest(proposal, p) for p in left_open]
+        yield from (_describe_gain(proposal, p) for p in decided)
+    yield from (_describe_rest(proposal, p) for p in proposal.pairs if p not in decided)
     if proposal.diagnosis.more_is_missing:
-        sentences.append(
+        yield (
             "None of these models explains the present records: an error of "
             f"{say_floors(proposal.diagnosis.left)} noise floors remains, so the true effect may "
             "be none of them."
         )
-    return sentences
 
 
 def _explain_nothing_open(proposal: Proposal) -> str:
@@ -167,15 +167,14 @@ def proposal_findings(proposal: Proposal) -> tuple[Finding, ...]:
     """The proposal as findings: the motion, the separations, and parameters to be determined."""
     if not proposal.rivals:
         return (Finding("next experiment", "fine", proposal.sentence),)
-    findings = [
-        Finding(
-            "next experiment",
-            "note",
-            proposal.sentence,
-            {} if proposal.reference is None else {"duration": proposal.reference.duration},
-            graph=_reference_graph(proposal),
-        )
-    ]
+    return tuple(_findings(proposal))
+
+
+def _findings(proposal: Proposal) -> Iterator[Finding]:
+    reference = proposal.reference
+    numbers = {} if reference is None else {"duration": reference.duration}
+    graph = _reference_graph(proposal)
+    yield Finding("next experiment", "note", proposal.sentence, numbers, graph=graph)
     for pair in proposal.pairs:
         both = proposal.both(pair)
         if not both:
@@ -184,17 +183,13 @@ def proposal_findings(proposal: Proposal) -> tuple[Finding, ...]:
         text = _describe_gain(proposal, pair) if decides else _describe_rest(proposal, pair)
         numbers = {f"present {i}": s.present for i, s in enumerate(both)}
         numbers |= {f"predicted {i}": s.predicted for i, s in enumerate(both)}
-        findings.append(
-            Finding("separation of rivals", "note" if decides else "warning", text, numbers)
-        )
+        yield Finding("separation of rivals", "note" if decides else "warning", text, numbers)
     for d in proposal.determined:
         text = (
             f"{d.name} becomes determinable: standard error {percent(d.after, '.2g')} of its value."
         )
-        findings.append(
-            Finding("determinable parameters", "note", text, {"before": d.before, "after": d.after})
-        )
-    return tuple(findings)
+        numbers = {"before": d.before, "after": d.after}
+        yield Finding("determinable parameters", "note", text, numbers)
 
 
 def _reference_graph(proposal: Proposal) -> Graph | None:
@@ -235,17 +230,12 @@ def paths_text(paths: ArmPaths) -> str:
     return f"no path is better than the present records: {text}"
 
 
-TRUTH, OTHER, NOW = "0.55", "#D55E00", "#0072B2"
-
-
 @shows("figure")
 def plot_proposal(proposal: Proposal) -> Figure:
     """The proposed motion, the force that a wrong model would leave, and the separation of rivals.
 
     If no motion is proposed, the figure shows only the sentence of the proposal.
     """
-    import matplotlib.pyplot as plt
-
     if proposal.reference is None:
         figure, ax = plt.subplots(figsize=(7.16, 1.2))
         ax.text(0.0, 0.5, proposal.sentence, wrap=True, va="center")
@@ -268,8 +258,8 @@ def _plot_separation(ax: Axes, proposal: Proposal) -> None:
     """Force left for the best separated pair: of the wrong model and of the right model."""
     widest = max(proposal.separations, key=lambda s: s.predicted)
     curves = proposal.curves[proposal.separations.index(widest)]
-    ax.plot(curves.time, curves.left, lw=0.8, color=OTHER, label=f"{widest.other} (wrong)")
-    ax.plot(curves.time, curves.noise, lw=0.8, color=TRUTH, label=f"{widest.truth} (right)")
+    ax.plot(curves.time, curves.left, lw=0.8, color=BEFORE, label=f"{widest.other} (wrong)")
+    ax.plot(curves.time, curves.noise, lw=0.8, color=MEASURED, label=f"{widest.truth} (right)")
     ax.set(xlabel="time (s)", ylabel=f"force left ({curves.unit})")
     ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=2)
 
@@ -280,14 +270,14 @@ def _separations(ax: Axes, proposal: Proposal) -> None:
         [i - 0.18 for i in rows],
         [s.predicted for s in proposal.separations],
         height=0.34,
-        color=OTHER,
+        color=BEFORE,
         label="with the proposed records (predicted)",
     )
     ax.barh(
         [i + 0.18 for i in rows],
         [s.present for s in proposal.separations],
         height=0.34,
-        color=NOW,
+        color=AFTER,
         label="on the present records",
     )
     ax.axvline(1.0, color="k", lw=0.6, ls="--")

@@ -10,7 +10,7 @@ from ..base.sentences import round_down, unit_at_axis, with_standard_error
 from ..base.shown import html_table
 from ..base.units import unit_after_number
 from ..blocks import NINETY_FIVE
-from .figures.style import GREY, ONE_COLUMN, THEORY
+from .figures.style import GREY, ONE_COLUMN, THEORY, plt
 from .registry import shows
 
 if TYPE_CHECKING:
@@ -108,8 +108,6 @@ def margin_map_text(margins: MarginMap) -> str:
 @shows("figure")
 def plot_margin_map(margins: MarginMap) -> matplotlib.figure.Figure:
     """Llewellyn's margin as colour over two parameters, with a black line at margin zero."""
-    import matplotlib.pyplot as plt
-
     margin = margins.data["llewellyn"]
     first, second = map(str, margin.dims)
     x, y = (margins.data[n].values for n in (second, first))
@@ -142,8 +140,6 @@ def port_energy_text(observed: PortEnergy) -> str:
 @shows("figure")
 def plot_port_energy(observed: PortEnergy) -> matplotlib.figure.Figure:
     """Energy (J) into a port over time, its 95 % band, and the spans in which energy comes out."""
-    import matplotlib.pyplot as plt
-
     data = observed.data
     t, e, error = (data[n].values for n in ("time", "energy", "stderr"))
     figure, axis = plt.subplots(figsize=(ONE_COLUMN, 2.2))

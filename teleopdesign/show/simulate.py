@@ -8,7 +8,7 @@ import numpy as np
 
 from ..base.sentences import unit_at_axis
 from ..base.shown import html_table
-from .figures.style import CASES, ONE_COLUMN, TWO_COLUMNS, symbol
+from .figures.style import CASES, ONE_COLUMN, TWO_COLUMNS, plt, symbol
 from .registry import shows
 
 if TYPE_CHECKING:
@@ -63,8 +63,6 @@ def _rms(signal: xarray.DataArray) -> float:
 @shows("figure")
 def plot_simulation(simulation: Simulation, *names: str) -> matplotlib.figure.Figure:
     """Signals against time, a panel for each: `names`, or L, R_A and R_M if present; SI units."""
-    import matplotlib.pyplot as plt
-
     shown = names or tuple(n for n in ("L", "R_A", "R_M") if n in simulation.data)
     height = 0.6 + 1.05 * len(shown)
     figure, axes = plt.subplots(
@@ -98,7 +96,6 @@ def plot_force_velocity(result: ForceVelocity) -> matplotlib.figure.Figure:
     Axes are in SI units of the axis (N over m/s, or N m over rad/s); each panel states its rms
     force.
     """
-    import matplotlib.pyplot as plt
     from matplotlib.ticker import MaxNLocator, MultipleLocator
 
     data = result.data
@@ -143,8 +140,6 @@ def force_displacement_text(result: ForceDisplacement) -> str:
 @shows("figure")
 def plot_force_displacement(result: ForceDisplacement) -> matplotlib.figure.Figure:
     """Displacement of the hand over time, its force over time, and its force over displacement."""
-    import matplotlib.pyplot as plt
-
     data = result.data
     cases = [str(c) for c in data["case"].values]
     time = data["time"].values - data["time"].values[0]

@@ -11,7 +11,7 @@ from ..base.shown import html_table
 from ..base.units import unit_after_number
 from ..simulate.units import signal_units
 from ..tuning.follow import MOST_APART
-from .figures.style import ONE_COLUMN, symbol
+from .figures.style import AFTER, BEFORE, MEASURED, ONE_COLUMN, UNTOLD, plt, symbol
 from .registry import shows
 from .studies.data import words
 
@@ -25,10 +25,6 @@ if TYPE_CHECKING:
 MUCH = 0.3
 #: evaluated points that are further from the front than this many of its lengths are not drawn
 _BESIDE = 1.5
-#: colours of evaluated points, of the best and of the untuned one
-GREY, BEST, BEFORE = "#BFBFBF", "#0072B2", "#D55E00"
-#: colour of measured points
-DIM = "#9A9A9A"
 
 
 @shows("text")
@@ -94,13 +90,11 @@ def front_text(front: ParetoFront) -> str:
 @shows("figure")
 def plot_pareto(front: ParetoFront) -> matplotlib.figure.Figure:
     """The front as steps; points that keep the limits in grey; the untuned diagram as a cross."""
-    import matplotlib.pyplot as plt
-
     x, y = front.objectives.T
     figure, axes = plt.subplots(figsize=(ONE_COLUMN, 0.8 * ONE_COLUMN))
-    axes.plot(*front.evaluated.T, ".", color=GREY, markersize=2.5, label="keeps the limits")
-    axes.step(*front.evaluated_best.T, where="post", color=BEST, label="best found")
-    axes.plot(x, y, "o", color=BEST, markersize=4, zorder=3, label="limits checked again")
+    axes.plot(*front.evaluated.T, ".", color=UNTOLD, markersize=2.5, label="keeps the limits")
+    axes.step(*front.evaluated_best.T, where="post", color=AFTER, label="best found")
+    axes.plot(x, y, "o", color=AFTER, markersize=4, zorder=3, label="limits checked again")
     if np.isfinite(front.before).all():
         axes.plot(*front.before, "x", color=BEFORE, zorder=4, label="before")
     axes.set_xlim(right=min(axes.get_xlim()[1], _farthest(x)))
@@ -175,8 +169,6 @@ def fit_table(fitted: SimulationFit) -> str:
 @shows("figure")
 def plot_simulation_fit(fitted: SimulationFit) -> matplotlib.figure.Figure:
     """For each signal: measured points and the simulation as a line; below, their difference."""
-    import matplotlib.pyplot as plt
-
     names = tuple(fitted.rms)
     time = fitted.data["time"].values
     figure, axes = plt.subplots(
@@ -192,11 +184,11 @@ def plot_simulation_fit(fitted: SimulationFit) -> matplotlib.figure.Figure:
         measured = fitted.data[f"{name}_measured"]
         simulated = fitted.data[f"{name}_simulated"].values
         unit = unit_at_axis(measured.attrs["units"])
-        above.plot(time, measured.values, ".", color="#9A9A9A", markersize=1.5, label="measured")
-        above.plot(time, simulated, color=BEST, label="simulated")
+        above.plot(time, measured.values, ".", color=MEASURED, markersize=1.5, label="measured")
+        above.plot(time, simulated, color=AFTER, label="simulated")
         above.set_ylabel(f"{symbol(name)} ({unit})")
         below.axhline(0.0, color="#BFBFBF", linewidth=0.5, zorder=0)
-        below.plot(time, simulated - measured.values, color=BEST, linewidth=0.6)
+        below.plot(time, simulated - measured.values, color=AFTER, linewidth=0.6)
         below.set_ylabel(f"difference ({unit})")
     axes[0, 0].legend()
     axes[-1, 0].set_xlabel("time (s)")

@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.errors import GrowsWithoutBound, ModelError, TeleopDesignError, unknown
+from ..base.errors import ModelError, TeleopDesignError, unknown
 from ..diagrams import Diagram
-from ..simulate import Simulation, simulate_many
+from ..simulate import simulate_many
 from .case import SimulatedCase
 from .chosen_measures import Measure
 from .outcomes import PointOutcome
-from .point import Amount, Point, SignalRows
+from .point import Amount, Point, SideBySide
 from .points import Points, check_name
 
 if TYPE_CHECKING:
@@ -47,24 +47,19 @@ class StudyTask:
     seed: int = 0
 
 
-def evaluate(task: StudyTask, index: int) -> PointOutcome:
-    """The outcome of a point: its values, or the reason why it failed."""
+def evaluate(
+    task: StudyTask, index: int, beside: tuple[SideBySide, int] | None = None
+) -> PointOutcome:
+    """The outcome of a point: the values of its measures, or the reason why it failed.
 
-    def point() -> Point:
-        values = task.points.at(index)
-        return Point(_content(task, values), values, (task.seed, index))
-
-    return outcome_of(task, index, point)
-
-
-def outcome_of(task: StudyTask, index: int, made: Callable[[], Point]) -> PointOutcome:
-    """The measures of a point.
-
+    beside: signals of points that were simulated together, and the row of this one
     Any exception of a model or a measure becomes the reason of a failure: one point never ends a
     study.
     """
     try:
-        point = made()
+        values = task.points.at(index)
+        content = task.model if beside is not None else _content(task, values)
+        point = Point(content, values, (task.seed, index), beside)
         amounts: dict[str, Amount] = {}
         for measure in task.measures:
             for name, amount in measure(point).items():
@@ -80,7 +75,8 @@ def outcome_of(task: StudyTask, index: int, made: Callable[[], Point]) -> PointO
         (name, "text" if isinstance(a.value, str) else "number", a.unit, a.text, *(a.over or ()))
         for name, a in amounts.items()
     )
-    return PointOutcome(index, form, tuple(_list_as_tuple(a.value) for a in amounts.values()))
+    results = (tuple(a.value) if isinstance(a.value, list) else a.value for a in amounts.values())
+    return PointOutcome(index, form, tuple(results))
 
 
 def _check_names(task: StudyTask, measure: str, name: str, amount: Amount) -> None:
@@ -127,11 +123,7 @@ def _shorten(text: str) -> str:
     return line if len(line) <= _LONGEST_REASON else line[: _LONGEST_REASON - 3] + "..."
 
 
-def _list_as_tuple(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
-
-
-#: points that are computed and stored together
+#: points that a process receives at once: a range is simulated side by side
 Unit = tuple[int, ...] | range
 
 #: steps of all simulations of a block, which are lost if the process is killed: about half a
@@ -181,25 +173,27 @@ def signals_of(task: StudyTask) -> tuple[str, ...]:
     return () if not all(listed) else tuple(dict.fromkeys(s for one in listed for s in one))
 
 
-def evaluate_unit(task: StudyTask, unit: Unit) -> list[PointOutcome]:
-    """The outcomes of the points of a unit."""
-    if len(unit) == 1:
-        return [evaluate(task, unit[0])]
+def evaluate_unit(task: StudyTask, unit: Unit) -> Iterator[PointOutcome]:
+    """The outcomes of the points of a unit: of a range side by side, of others one by one."""
+    if not isinstance(unit, range):
+        for index in unit:
+            yield evaluate(task, index)
+        return
     assert isinstance(task.model, SimulatedCase)
-    table = task.points.table(unit[0], unit[-1] + 1)
+    table = task.points.table(unit.start, unit.stop)
     outcomes: dict[int, PointOutcome] = {}
     for rows, columns, others in group_alike(task.model, table):
+        block = None
         try:
             case = task.model.with_values({**task.points.fixed, **others})
-            block = _block(simulate_rows(case, columns, signals_of(task)))
+            block = SideBySide.of(simulate_rows(case, columns, signals_of(task)))
         except TeleopDesignError:
-            # what is wrong with all of them: each says its reason
-            outcomes |= {unit[row]: evaluate(task, unit[row]) for row in rows}
-            continue
+            pass  # what is wrong with all of them: each says its reason
         for k, row in enumerate(rows):
-            point = _point(task, unit[row], k, block)
-            outcomes[unit[row]] = outcome_of(task, unit[row], point)
-    return [outcomes[index] for index in unit]
+            beside = None if block is None else (block, k)
+            outcomes[row] = evaluate(task, unit[row], beside)
+    for row in range(len(unit)):
+        yield outcomes[row]
 
 
 def group_alike(
@@ -228,55 +222,3 @@ def simulate_rows(
     columns: parameter -> values (cases,);  keep: names of the signals
     """
     return simulate_many(case.diagram, columns, **case.settings_of_steps(), keep=keep)
-
-
-@dataclass(frozen=True, eq=False)
-class _Block:
-    """Signals of points that were simulated side by side, as arrays.
-
-    rows: signal -> (points, rows);  reasons: why a point has no signals, or ""
-    """
-
-    time: np.ndarray
-    rows: Mapping[str, np.ndarray]
-    attributes: Mapping[str, Mapping[str, Any]]
-    reasons: tuple[str, ...]
-
-    def check(self, row: int) -> None:
-        """Raise the error with which the simulation of a point ended, if any."""
-        if reason := self.reasons[row]:
-            words = GrowsWithoutBound.words
-            raise GrowsWithoutBound(reason) if words in reason else ModelError(reason)
-
-
-def _block(signals: xarray.Dataset) -> _Block:
-    names = [str(name) for name in signals.data_vars]
-    return _Block(
-        signals["time"].values,
-        {name: signals[name].values for name in names},
-        {name: signals[name].attrs for name in names},
-        tuple(map(str, signals["reason"].values)),
-    )
-
-
-def _point(task: StudyTask, index: int, row: int, block: _Block) -> Callable[[], Point]:
-    """A function that returns the point whose simulation is one row of the block."""
-
-    def rows(name: str) -> SignalRows:
-        block.check(row)
-        return SignalRows(block.time, block.rows[name][row], str(block.attributes[name]["units"]))
-
-    def simulated() -> Simulation:
-        import xarray
-
-        assert isinstance(task.model, SimulatedCase)
-        block.check(row)
-        data: dict[str, Any] = {
-            name: ("time", values[row], block.attributes[name])
-            for name, values in block.rows.items()
-        }
-        time = ("time", block.time, {"units": "s"})
-        return Simulation(task.model.diagram, xarray.Dataset(data, {"time": time}))
-
-    seed = (task.seed, index)
-    return lambda: Point(task.model, task.points.at(index), seed, simulated, rows)

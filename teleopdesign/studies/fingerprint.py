@@ -72,11 +72,6 @@ def _inner(code: types.CodeType) -> list[types.CodeType]:
     return [c for c in code.co_consts if isinstance(c, types.CodeType)]
 
 
-def contents_of_class(kind: type) -> dict[str, Any]:
-    """Methods and values of a class by name, without its bases."""
-    return {n: v for n, v in sorted(vars(kind).items()) if n not in _OF_EVERY_CLASS}
-
-
 def imported_files(code: types.CodeType) -> Iterator[str]:
     """Name and digest of the files that a function imports when it is called."""
     for step in dis.get_instructions(code):
@@ -198,7 +193,8 @@ class _Description:
         kind = type(thing)
         yield f"{kind.__module__}.{kind.__qualname__}"
         yield from self.parts(kind, above)
-        slots = (s for c in kind.__mro__ for s in _texts(c.__dict__.get("__slots__", ())))
+        listed = (c.__dict__.get("__slots__", ()) for c in kind.__mro__)
+        slots = (s for one in listed for s in ((one,) if isinstance(one, str) else one))
         state = {s: getattr(thing, s) for s in slots if s[:2] != "__" and hasattr(thing, s)}
         attributes = getattr(thing, "__dict__", None)
         state |= attributes if isinstance(attributes, dict) else {}
@@ -251,11 +247,8 @@ class _Description:
 
     def _class(self, kind: type, above: frozenset[int]) -> Iterator[str]:
         yield from self.parts(kind.__bases__, above)
-        yield from self.parts(contents_of_class(kind), above)
-
-
-def _texts(slots: Any) -> tuple[str, ...]:
-    return (slots,) if isinstance(slots, str) else tuple(slots)
+        contents = {n: v for n, v in sorted(vars(kind).items()) if n not in _OF_EVERY_CLASS}
+        yield from self.parts(contents, above)
 
 
 _COUNTED = ("teleopdesign", "numpy", "scipy", "sympy", "numba", "xarray")

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,7 +19,7 @@ from ..base.errors import ExperimentError
 from ..base.files import follow_links, read_whole, write_json
 from ..base.frozen import ByValue
 from ..diagnose.answer import content_of_answer
-from ..effects import EFFECTS, Effect
+from ..effects import Effect
 from ..measurement.saving import content_digest
 from .chosen_measures import measures_of
 from .evaluate import StudyTask, Unit
@@ -33,18 +33,6 @@ if TYPE_CHECKING:
 
 #: file of the output folder: name of each answer, and a digest of what it was made of
 FINISHED = "finished.json"
-
-
-@dataclass(frozen=True)
-class FolderSearch:
-    """Settings of the diagnosis of each folder.
-
-    known: effects by name;  among: names of the candidates, None: all;  quick: only a first look
-    """
-
-    known: Mapping[str, Effect] = field(default_factory=lambda: EFFECTS)
-    among: tuple[str, ...] | None = None
-    quick: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,20 +57,22 @@ def diagnose_folders(
     folders: Sequence[Path],
     output: Path,
     *,
-    search: FolderSearch | None = None,
+    known: Mapping[str, Effect],
+    among: tuple[str, ...] | None = None,
+    quick: bool = False,
     workers: int | None = None,
     progress: Callable[[Progress], object] | None = None,
 ) -> tuple[DiagnosedFolder, ...]:
     """Diagnose the experiment of every folder; each answer is written to the output folder.
 
+    known: effects by name;  among: names of the candidates, None: all;  quick: only a first look
     workers: processes; None: as many as the machine has cores, if that is faster
     progress: called with the progress of the work
     Finished folders are kept in the output folder: the same call continues from there.
     raises ExperimentError: the same folder twice, an output that cannot be written
     """
-    chosen = FolderSearch() if search is None else search
     answers = answer_files(folders, output)
-    made_with = fingerprint(chosen.known, chosen.among, chosen.quick, versions())
+    made_with = fingerprint(known, among, quick, versions())
     digests = {answers[f].name: fingerprint(made_with, content_digest(f)) for f in folders}
     finished = _read_digests(output / FINISHED)
     todo: list[Unit] = []
@@ -103,7 +93,7 @@ def diagnose_folders(
 
     files = {str(f): answer for f, answer in answers.items()}
     task = StudyTask(
-        model=partial(_write_answer, files=files, search=chosen),
+        model=partial(_write_answer, files=files, known=known, among=among, quick=quick),
         case={},
         points=points_of({"experiment": [str(f) for f in folders]}),
         measures=measures_of("verdict"),
@@ -150,7 +140,13 @@ def answer_files(folders: Sequence[Path], output: Path) -> dict[Path, Path]:
     return names
 
 
-def _write_answer(experiment: str, files: Mapping[str, Path], search: FolderSearch) -> Diagnosis:
+def _write_answer(
+    experiment: str,
+    files: Mapping[str, Path],
+    known: Mapping[str, Effect],
+    among: tuple[str, ...] | None,
+    quick: bool,
+) -> Diagnosis:
     """Diagnose a folder and write the answer; returns the diagnosis."""
     from ..diagnose import find_missing, write_answer
     from ..diagnose.search_plan import PLAN, QUICK
@@ -158,9 +154,8 @@ def _write_answer(experiment: str, files: Mapping[str, Path], search: FolderSear
     from ..model import Model
 
     recorded = load_experiment(experiment)
-    model = Model.from_experiment(recorded, search.known)
-    plan = QUICK if search.quick else PLAN
-    diagnosis = find_missing(recorded, model, plan=plan, among=search.among)
+    model = Model.from_experiment(recorded, known)
+    diagnosis = find_missing(recorded, model, plan=QUICK if quick else PLAN, among=among)
     write_answer(diagnosis, files[experiment])
     return diagnosis
 

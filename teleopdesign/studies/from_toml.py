@@ -177,16 +177,12 @@ def _read_computer(table: Table) -> Any:
             )
         return content
     computer = table.table("computer")
-    known = {f.name: f for f in fields(Sampling)}
-    computer.allow(known)
-    values: dict[str, Any] = {}
-    for name in computer.content:
-        if name == "velocity":
-            values[name] = computer.text(name)
-        elif name == "observer_order":
-            values[name] = read_whole(computer, name)
-        else:
-            values[name] = computer.number(name)
+    computer.allow(f.name for f in fields(Sampling))
+    values: dict[str, Any] = {n: computer.number(n) for n in {*computer.content} - {"velocity"}}
+    if "velocity" in computer.content:
+        values["velocity"] = computer.text("velocity")
+    if "observer_order" in values:
+        values["observer_order"] = read_whole(computer, "observer_order")
     return Sampling(**values)
 
 

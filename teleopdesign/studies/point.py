@@ -6,16 +6,20 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, get_type_hints
+from typing import TYPE_CHECKING, Any, get_type_hints
 
 import numpy as np
 
 from ..base.arguments import conforming
-from ..base.errors import ModelError
+from ..base.errors import GrowsWithoutBound, ModelError
 from ..base.expectations import describe_value
 from ..base.frozen import ByValue
+from ..diagrams import Diagram
 from ..simulate import Simulation
 from .case import SimulatedCase
+
+if TYPE_CHECKING:
+    import xarray
 
 
 @dataclass(frozen=True)
@@ -42,20 +46,63 @@ class SignalRows:
 
 
 @dataclass(frozen=True, eq=False)
+class SideBySide:
+    """Signals of points that were simulated side by side, as arrays.
+
+    A labelled array for each point would take 0.3 ms.
+
+    rows: signal -> (points, rows);  reasons: why a point has no signals, or ""
+    """
+
+    time: np.ndarray
+    rows: Mapping[str, np.ndarray]
+    attributes: Mapping[str, Mapping[str, Any]]
+    reasons: tuple[str, ...]
+
+    @classmethod
+    def of(cls, signals: xarray.Dataset) -> SideBySide:
+        """The block of signals over `case` and `time`."""
+        named = {str(name): signals[name] for name in signals.data_vars}
+        return cls(
+            signals["time"].values,
+            {name: one.values for name, one in named.items()},
+            {name: one.attrs for name, one in named.items()},
+            tuple(map(str, signals["reason"].values)),
+        )
+
+    def signal(self, point: int, name: str) -> SignalRows:
+        """A signal of a point; raises the error with which the simulation of the point ended."""
+        if reason := self.reasons[point]:
+            words = GrowsWithoutBound.words
+            raise GrowsWithoutBound(reason) if words in reason else ModelError(reason)
+        unit = str(self.attributes[name]["units"])
+        return SignalRows(self.time, self.rows[name][point], unit)
+
+    def simulation(self, point: int, diagram: Diagram) -> Simulation:
+        """All signals of a point; raises the error with which its simulation ended."""
+        import xarray
+
+        data: dict[str, Any] = {
+            name: ("time", self.signal(point, name).values, self.attributes[name])
+            for name in self.rows
+        }
+        time = ("time", self.time, {"units": "s"})
+        return Simulation(diagram, xarray.Dataset(data, {"time": time}))
+
+
+@dataclass(frozen=True, eq=False)
 class Point:
     """One point of a study as measures receive it.
 
     content: result of the model: a `SimulatedCase`, or anything that its function returned
     values: parameter -> value;  seed: of this point, the same on every machine
-    simulated: returns the simulation if it was computed together with other points;  rows: returns
-        one signal of it, without a labelled array for each point, which would take 0.3 ms
+    beside: signals of points that were simulated together, and the row of this one
     """
 
     content: Any
     values: Mapping[str, Any]
     seed: tuple[int, ...] = (0, 0)
-    simulated: Callable[[], Simulation] | None = None
-    rows: Callable[[str], SignalRows] | None = None
+    beside: tuple[SideBySide, int] | None = None
 
     @property
     def case(self) -> SimulatedCase:
@@ -69,14 +116,16 @@ class Point:
     @cached_property
     def simulation(self) -> Simulation:
         """The simulation, computed once for all measures."""
-        if self.simulated is not None:
-            return self.simulated()
+        if self.beside is not None:
+            block, row = self.beside
+            return block.simulation(row, self.case.diagram)
         return self.content if isinstance(self.content, Simulation) else self.case.simulate()
 
     def signal(self, name: str) -> SignalRows:
         """A signal of the simulation."""
-        if self.rows is not None:
-            return self.rows(name)
+        if self.beside is not None:
+            block, row = self.beside
+            return block.signal(row, name)
         data = self.simulation[name]
         return SignalRows(data["time"].values, data.values, str(data.attrs["units"]))
 

@@ -213,17 +213,13 @@ def _read_axis(table: Table, name: str) -> Any:
     if isinstance(content, dict):
         grid = table.table(name)
         grid.allow(("from", "to", "points", "scale"))
-        low, high, count = grid.number("from"), grid.number("to"), read_whole(grid, "points")
+        (low, high, is_log), count = _read_ends(grid), read_whole(grid, "points")
         if not 1 < count <= _MOST_VALUES or low == high:
             raise ExperimentError(
                 f"{grid.where()}: found {count} points from {low:g} to {high:g}, expected at least "
                 "2 between two numbers"
             )
-        if grid.choice("scale", _SCALES, default="linear") == "log":
-            if min(low, high) <= 0:
-                raise ExperimentError(f"{grid.where()}: a log scale needs from and to above 0")
-            return np.geomspace(low, high, count)
-        return np.linspace(low, high, count)
+        return (np.geomspace if is_log else np.linspace)(low, high, count)
     if isinstance(content, list):
         if not content or not (
             all(map(_is_number, content)) or all(isinstance(x, str) for x in content)
@@ -255,16 +251,21 @@ def _read_range(table: Table) -> Any:
         table.allow(("mean", "standard_deviation"))
         return norm(table.number("mean"), table.number("standard_deviation", above=0.0))
     table.allow(("from", "to", "scale", "step"))
-    low, high = table.number("from"), table.number("to")
+    low, high, is_log = _read_ends(table)
     if low >= high:
         raise ExperimentError(f"{table.where()}: found {low:g} to {high:g}, expected from < to")
     if "step" in table.content:
         return low, high, table.number("step", above=0.0)
-    if table.choice("scale", _SCALES, default="linear") == "log":
-        if low <= 0:
-            raise ExperimentError(f"{table.where()}: a log scale needs from and to above 0")
-        return loguniform(low, high)
-    return low, high
+    return loguniform(low, high) if is_log else (low, high)
+
+
+def _read_ends(table: Table) -> tuple[float, float, bool]:
+    """The ends of a range, and whether its scale is logarithmic."""
+    low, high = table.number("from"), table.number("to")
+    is_log = table.choice("scale", _SCALES, default="linear") == "log"
+    if is_log and min(low, high) <= 0:
+        raise ExperimentError(f"{table.where()}: a log scale needs from and to above 0")
+    return low, high, is_log
 
 
 def read_whole(table: Table, key: str) -> int:

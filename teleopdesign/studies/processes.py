@@ -22,7 +22,7 @@ from ..base.machine import ONE_THREAD, count_cores, forbid_copies, one_thread, s
 from .evaluate import StudyTask, Unit, evaluate_unit
 from .fingerprint import versions
 from .outcomes import as_row
-from .shared_units import BatchResult, SharedUnits, Sink, Workers
+from .shared_units import SharedUnits, Sink, UnitResult, Workers
 
 #: s: processor time that a process needs before its first point
 _START_TIME = 2.5
@@ -115,7 +115,7 @@ def _processes(payload: bytes, count: int) -> Iterator[Workers]:
         with shield_from_ctrl_c():
             first = executor.submit(os.getpid)
         first.result()
-        yield Workers(executor, lambda: count, _evaluate_batch)
+        yield Workers(executor, lambda: count, _evaluate_here)
     finally:
         executor.shutdown(kill_workers=True)
 
@@ -160,20 +160,21 @@ def _end_with(first: int) -> None:
     os._exit(0)
 
 
-def _evaluate_batch(batch: list[Unit], until: float) -> BatchResult:
-    result = evaluate_batch(_tasks[-1], batch, until)
+def _evaluate_here(unit: Unit, until: float) -> UnitResult:
+    result = _evaluate_in_time(_tasks[-1], unit, until)
     if not gc.get_freeze_count():  # what was imported stays: no search for unused cycles there
         gc.freeze()
     return result
 
 
-def evaluate_batch(task: StudyTask, batch: list[Unit], until: float) -> BatchResult:
-    """In a worker: the outcomes of the units of a batch that it begins within `until` s."""
-    start, rows, done = time.monotonic(), list[tuple[Any, ...]](), 0
-    while done < len(batch) and (not done or time.monotonic() - start < until):
-        rows += [as_row(outcome) for outcome in evaluate_unit(task, batch[done])]
-        done += 1
-    return rows, time.monotonic() - start, done
+def _evaluate_in_time(task: StudyTask, unit: Unit, until: float) -> UnitResult:
+    """In a worker: the outcomes of a block, or of the points that it begins within `until` s."""
+    start, rows = time.monotonic(), list[tuple[Any, ...]]()
+    for outcome in evaluate_unit(task, unit):
+        rows.append(as_row(outcome))
+        if not isinstance(unit, range) and time.monotonic() - start > until:
+            break
+    return rows, time.monotonic() - start
 
 
 def run_on_cluster(task: StudyTask, units: list[Unit], sink: Sink, address: str) -> None:
@@ -231,10 +232,10 @@ def _check_versions(client: Any, address: str) -> None:
                 )
 
 
-def _evaluate_packed(payload: bytes, batch: list[Unit], until: float) -> BatchResult:
-    """In a worker: the outcomes of a batch."""
+def _evaluate_packed(payload: bytes, unit: Unit, until: float) -> UnitResult:
+    """In a worker: the outcomes of a unit."""
     with one_thread():
-        return evaluate_batch(_task(payload), batch, until)
+        return _evaluate_in_time(_task(payload), unit, until)
 
 
 @lru_cache(maxsize=4)

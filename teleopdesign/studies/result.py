@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -115,7 +116,6 @@ def read_study(path: str | Path) -> Study:
         raise ExperimentError(f"{path}: no such file")
     try:
         _read_on_trial(path)
-        _check_size(path)
         data = xarray.load_dataset(path, engine="h5netcdf")
     except ExperimentError:
         raise
@@ -125,65 +125,57 @@ def read_study(path: str | Path) -> Study:
     attributes = [data.attrs.get(n) for n in ("study", "model", "axes")]
     if REASON not in data or not all(isinstance(text, str) for text in attributes):
         raise ExperimentError(f"{path}: holds no study")
-    try:
+    axes = None
+    with suppress(ValueError, RecursionError):
         axes = json.loads(data.attrs["axes"])
-    except (ValueError, RecursionError):
-        axes = None
     if not isinstance(axes, list) or not all(isinstance(a, str) and a in data for a in axes):
         raise ExperimentError(f"{path}: axes: expected a list of names of variables, as JSON")
     return Study(data)
 
 
-#: source of a program that reads all of a file. What h5py refuses, the reader of the study reports
+#: source of a program that reads all of a file, and prints how many bytes the file states: blocks
+#: that were not written take no space. What h5py refuses, the reader of the study reports
 _READ = """
 import sys, h5py
+total = 0
 def look(name, item):
+    global total
     for key in item.attrs:
         item.attrs[key]
-    if isinstance(item, h5py.Dataset) and item.size * item.dtype.itemsize <= {largest!r}:
-        item[()]
+    if isinstance(item, h5py.Dataset):
+        total += (size := item.size * item.dtype.itemsize)
+        if size <= {largest!r}:
+            item[()]
 try:
     with h5py.File(sys.argv[1]) as file:
         look("", file)
         file.visititems(look)
 except Exception:
     pass
+print(total)
 """
 
 
 def _read_on_trial(path: str | Path) -> None:
     """Read a file once in a process apart: a damaged one may end or block the HDF5 library.
 
-    raises ExperimentError: the library ends the process, or does not come to an end
+    raises ExperimentError: the library ends the process, or does not come to an end; too much data
     """
     program = [sys.executable, "-c", _READ.format(largest=LARGEST), os.fspath(path)]
     try:
         most = _LONGEST + os.stat(path).st_size / _RATE
-        is_read = not subprocess.run(program, capture_output=True, timeout=most).returncode
+        done = subprocess.run(program, capture_output=True, timeout=most)
+        total = -1 if done.returncode else int(done.stdout or 0)
     except subprocess.TimeoutExpired:
-        is_read = False
-    if not is_read:
+        total = -1
+    if total < 0:
         raise ExperimentError(
             f"{path}: no study can be read: the file is damaged, the HDF5 library comes to no end "
             "with it"
         )
-
-
-def _check_size(path: str | Path) -> None:
-    """Refuse a file that states too much data; blocks that were not written take no space."""
-    import h5py
-
-    sizes = []
-
-    def add(name: str, item: Any) -> None:
-        if isinstance(item, h5py.Dataset):
-            sizes.append(item.size * item.dtype.itemsize)
-
-    with h5py.File(path) as opened:
-        opened.visititems(add)
-    if sum(sizes) > LARGEST:
+    if total > LARGEST:
         raise ExperimentError(
-            f"{path}: found {sum(sizes):.3g} bytes of data, expected at most {LARGEST:g}"
+            f"{path}: found {total:.3g} bytes of data, expected at most {LARGEST:g}"
         )
 
 

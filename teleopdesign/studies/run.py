@@ -152,7 +152,9 @@ def _with_file(
         part = target.with_name(f"{target.name}.part")
         if target.exists():
             stored = _load_stored(target, key)
-            _remove_finished(part, key, len(task.points))
+            with suppress(ExperimentError):  # of another study, or in use: it is kept
+                if part.exists():  # a kill between the file and the end of its journal
+                    Journal(part, key, len(task.points)).remove()
             _write_words(stored, words)
             return stored
         if not target.parent.is_dir():
@@ -160,7 +162,8 @@ def _with_file(
     journal = Journal(part, key, len(task.points))
     try:
         run(journal)
-        by_axis = _units(task, words.units)
+        case = task.model if isinstance(task.model, SimulatedCase) else None
+        by_axis = {n: case.unit(n) for n in task.points.names} if case else words.units
         result = label_outcomes(task.points, journal.outcomes, units=by_axis, attributes=attributes)
         _write_words(result, words)
         if target is not None:
@@ -207,24 +210,6 @@ def _load_stored(target: Path, key: str) -> Study:
             "another file, or remove it"
         )
     return stored
-
-
-def _remove_finished(part: Path, key: str, points: int) -> None:
-    """Remove the journal of a study that is complete in its file, after a kill between both steps.
-
-    A journal of another study, or one that another process writes, is kept.
-    """
-    if part.exists():
-        with suppress(ExperimentError):
-            Journal(part, key, points).remove()
-
-
-def _units(task: StudyTask, units: Mapping[str, str]) -> dict[str, str]:
-    """Units of the parameters."""
-    if isinstance(task.model, SimulatedCase):
-        case = task.model
-        return {n: case.unit(n) for n in task.points.names}
-    return {n: units.get(n, "1") for n in task.points.names}
 
 
 def _write_words(result: Study, words: _Words) -> None:

@@ -53,10 +53,8 @@ def latin_hypercube(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -
     """
     from scipy.stats import qmc
 
-    _check_count("latin_hypercube", samples, seed)
-    unit = qmc.LatinHypercube(len(_require_ranges(ranges)), rng=np.random.default_rng(seed)).random(
-        samples
-    )
+    dimensions = _check("latin_hypercube", ranges, samples, seed)
+    unit = qmc.LatinHypercube(dimensions, rng=np.random.default_rng(seed)).random(samples)
     return _scale_to_ranges(ranges, unit, "latin_hypercube", seed)
 
 
@@ -65,10 +63,8 @@ def sobol(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
 
     samples: a power of two: with another number the sequence loses its balance
     """
-    _check_count("sobol", samples, seed)
-    return _scale_to_ranges(
-        ranges, _sequence("sobol", len(_require_ranges(ranges)), samples, seed), "sobol", seed
-    )
+    dimensions = _check("sobol", ranges, samples, seed)
+    return _scale_to_ranges(ranges, _sequence("sobol", dimensions, samples, seed), "sobol", seed)
 
 
 def random_samples(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) -> Samples:
@@ -77,8 +73,8 @@ def random_samples(ranges: Mapping[str, Any], samples: int, *, seed: int = 0) ->
     samples: number of points;  seed: the same seed gives the same points on every machine
     raises ModelError: no range, a range without width, no whole number of points above 0
     """
-    _check_count("random_samples", samples, seed)
-    unit = np.random.default_rng(seed).random((samples, len(_require_ranges(ranges))))
+    dimensions = _check("random_samples", ranges, samples, seed)
+    unit = np.random.default_rng(seed).random((samples, dimensions))
     return _scale_to_ranges(ranges, unit, "random", seed)
 
 
@@ -92,14 +88,12 @@ def sensitivity_samples(ranges: Mapping[str, Any], base: int, *, seed: int = 0) 
 
     base: a power of two;  ranges: as in `latin_hypercube`
     """
-    _check_count("sensitivity_samples", base, seed)
-    k = len(_require_ranges(ranges))
+    k = _check("sensitivity_samples", ranges, base, seed)
     pairs = _sequence("sensitivity_samples", 2 * k, base, seed)
     first, second = pairs[:, :k], pairs[:, k:]
-    rows = np.empty((base, k + 2, k))
-    rows[:, 0], rows[:, -1] = first, second
+    rows = np.repeat(first[:, None], k + 2, axis=1)
+    rows[:, -1] = second
     for i in range(k):
-        rows[:, i + 1] = first
         rows[:, i + 1, i] = second[:, i]
     return _scale_to_ranges(ranges, rows.reshape(-1, k), "sensitivity", seed, base)
 
@@ -146,12 +140,6 @@ def distribution_text(extent: Any) -> str:
     return f"{name}({', '.join(parts)})"
 
 
-def _require_ranges(ranges: Mapping[str, Any]) -> Mapping[str, Any]:
-    if not ranges:
-        raise ModelError("ranges: found no range, expected at least one, by parameter")
-    return ranges
-
-
 def _ends(name: str, extent: Any) -> tuple[float, float, float]:
     """The low and high end and the step of a range; 0: no step."""
     try:
@@ -169,8 +157,12 @@ def _ends(name: str, extent: Any) -> tuple[float, float, float]:
     return low, high, step
 
 
-def _check_count(where: str, samples: int, seed: int) -> None:
+def _check(where: str, ranges: Mapping[str, Any], samples: int, seed: int) -> int:
+    """The number of parameters; raises ModelError for what no method can draw from."""
+    if not ranges:
+        raise ModelError("ranges: found no range, expected at least one, by parameter")
     if seed < 0:
         raise ModelError(f"{where}: seed: found {seed}, expected 0 or more")
     if not 0 < samples <= _MOST:
         raise ModelError(f"{where}: found {samples} points, expected 1 to {_MOST}")
+    return len(ranges)

@@ -52,7 +52,9 @@ def sensitivity(study: Study, measure: str = "") -> xarray.Dataset:
         raise ExperimentError(
             "sensitivity: Sobol indices need SALib: pip install 'teleopdesign[studies]'"
         ) from None
-    name = measure or _require_one(study)
+    if not measure and len(study.measures) != 1:
+        raise ModelError(f"sensitivity: which measure? It has {', '.join(study.measures)}")
+    name = measure or study.measures[0]
     values, attrs = study[name], study.data.attrs
     if attrs.get("sampling") != "sensitivity" or values.dims != (SAMPLE,):
         raise ModelError(
@@ -90,12 +92,6 @@ def sensitivity(study: Study, measure: str = "") -> xarray.Dataset:
         {"parameter": names},
         {"measure": name, "method": "Saltelli et al. (2010), by SALib"},
     )
-
-
-def _require_one(study: Study) -> str:
-    if len(study.measures) != 1:
-        raise ModelError(f"sensitivity: which measure? It has {', '.join(study.measures)}")
-    return study.measures[0]
 
 
 @check_types

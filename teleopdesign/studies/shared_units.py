@@ -20,13 +20,13 @@ from .evaluate import Unit
 from .outcomes import PointOutcome
 
 Sink = Callable[[PointOutcome], None]
-#: `as_row` of the outcomes of a batch, the time that they took, s, and how many units are done
-BatchResult = tuple[list[tuple[Any, ...]], float, int]
+#: `as_row` of the outcomes of the points of a unit that were computed, and the time they took, s
+UnitResult = tuple[list[tuple[Any, ...]], float]
 
 #: s: computing time of the points that a process receives at once; short against the intervals of
 #: progress reports, long against the 0.1 ms of a message
-_BATCH_TIME = 0.2
-_MOST_IN_BATCH = 1000
+_UNIT_TIME = 0.2
+_MOST_AT_ONCE = 1000
 #: most times that a point may end the process that computes it, before the point counts as failed
 _MOST_ENDS = 2
 
@@ -36,16 +36,16 @@ class Workers:
     """Processes that evaluate units.
 
     count: how many there are now
-    evaluate: what they call with a batch of units, and with the time, s, after which the other
-        units of the batch are left
-    batch_time: s;  ahead: batches for each of them that wait or are computed
+    evaluate: what they call with a unit, and with the time, s, after which its other points are
+        left
+    unit_time: s;  ahead: units for each of them that wait or are computed
     where: place of the processes, after the name of an error
     """
 
     executor: Executor
     count: Callable[[], int]
-    evaluate: Callable[[list[Unit], float], BatchResult]
-    batch_time: float = _BATCH_TIME
+    evaluate: Callable[[Unit, float], UnitResult]
+    unit_time: float = _UNIT_TIME
     ahead: int = 2
     where: str = ""
 
@@ -60,10 +60,10 @@ class SharedUnits:
     def __init__(self, units: Iterable[Unit], sink: Sink, *, is_compiled: bool = True) -> None:
         self.todo, self.sink = deque(units), sink
         self.alone = deque[Unit]() if is_compiled else deque([self.todo.popleft()])
-        self.pending: dict[Future[BatchResult], list[Unit]] = {}
+        self.pending: dict[Future[UnitResult], Unit] = {}
         self.ends: Counter[Unit] = Counter()
-        self.each = 0.0  # s a unit, from the latest batch
-        # most units in a batch, twice as many as came back: a slow one keeps back those before it
+        self.each = 0.0  # s a point, from the latest unit
+        # most points in a unit, twice as many as came back: a slow one keeps back those before it
         self.most = 1
 
     def run(self, start: Callable[[], AbstractContextManager[Workers]]) -> None:
@@ -100,55 +100,56 @@ class SharedUnits:
                 return
 
     def _submit(self, workers: Workers) -> None:
-        """Give batches to the workers; a unit that goes alone waits until all others are done."""
-        count = workers.count()
+        """Give units to the workers; a unit that goes alone waits until all others are done."""
+        places = workers.ahead * workers.count()
         if self.alone:
             if not self.pending:
-                self._send_batch([self.alone[0]], workers)
+                self._send([self.alone[0]], workers)
                 self.alone.popleft()
             return
-        while self.todo and len(self.pending) < workers.ahead * count:
-            fair = -(-len(self.todo) // (workers.ahead * count))
-            size = int(workers.batch_time / self.each) if self.each > 0 else 1
-            size = min(max(size, 1), self.most, fair)
-            self._send_batch([self.todo[k] for k in range(size)], workers)
+        while self.todo and len(self.pending) < places:
+            size = 1
+            if not isinstance(self.todo[0], range) and self.each > 0:
+                fair = -(-len(self.todo) // places)
+                size = max(min(int(workers.unit_time / self.each), self.most, fair), 1)
+            self._send([self.todo[k] for k in range(size)], workers)
             for _ in range(size):
                 self.todo.popleft()
 
-    def _send_batch(self, batch: list[Unit], workers: Workers) -> None:
-        future = workers.executor.submit(workers.evaluate, batch, workers.batch_time)
-        self.pending[future] = batch
+    def _send(self, units: list[Unit], workers: Workers) -> None:
+        """Send units, of which several are single points, as one."""
+        unit = units[0] if len(units) == 1 else tuple(index for one in units for index in one)
+        future = workers.executor.submit(workers.evaluate, unit, workers.unit_time)
+        self.pending[future] = unit
 
-    def _take(self, future: Future[BatchResult], workers: Workers) -> bool:
-        """Pass on the outcomes of a batch; returns whether its executor still works."""
-        batch = self.pending.pop(future)
+    def _take(self, future: Future[UnitResult], workers: Workers) -> bool:
+        """Pass on the outcomes of a unit; returns whether its executor still works."""
+        unit = self.pending.pop(future)
         try:
-            rows, seconds, done = future.result()
+            rows, seconds = future.result()
         except Exception as error:
-            self._put_back(batch, error, workers)
+            self._put_back(unit, error, workers)
             return not isinstance(error, BrokenExecutor)
-        self.each = seconds / done
-        self.most = max(self.most, min(2 * done, _MOST_IN_BATCH))
-        self.todo.extendleft(reversed(batch[done:]))
+        self.each = seconds / len(rows)
+        self.most = max(self.most, min(2 * len(rows), _MOST_AT_ONCE))
+        self.todo.extendleft((index,) for index in reversed(unit[len(rows) :]))
         for row in rows:
             self.sink(PointOutcome(*row))
         return True
 
-    def _put_back(self, batch: list[Unit], error: Exception, workers: Workers) -> None:
-        self.ends.update(batch)
-        first = batch[0]
-        if len(batch) > 1 or self.ends[first] < _MOST_ENDS:
-            self.alone.extend(batch)
-        elif len(first) > 1:  # its points one by one
-            points = [(index,) for index in first]
-            self.ends.update(points)
-            self.alone.extend(points)
-        elif isinstance(error, BrokenExecutor):
-            reason = f"its process ended twice, {_describe_end(error)}"
-            self.sink(PointOutcome(first[0], reason=reason))
-        else:
+    def _put_back(self, unit: Unit, error: Exception, workers: Workers) -> None:
+        """Let a unit be computed alone, as a block once more, else point by point."""
+        again = isinstance(unit, range) and not self.ends[unit]
+        parts: list[Unit] = [unit] if again else [(index,) for index in unit]
+        self.ends.update(parts)
+        for part in parts:
+            if len(part) > 1 or self.ends[part] < _MOST_ENDS:
+                self.alone.append(part)
+                continue
             reason = f"{type(error).__name__}{workers.where}"
-            self.sink(PointOutcome(first[0], reason=reason))
+            if isinstance(error, BrokenExecutor):
+                reason = f"its process ended twice, {_describe_end(error)}"
+            self.sink(PointOutcome(part[0], reason=reason))
 
 
 def _describe_end(error: BaseException) -> str:

@@ -134,7 +134,7 @@ def test_names_are_escaped_in_notebooks():
 DEAR = set(
     """
     HorizonError RecordedLoop SimulationComparison ArmPaths DeterminedParameter
-    Proposal Workbench Reference Remedy Rival Separation SimulatedDiagnosis Page
+    Proposal Workbench Reference Remedy Rival Separation SimulatedDiagnosis
     ForceDisplacement Loop BlockDiagnosis Verification
     CoulombLevel LargestStiffness LevelAtSpeed Line SteadyRun MarginMap FrequencyMargins
     PassivityControlled Region SecondOpinion SimulatedMotion Given SimulationFit Tuned CheckedLimit

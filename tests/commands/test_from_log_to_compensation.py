@@ -97,7 +97,7 @@ def test_each_command_prints_the_next_one_up_to_claims_and_a_figure(tmp_path, mo
     few = ["--only", "stribeck", "presliding", "quadratic_drag", "bias"]
     assert main([*command, "--json", "answer.json", "--figure", "figure.pdf", *few]) == 0
     output = capsys.readouterr().out
-    assert "written: report.html, answer.json, figure.pdf" in output
+    assert "written: answer.json, report.html, figure.pdf" in output
     answer = json.loads(Path("answer.json").read_text(encoding="utf-8"))
     assert answer["missing"] == [{"effect": "stribeck", "at": "device"}]
     device = answer["models"]["ladder"][-1]["device"]

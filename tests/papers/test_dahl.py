@@ -77,15 +77,6 @@ def test_the_sampled_compensator_is_the_exact_solution_over_the_travel():
         assert sample == pytest.approx(force, abs=1e-14)
 
 
-def test_eq_9_solves_eq_2_at_any_speed():
-    """df/dx of eq (9) is eq (1) with alpha = 1, going up and going down: rate independent."""
-    for s in (1, -1):
-        start = sp.Symbol("start", real=True)
-        step = f_c * s + (start - f_c * s) * sp.exp(-sigma / f_c * s * x)
-        rate = force_rate(sp.S(s), step)  # at speed 1 along s: df/dt = s df/dx
-        assert sp.simplify(rate - s * sp.diff(step, x)) == 0
-
-
 @given(st.lists(st.floats(-2e-3, 2e-3), min_size=2, max_size=8))
 def test_the_force_stays_within_its_level_for_any_positions(steps):
     """Eq (9) keeps abs(f) <= f_c for every sequence of positions; travel 0 keeps the force."""
@@ -100,53 +91,6 @@ def test_travel_in_parts_is_travel_at_once():
     """Semigroup property of eq (9), to rounding."""
     parts = sampled(np.linspace(0.0, 2e-4, 11))[-1]
     assert parts == pytest.approx(sampled([0.0, 2e-4])[-1], rel=1e-13)
-
-
-def test_forward_euler_loses_its_bound_at_q_1_and_its_stability_at_q_2():
-    """Eqs (3), (4): called backward Euler, it is forward Euler with pole 1 - q, q = T sigma v/f_c.
-
-    From f = -f_c one step reaches (2 q - 1) f_c: twice the level at q = 1.5.
-    """
-    q = sp.Symbol("q", positive=True)
-    step = f + T * force_rate(v, f)
-    up = step.subs(sp.Abs(v), v).subs(v, q * f_c / (T * sigma))
-    assert sp.simplify(sp.diff(up, f) - (1 - q)) == 0
-    assert sp.simplify(up.subs(f, -f_c) - (2 * q - 1) * f_c) == 0
-
-
-def test_backward_euler_never_leaves_its_level():
-    """True backward Euler: (f + T sigma v)/(1 + T sigma abs(v)/f_c), within f_c."""
-    new = sp.Symbol("new", real=True)
-    (solved,) = sp.solve(sp.Eq(new, f + T * force_rate(v, new)), new)
-    printed = (f + T * sigma * v) / (1 + T * sigma * sp.Abs(v) / f_c)
-    assert sp.simplify(solved - printed) == 0
-    up = printed.subs(sp.Abs(v), v)
-    assert sp.simplify(up.subs(f, f_c) - f_c) == 0
-
-
-def test_the_sign_of_the_velocity_instead_of_the_travel_turns_the_force_around():
-    """Eq (9) with sgn(v_i): forward d1, back d2 > d1 in one sample, to first order in the travel.
-
-    Printed minus exact = 2 sigma abs(dx) + 2 sigma d1 f/f_c; with sgn(dx) only the last remains.
-    """
-    e, d1, back = sp.symbols("epsilon d1 back", positive=True)
-
-    def step(force, travel, s):
-        return f_c * s + (force - f_c * s) * sp.exp(-sigma / f_c * travel)
-
-    d2 = d1 + back  # dx = -back
-    true = step(step(f, e * d1, 1), e * d2, -1)
-    wrong, right = step(f, e * back, 1), step(f, e * back, -1)
-    first = sp.diff(sp.expand(wrong - true), e).subs(e, 0)
-    assert sp.simplify(first - (2 * sigma * back + 2 * sigma * d1 * f / f_c)) == 0
-    rest = sp.diff(sp.expand(right - true), e).subs(e, 0)
-    assert sp.simplify(rest - 2 * sigma * d1 * f / f_c) == 0
-
-
-def test_dahl_friction_is_passive_with_the_energy_of_its_bristle():
-    """f v = d/dt (f^2/(2 sigma)) + abs(v) f^2/f_c: storage and dissipation."""
-    stored = f / sigma * force_rate(v, f)
-    assert sp.simplify(f * v - stored - sp.Abs(v) * f**2 / f_c) == 0
 
 
 def test_presliding_and_the_compensator_are_one_law():

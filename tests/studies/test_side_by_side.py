@@ -36,7 +36,7 @@ def test_blocks_have_the_numbers_and_reasons_of_single_simulations():
 
 def test_a_point_does_not_depend_on_those_beside_it():
     whole = task()
-    blocks = evaluate_unit(whole, range(42))
+    blocks = list(evaluate_unit(whole, range(42)))
     for first, last in ((0, 7), (6, 23), (30, 42)):
-        part = evaluate_unit(whole, range(first, last))
+        part = list(evaluate_unit(whole, range(first, last)))
         assert part == blocks[first:last]

@@ -16,7 +16,7 @@ from ...diagrams import Control
 from ..figures.block_diagram import draw_diagram
 from ..figures.block_diagram.drawing import figure
 from ..figures.block_diagram.shapes import Box, Wire, shaft
-from ..figures.style import CASES, TWO_COLUMNS, symbol
+from ..figures.style import CASES, TWO_COLUMNS, plt, symbol
 from ..registry import shows
 
 if TYPE_CHECKING:
@@ -148,8 +148,6 @@ GREY, COLOUR = "0.6", CASES["MBC"][0]
 @shows("panels")
 def plot_residuals(diagnosis: BlockDiagnosis) -> Figure:
     """A row a cut of the computer: residual before (grey) and after, low-passed, on check rows."""
-    import matplotlib.pyplot as plt
-
     data, ladder = diagnosis.data, diagnosis.computer
     cuts = () if data is None else data.part.cuts
     columns = max([len(_variables(diagnosis, 0, cut.name)) for cut in cuts], default=1)

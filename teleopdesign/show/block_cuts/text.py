@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from html import escape
-from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ...base.files import write_text
 from ...base.sentences import with_standard_error
 from ...block_cuts.cuts_ladder import Key
 from ...block_cuts.diagnosis import BlockDiagnosis
 from ...diagnose.criteria import CRITERIA
+from ..figures.style import as_svg
 from ..registry import shows
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @shows("text")
@@ -29,9 +25,10 @@ def block_diagnosis_text(diagnosis: BlockDiagnosis) -> str:
         lines.append(_line(label, errors, f"{100 * row.check_error:.3g}%"))
         if row.added is not None:
             lines += [f"      {text}" for text in _parameters(diagnosis, row.added)]
-            lines += [
-                f"      not determined: {text}" for text in _looks_alike(diagnosis, row.added)
-            ]
+            body = diagnosis.bodies.get(row.added[1])
+            for open_value in () if body is None else body.undetermined:
+                if open_value.candidate.key == row.added:
+                    lines.append(f"      not determined: {open_value.sentence}")
     floors = [f"{100 * diagnosis.floors[c.name]:.3g}%" for c in cuts]
     lines.append(_line("noise floor", floors, ""))
     lines += ["", *map(str, diagnosis.cuts.tested)]
@@ -80,12 +77,6 @@ def _parameters(diagnosis: BlockDiagnosis, key: Key) -> list[str]:
     return [f"{n} = {with_standard_error(v, e)} {u}".removesuffix(" 1") for n, v, e, u in rows]
 
 
-def _looks_alike(diagnosis: BlockDiagnosis, key: Key) -> list[str]:
-    """What else the records would show in the same way, such as the scale of a sensor."""
-    body = diagnosis.bodies.get(key[1])
-    return [] if body is None else [u.sentence for u in body.undetermined if u.candidate.key == key]
-
-
 def _verdict(diagnosis: BlockDiagnosis) -> str:
     if diagnosis.verdict == "effects_missing":
         return f"verdict: effects_missing: {', '.join(map(_words, diagnosis.missing))}."
@@ -111,22 +102,12 @@ svg {{ max-width: 100%; height: auto; }} pre {{ white-space: pre-wrap; }}</style
 
 def write_block_report(diagnosis: BlockDiagnosis, path: str | Path) -> None:
     """Write the page: the diagram in colours, the text, and the residuals before and after."""
-    sections = [_as_svg(diagnosis.plot()), f"<pre>{escape(repr(diagnosis))}</pre>"]
+    sections = [as_svg(diagnosis.plot()), f"<pre>{escape(repr(diagnosis))}</pre>"]
     if diagnosis.data is not None:
         sections += ["<h2>The computer</h2>", "<p>Grey: the stated laws; blue: at the end.</p>"]
-        sections.append(_as_svg(diagnosis.plot_residuals()))
+        sections.append(as_svg(diagnosis.plot_residuals()))
     for name, body in diagnosis.bodies.items():
-        sections += [f"<h2>{escape(name)}</h2>", _as_svg(body.plot())]
+        sections += [f"<h2>{escape(name)}</h2>", as_svg(body.plot())]
         sections.append(f"<pre>{escape(repr(body))}</pre>")
     title = escape(diagnosis.experiment.title)
     write_text(path, _PAGE.format(title=title, sections="\n".join(sections)))
-
-
-def _as_svg(figure: Figure) -> str:
-    """A figure as SVG inside a page."""
-    import matplotlib.pyplot as plt
-
-    out = StringIO()
-    figure.savefig(out, format="svg")
-    plt.close(figure)
-    return out.getvalue()[out.getvalue().index("<svg") :]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ...base.units import unit_of
@@ -26,37 +27,35 @@ def notes_on(design: Design) -> tuple[str, ...]:
     return tuple(line for make in makers for line in make(design))
 
 
-def _model(design: Design) -> list[str]:
-    lines = []
+def _model(design: Design) -> Iterator[str]:
     if design.left > CRITERIA.adequate:
-        lines.append(
+        yield (
             f"The model leaves {say_floors(design.left)} noise floors unexplained (verdict "
             f"{design.verdict}): standard errors hold within the model only, so the least level "
             "may be lower than these errors state, and the fraction "
             f"{design.assumptions.fraction:g} is the only margin against this."
         )
-    friction = design.friction
-    if friction is not None and friction.unknown:
-        names = ", ".join(friction.unknown)
-        lines.append(f"No standard error is known of {names}: taken as exact.")
-    return lines
+    if design.friction is not None and design.friction.unknown:
+        names = ", ".join(design.friction.unknown)
+        yield f"No standard error is known of {names}: taken as exact."
 
 
-def _friction(design: Design) -> list[str]:
+def _friction(design: Design) -> Iterator[str]:
     friction, unit = design.friction, unit_of("force", design.body.axis)
     if friction is None:
-        return ["The model has no friction level: there is nothing to cancel."]
+        yield "The model has no friction level: there is nothing to cancel."
+        return
     if design.cancellation is None:
-        return [_explain_no_proposal(friction, design.reach.travel, unit)]
-    lines = []
+        yield _explain_no_proposal(friction, design.reach.travel, unit)
+        return
     if not design.reach.both_ways:
-        lines.append(
+        yield (
             "The records move the device in one direction only: friction in the other direction is "
             "taken from the model, without a record of it."
         )
     lowest, highest = friction.lowest.estimate, friction.highest.estimate
     if highest > 1.001 * lowest and not design.follows_level:
-        lines.append(
+        yield (
             f"Friction lies between {lowest:.4g} and {highest:.4g} {unit} over {friction.over}: "
             f"its lowest level is cancelled, so that up to {highest - lowest:.3g} {unit} more than "
             "the margin is left."
@@ -64,31 +63,30 @@ def _friction(design: Design) -> list[str]:
     bias = design.body.parameters.get("bias.force")
     if bias is not None and abs(bias.value) > 0:
         lower = max(friction.lowest.low - abs(bias.value), 0.0)
-        lines.append(
+        yield (
             f"A constant force of {bias.value:.3g} {unit} is taken as gravity or an offset, which "
             "stores energy. No record distinguishes it from friction with two levels, one for each "
             f"direction. Then the lower level is {lower:.3g} {unit}, and motion in one direction "
             "only would need a level below that."
         )
     if design.cancellation.controller.stages[0].law.smoothing:
-        lines.append(
+        yield (
             f"The records cannot show presliding shorter than {design.reach.unresolved:.3g} "
             f"{unit_of('position', design.body.axis)}. With such presliding, a smoothed "
             "cancellation is a negative damper in small motion: lower its level where "
             "the device hums at rest."
         )
     if friction.presliding is not None:
-        lines.append(
+        yield (
             "Friction is a spring before it slides: a smoothed Coulomb cancellation is not "
             "proposed, because in small motion it is a negative damper, which such a spring does "
             "not stop."
         )
     if design.body.has("transmission_compliance") or design.body.has("backlash"):
-        lines.append(
+        yield (
             "Only the friction on the motor side of the compliance is cancelled; a compensator "
             "level f_D within this friction is passive with any load beyond the compliance (P53)."
         )
-    return lines
 
 
 def _explain_no_proposal(friction: FrictionInterval, travel: float, unit: str) -> str:
@@ -115,55 +113,52 @@ def _explain_no_proposal(friction: FrictionInterval, travel: float, unit: str) -
     return f"No cancellation is proposed: {why}."
 
 
-def _sensors(design: Design) -> list[str]:
-    if design.reach.measures_force:
-        return []
-    return [
-        "No interaction force is a channel of this experiment: H needs a force sensor between hand "
-        "and device; without such a sensor, only the case MBC can be built."
-    ]
+def _sensors(design: Design) -> Iterator[str]:
+    if not design.reach.measures_force:
+        yield (
+            "No interaction force is a channel of this experiment: H needs a force sensor between "
+            "hand and device; without such a sensor, only the case MBC can be built."
+        )
 
 
-def _list_left_out(design: Design) -> list[str]:
-    gone = design.prediction.left_out
+def _list_left_out(design: Design) -> Iterator[str]:
     slow = {e.name for e in slow_body(design.body).effects}
     more = [e.name for e in design.body.effects if e.name not in slow]
-    lines = []
-    if gone:
-        lines.append(
+    if gone := design.prediction.left_out:
+        yield (
             f"Linear theory leaves out: {gone} (friction is a damper and spring of the same first "
             "harmonic)."
         )
     if design.prediction.rigid:
-        lines.append(
+        yield (
             f"{design.prediction.rigid} cannot be simulated at these values: the simulation takes "
             "the device as rigid, with the inertia of both sides."
         )
     if more:
-        lines.append(f"Slow motion leaves out: {', '.join(more)}.")
-    return lines
+        yield f"Slow motion leaves out: {', '.join(more)}."
 
 
-def _compare_predictions(design: Design) -> list[str]:
+def _compare_predictions(design: Design) -> Iterator[str]:
     """Notes on cases where the quasi-static prediction and the simulation differ."""
-    unit, lines = unit_of("force", design.body.axis), list[str]()
-    cases: list[CasePrediction] = []
+    unit = unit_of("force", design.body.axis)
+    known: list[CasePrediction] = []
     for case, p in design.prediction.cases.items():
-        if p in cases:  # without a cancellation two cases are the same as two others
+        if p in known:  # without a cancellation two cases are the same as two others
             continue
-        cases.append(p)
+        known.append(p)
         if p.failed:
-            lines.append(f"{case}: not simulated: {p.failed}.")
+            yield f"{case}: not simulated: {p.failed}."
             continue
         if p.apart <= CLOSE * p.simulated:
             continue
-        where = "near reversals" if p.at_reversals > 0.5 else "away from reversals"
-        share = 100 * (p.at_reversals if p.at_reversals > 0.5 else 1 - p.at_reversals)
-        lines.append(
+        reversing = p.at_reversals > 0.5
+        where = "near reversals" if reversing else "away from reversals"
+        share = 100 * (p.at_reversals if reversing else 1 - p.at_reversals)
+        linear = ""
+        if not math.isclose(p.linear, p.simulated, rel_tol=CLOSE):
+            linear = f" Linear theory is off by {100 * (p.linear / p.simulated - 1):+.0f} %."
+        yield (
             f"{case}: simulation and slow motion are {p.apart:.3g} {unit} rms apart, "
             f"{100 * p.apart / p.simulated:.0f} % of the simulated error, {share:.0f} % of the "
-            f"squared difference {where} (below 0.3 of the peak speed)."
+            f"squared difference {where} (below 0.3 of the peak speed).{linear}"
         )
-        if not math.isclose(p.linear, p.simulated, rel_tol=CLOSE):
-            lines[-1] += f" Linear theory is off by {100 * (p.linear / p.simulated - 1):+.0f} %."
-    return lines

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from typing import TYPE_CHECKING
 
-from ...base.sentences import unit_at_axis, with_standard_error
+from ...base.sentences import WIDTH, unit_at_axis, with_standard_error, wrap
 from ...base.units import unit_of
-from ..figures.style import CASES, TWO_COLUMNS
-from ..frequency.impedance import draw_interval, keep_scale
+from ..figures.graph import draw_interval
+from ..figures.style import CASES, TWO_COLUMNS, plt
+from ..frequency.impedance import keep_scale
 from ..registry import shows
 from .headline import headline
 
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from ...design.prediction import FeltImpedance
 
 
-WIDTH = 100
 #: every tenth speed of the residual friction is printed: half a decade apart
 SHOWN = 10
 
@@ -35,7 +34,7 @@ def design_text(design: Design) -> str:
         _assumptions(design),
         _proposals(design),
         _predictions(design),
-        _impedance(design),
+        _list_felt(design.impedance, unit_of("stiffness", design.body.axis)),
         _residuals(design),
         _passivity(design),
     ]
@@ -48,9 +47,7 @@ def _wrap(line: str) -> str:
     if len(line) <= WIDTH:
         return line
     indent = " " * (len(line) - len(line.lstrip()) + 2)
-    return textwrap.fill(
-        line, WIDTH, subsequent_indent=indent, break_on_hyphens=False, break_long_words=False
-    )
+    return wrap(line, rest=indent)
 
 
 def _friction(design: Design) -> list[str]:
@@ -140,20 +137,15 @@ def _predictions(design: Design) -> list[str]:
     return lines
 
 
-def _impedance(design: Design) -> list[str]:
-    """Zhat_M of the four cases over frequency, at the peak speed of the stated motion."""
-    unit = unit_of("stiffness", design.body.axis)
-    head = f"felt impedance at that peak speed, dB re 1 {unit} and deg: simulated (describing "
-    return [f"{head}functions)", *_list_felt(design.impedance)]
-
-
-def _list_felt(felt: FeltImpedance) -> list[str]:
-    """A table of cases by frequency: magnitude and phase, predicted ones in brackets."""
+def _list_felt(felt: FeltImpedance, unit: str) -> list[str]:
+    """Zhat_M of the cases by frequency: magnitude and phase, predicted ones in brackets."""
     impedance = felt.simulated or felt.predicted
+    head = f"felt impedance at that peak speed, dB re 1 {unit} and deg: simulated (describing "
+    rows = [f"{head}functions)"]
     if impedance is None:
-        return [f"  none: {why}" for why in felt.missing]
+        return rows + [f"  none: {why}" for why in felt.missing]
     frequency = impedance.data["frequency"].values
-    rows = [f"  {'at Hz':<8}" + "".join(f"{f:>22.3g}" for f in frequency)]
+    rows.append(f"  {'at Hz':<8}" + "".join(f"{f:>22.3g}" for f in frequency))
     for case in map(str, impedance.data["case"].values):
         cells = (_felt_cell(felt, case, i) for i in range(len(frequency)))
         rows.append(f"  {case:<8}" + "".join(f"{cell:>22}" for cell in cells))
@@ -216,8 +208,6 @@ def tuned_text(tuned: TunedControllers) -> str:
 @shows("figure")
 def plot_design(design: Design) -> matplotlib.figure.Figure:
     """Three panels that compare the designed cases with no compensation, a line for each case."""
-    import matplotlib.pyplot as plt
-
     figure, axes = plt.subplots(1, 3, figsize=(TWO_COLUMNS, 2.7))
     _force_error(axes[0], design)
     _residual(axes[1], design)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ...base.sentences import unit_at_axis
 from ...base.units import unit_of
-from ..figures.style import CASES, TWO_COLUMNS
+from ..figures.style import CASES, TWO_COLUMNS, plt
 from ..registry import shows
 
 if TYPE_CHECKING:
@@ -44,8 +44,6 @@ def verification_text(verified: Verification) -> str:
 @shows("figure")
 def plot_verification(verified: Verification) -> matplotlib.figure.Figure:
     """Force error over velocity, without and with compensation, on one scale."""
-    import matplotlib.pyplot as plt
-
     rows, force = verified.rows, unit_at_axis(unit_of("force", verified.axis))
     figure, (left, right) = plt.subplots(1, 2, figsize=(TWO_COLUMNS, 2.6), sharey=True)
     colour = CASES[verified.case][0]

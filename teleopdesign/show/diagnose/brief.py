@@ -11,17 +11,13 @@ import textwrap
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from ...base.sentences import with_standard_error
+from ...base.sentences import WIDTH, with_standard_error, wrap
 from ...base.units import unit_after_number
-from .text import name_of_error, sentence
+from .text import NAME, error_line, floor_line, name_of_error, sentence, table_of_joints
 
 if TYPE_CHECKING:
     from ...diagnose.diagnosis import Diagnosis
 
-#: columns of a line
-WIDTH = 100
-#: columns of a row's name
-NAME = 42
 #: lines of a screen that has room for the values of the effects
 LINES = 9
 #: rows of a ladder that are shown; of a longer one the first and the last
@@ -34,33 +30,35 @@ def brief_text(diagnosis: Diagnosis) -> str:
     Values of the effects that were added stand beside their rows. Reasons, candidates that were not
     accepted and the whole model are counted in one line, and stand in the long text.
     """
-    lines = [*(_arm(diagnosis) if diagnosis.joints else _body(diagnosis, with_values=True))]
-    if not diagnosis.joints and len(lines) > LINES:
-        lines = [*_body(diagnosis, with_values=False)]
+    first = wrap(sentence(diagnosis)).split("\n")
+    lines = [*first, *table_of_joints(diagnosis)]
+    if not diagnosis.joints:
+        lines = [*first, *_body(diagnosis, with_values=True)]
+        if len(lines) > LINES:
+            lines = [*first, *_body(diagnosis, with_values=False)]
     if diagnosis.no_named_law is not None:
-        lines += textwrap.wrap(str(diagnosis.no_named_law), WIDTH)
+        lines.append(wrap(str(diagnosis.no_named_law)))
     if diagnosis.kind:  # the list of what needs a time is long
         lines += [textwrap.shorten(f"left out: {diagnosis.left_out[-1]}", WIDTH)]
     elif diagnosis.left_out:
-        lines += textwrap.wrap(f"left out: {'; '.join(diagnosis.left_out)}", WIDTH)
+        lines.append(wrap(f"left out: {'; '.join(diagnosis.left_out)}"))
     more = _more(diagnosis) or "how the log was read, and the whole model"
     return "\n".join([*lines, f"not shown: {more} (--verbose, or --report F.html)"])
 
 
 def _body(diagnosis: Diagnosis, *, with_values: bool) -> Iterator[str]:
-    """Lines of one body, or of two: verdict, ladder, floor."""
-    yield from textwrap.wrap(sentence(diagnosis), WIDTH)
+    """Lines of one body, or of two: ladder, floor."""
     yield f"{'':<{NAME}}{'fit error':>10}{name_of_error(diagnosis):>15}"
     rungs, between = diagnosis.rungs, len(diagnosis.rungs) - ROWS
     for row in rungs if with_values or between <= 0 else (rungs[0], rungs[-1]):
         name = "your model, re-estimated" if row.added is None else f"+ {row.title}"
         if row.added is not None and not with_values and between > 0:
             name = f"with all {len(rungs) - 1} effects of the ladder"
-        yield f"{name:<{NAME}}{100 * row.fit_error:>9.2f}%{100 * row.check_error:>14.2f}%"
+        yield error_line(name, row)
         if row.added is not None and with_values:
             begin = f"{row.added.at}.{row.added.effect.name}."
             yield f"    {', '.join(_values(diagnosis, begin))}"
-    yield f"{'noise floor':<{NAME}}{'':>10}{100 * diagnosis.floor.value:>14.2f}%"
+    yield floor_line(diagnosis)
 
 
 def _values(diagnosis: Diagnosis, begin: str) -> Iterator[str]:
@@ -72,16 +70,6 @@ def _values(diagnosis: Diagnosis, begin: str) -> Iterator[str]:
             bound = " (at its bound)" if name in diagnosis.at_bound else ""
             unit = unit_after_number(model.unit(name))
             yield f"{name.removeprefix(begin)} = {number}{unit}{bound}"
-
-
-def _arm(diagnosis: Diagnosis) -> Iterator[str]:
-    """Lines of an arm: the verdict, then one line for each joint."""
-    yield from textwrap.wrap(sentence(diagnosis), WIDTH)
-    yield f"{'joint':<20}{'before':>10}{'after':>10}{'floor':>10}  verdict"
-    for joint, one in diagnosis.joints.items():
-        ends = [row.joints[joint].check_error for row in (diagnosis.before, diagnosis.after)]
-        errors = "".join(f"{100 * e:>9.2f}%" for e in (*ends, one.floor.value))
-        yield f"{joint:<20}{errors}  {one.verdict}"
 
 
 def _more(diagnosis: Diagnosis) -> str:

@@ -17,14 +17,13 @@ from ..figures.carrier import carrier_of_change, with_carrier
 from ..figures.diagnosis import (
     check_rows,
     direction_legend,
+    draw_before_and_after,
     draw_by_direction,
     draw_courses,
-    label_of,
-    share_scale,
 )
 from ..figures.friction_curve import curve_graph
 from ..figures.graph import draw_graph
-from ..figures.style import AFTER, TWO_COLUMNS
+from ..figures.style import AFTER, TWO_COLUMNS, plt
 from ..registry import shows
 from ..report.motion import simulated_motions
 
@@ -110,8 +109,6 @@ def plot_comparison(comparison: Comparison, *, before: Comparison | None = None)
     before: the figure shows this comparison beside another one, over the variable that carries the
         effect by which their models differ
     """
-    import matplotlib.pyplot as plt
-
     if before is not None and not comparison.prepared.is_curve:
         return _plot_change(before, comparison)
     if comparison.prepared.is_curve:
@@ -133,8 +130,6 @@ def plot_comparison(comparison: Comparison, *, before: Comparison | None = None)
 
 def _plot_change(before: Comparison, after: Comparison) -> Figure:
     """Forces and residual over time, and over what carries the changed effect: before and after."""
-    import matplotlib.pyplot as plt
-
     at = next(iter(after.model.bodies))
     bodies = [one.model.body(at) for one in (before, after)]
     carrier = carrier_of_change(*bodies)
@@ -142,11 +137,7 @@ def _plot_change(before: Comparison, after: Comparison) -> Figure:
     figure, axes = plt.subplot_mosaic("ft;ba", figsize=(7.16, 4.6))
     words = ("before", "after")
     draw_courses(axes["f"], axes["t"], dict(zip(words, rows, strict=True)))
-    for data, word in zip(rows, words, strict=True):
-        panel = axes[word[0]]
-        draw_by_direction(panel, data, "carrier")
-        panel.set_ylabel(label_of(data, "residual").replace("residual", f"residual {word}"))
-    share_scale(axes["b"], axes["a"])
+    draw_before_and_after((axes["b"], axes["a"]), rows, "carrier")
     direction_legend(axes["b"])
     for one, name in ((before, "b"), (after, "a")):
         errors = {"check error": one.check_error, "fit error": one.fit_error}
@@ -162,8 +153,6 @@ def plot_simulation(comparison: SimulationComparison) -> Figure:
     Correlations are those of the residual force with itself and with the command, with the band of
     99 %; an arm's figure has none.
     """
-    import matplotlib.pyplot as plt
-
     alone = not comparison.prepared.joints
     layout = "mm;oc" if alone else "mm"
     figure, axes = plt.subplot_mosaic(layout, figsize=(TWO_COLUMNS, 4.2 if alone else 2.3))

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from textwrap import fill
-
+from ...base.sentences import wrap
 from ...base.shown import html_table
 from ...diagnose.ranking import Ranking
 from ..registry import shows
@@ -13,8 +12,6 @@ _LEGEND = (
     "standard deviations: score, by which the check error falls; behind, by which the error is "
     "larger than that of the best"
 )
-#: columns of text below the table
-_WIDTH = 100
 
 
 def _rows(ranking: Ranking) -> list[tuple[str, ...]]:
@@ -54,4 +51,4 @@ def ranking_text(ranking: Ranking) -> str:
         aligned = (f"{c:>{w}}" for c, w in zip(cells, numbers, strict=True))
         lines.append("  ".join((f"{name:<{title}}", *aligned, note)).rstrip())
     below = filter(None, (_gain_nothing(ranking), _LEGEND))
-    return "\n".join((*lines, *(fill(b, _WIDTH, subsequent_indent="  ") for b in below)))
+    return "\n".join((*lines, *(wrap(b, rest="  ") for b in below)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ...base.sentences import percent, with_standard_error
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from ...diagnose.diagnosis import Diagnosis
     from ...diagnose.statements import LadderRow
 
+#: columns of the name of a row
+NAME = 42
 #: relative difference from which the error at the command is stated in addition
 DIFFERENT = 0.02
 
@@ -50,20 +53,17 @@ def name_of_error(diagnosis: Diagnosis) -> str:
 @shows("text")
 def ladder_text(diagnosis: Diagnosis) -> str:
     """The ladder as a table, with parameters, noise floor and verdict."""
-    lines = [f"{'added':<42}{'fit error':>10}{name_of_error(diagnosis):>15}"]
+    lines = [f"{'added':<{NAME}}{'fit error':>10}{name_of_error(diagnosis):>15}"]
     for row in diagnosis.rungs:
         name = "(your model, re-estimated)" if row.added is None else f"+ {row.title}"
-        lines.append(f"{name:<42}{100 * row.fit_error:>9.2f}%{100 * row.check_error:>14.2f}%")
+        lines.append(error_line(name, row))
         if row.added is not None:
             lines += _describe_addition(diagnosis, row)
     if diagnosis.joints:
         return "\n".join([*lines, *_lines_of_joints(diagnosis)])
     lines += [str(offset) for offset in diagnosis.offsets]
     lines += [str(shift) for shift in diagnosis.record_shift.values()]
-    lines.append(
-        f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>14.2f}%"
-        f"  ({diagnosis.floor.source})"
-    )
+    lines.append(f"{floor_line(diagnosis)}  ({diagnosis.floor.source})")
     source = f" ({diagnosis.bandwidth_source})" if diagnosis.bandwidth_source else ""
     band = "" if diagnosis.kind else f" up to {diagnosis.bandwidth:.3g} Hz"
     lines.append(f"compared{band}{source}")
@@ -83,14 +83,28 @@ def ladder_text(diagnosis: Diagnosis) -> str:
     return "\n".join([*lines, "", sentence(diagnosis)])
 
 
-def _lines_of_joints(diagnosis: Diagnosis) -> list[str]:
-    """What follows the ladder of an arm: errors of each joint, and what is said of it."""
-    lines = [f"{'noise floor':<42}{'':>10}{100 * diagnosis.floor.value:>14.2f}%", ""]
-    lines.append(f"{'joint':<20}{'before':>10}{'after':>10}{'floor':>10}")
+def error_line(name: str, row: LadderRow) -> str:
+    """A row of the ladder: name and both errors."""
+    return f"{name:<{NAME}}{100 * row.fit_error:>9.2f}%{100 * row.check_error:>14.2f}%"
+
+
+def floor_line(diagnosis: Diagnosis) -> str:
+    """The noise floor, below the errors of the ladder."""
+    return f"{'noise floor':<{NAME}}{'':>10}{100 * diagnosis.floor.value:>14.2f}%"
+
+
+def table_of_joints(diagnosis: Diagnosis) -> Iterator[str]:
+    """Lines with the errors and the verdict of each joint of an arm."""
+    yield f"{'joint':<20}{'before':>10}{'after':>10}{'floor':>10}  verdict"
     for joint, one in diagnosis.joints.items():
         ends = [row.joints[joint].check_error for row in (diagnosis.before, diagnosis.after)]
-        shown = "".join(f"{100 * e:>9.2f}%" for e in (*ends, one.floor.value))
-        lines.append(f"{joint:<20}{shown}")
+        errors = "".join(f"{100 * e:>9.2f}%" for e in (*ends, one.floor.value))
+        yield f"{joint:<20}{errors}  {one.verdict}"
+
+
+def _lines_of_joints(diagnosis: Diagnosis) -> list[str]:
+    """What follows the ladder of an arm: errors of each joint, and what is said of it."""
+    lines = [floor_line(diagnosis), "", *table_of_joints(diagnosis)]
     for joint, one in diagnosis.joints.items():
         more = _lines_not_accepted(one) if one.more_is_missing else []
         rest = [*map(str, one.record_shift.values()), *_lines_of_rest(one), *more]

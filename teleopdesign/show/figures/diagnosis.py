@@ -15,7 +15,7 @@ from ..registry import shows
 from .carrier import CarryingVariable, carrier_of, with_carrier
 from .friction_curve import curve_graph
 from .graph import draw_graph
-from .style import AFTER, BACKWARD, BEFORE, FORWARD, MEASURED, UNTOLD
+from .style import AFTER, BACKWARD, BEFORE, FORWARD, MEASURED, UNTOLD, plt
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,16 +71,11 @@ def draw_by_direction(ax: Axes, data: Any, over: str) -> None:
     ax.set_ylabel(label_of(data, "residual"))
 
 
-def _runs(data: Any) -> list[slice]:
-    """Slices of consecutive samples of one record and segment; no line joins two segments."""
-    segment = data["segment"].values
-    edges = [0, *(np.flatnonzero(np.diff(segment)) + 1), len(segment)]
-    return [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)]
-
-
 def draw_over_time(ax: Axes, data: Any, name: str, color: str, label: str, width: float) -> None:
     """A variable of the data over time; width: line width (points)."""
-    for i, run in enumerate(_runs(data)):
+    # no line joins two segments
+    edges = np.flatnonzero(np.diff(data["segment"].values)) + 1
+    for i, run in enumerate(np.split(np.arange(data.sizes["sample"]), edges)):
         ax.plot(
             data["time"].values[run],
             data[name].values[run],
@@ -104,8 +99,11 @@ def direction_legend(ax: Axes) -> None:
         handle.set_markersize(6.0)
 
 
-def share_scale(*panels: Axes) -> None:
-    """One vertical scale for panels, on which all of their points are seen."""
+def draw_before_and_after(panels: Sequence[Axes], rows: Sequence[Any], over: str) -> None:
+    """The residuals before and after over a variable, on one scale that shows all points."""
+    for ax, data, word in zip(panels, rows, ("before", "after"), strict=False):
+        draw_by_direction(ax, data, over)
+        ax.set_ylabel(label_of(data, "residual").replace("residual", f"residual {word}"))
     low, high = zip(*(ax.get_ylim() for ax in panels), strict=True)
     for ax in panels:
         ax.set_ylim(min(low), max(high))
@@ -137,8 +135,6 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
     curves are low-passed forces of the check records (of the fit records if there is no check
     record).
     """
-    import matplotlib.pyplot as plt
-
     if diagnosis.joints:
         return _plot_joints(diagnosis)
     if diagnosis.kind:
@@ -167,15 +163,18 @@ def plot_diagnosis(diagnosis: Diagnosis) -> Figure:
     draw_courses(axes["force"], axes["time"], models)
     # anybody's text: no formula in it
     figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
-    _residual_maps(axes, before, after, changed=changed)
+    rows = (before, after)[: 1 + changed]
+    for over, names in (("velocity", ("v0", "v1")), ("carrier", ("x0", "x1"))):
+        draw_before_and_after([axes[n] for n in names[: len(rows)]], rows, over)
+        for name in names[len(rows) :]:
+            axes[name].set_axis_off()
+    direction_legend(axes["v0"])
     _plot_ladder(axes["ladder"], diagnosis)
     return figure
 
 
 def _plot_friction_curve(diagnosis: Diagnosis) -> Figure:
     """The points of a friction curve and the models' curves, the residual, and the ladder."""
-    import matplotlib.pyplot as plt
-
     rows = [residual_data(r.model, diagnosis.prepared) for r in (diagnosis.before, diagnosis.after)]
     changed = len(diagnosis.rungs) > 1
     models = {"your model": diagnosis.fit(diagnosis.before.model)}
@@ -187,12 +186,10 @@ def _plot_friction_curve(diagnosis: Diagnosis) -> Figure:
     )
     draw_graph(curve_graph(diagnosis.prepared, models), axes["curve"])
     figure.suptitle(diagnosis.experiment.title, x=0.01, ha="left", parse_math=False)
-    for ax, data, word in zip((axes["v0"], axes["v1"]), rows, ("before", "after"), strict=True):
-        draw_by_direction(ax, data, "velocity")
-        ax.set_ylabel(label_of(data, "residual").replace("residual", f"residual {word}"))
-        for points in ax.lines:
-            points.set_markersize(3.0)
-    share_scale(axes["v0"], axes["v1"])
+    panels = axes["v0"], axes["v1"]
+    draw_before_and_after(panels, rows, "velocity")
+    for points in (line for ax in panels for line in ax.lines):
+        points.set_markersize(3.0)
     _plot_ladder(axes["ladder"], diagnosis)
     return figure
 
@@ -203,8 +200,6 @@ def _plot_joints(diagnosis: Diagnosis) -> Figure:
     The models are those in which all joints agree on the links. The panels over time show the first
     of the records.
     """
-    import matplotlib.pyplot as plt
-
     joints = list(diagnosis.joints)
     ends = [dict(zip(joints, diagnosis.parts(row), strict=True)) for row in (0, -1)]
     height, below = ROW * len(joints) + AROUND, LADDER + RUNG * len(diagnosis.rungs)
@@ -250,20 +245,6 @@ def _plot_joint(
 def _first_record(data: Any) -> Any:
     """The rows of the first record; over time, several records would lie on each other."""
     return data.isel(sample=data["record"].values == data["record"].values[0])
-
-
-def _residual_maps(axes: Any, before: Any, after: Any, *, changed: bool) -> None:
-    for over, first, second in (("velocity", "v0", "v1"), ("carrier", "x0", "x1")):
-        draw_by_direction(axes[first], before, over)
-        axes[first].set_ylabel(label_of(before, "residual").replace("residual", "residual before"))
-        if changed:
-            draw_by_direction(axes[second], after, over)
-            share_scale(axes[first], axes[second])
-            left = label_of(after, "residual").replace("residual", "residual after")
-            axes[second].set_ylabel(left)
-        else:
-            axes[second].set_axis_off()
-    direction_legend(axes["v0"])
 
 
 def _plot_ladder(ax: Axes, diagnosis: Diagnosis, *, of: str = "the measured force") -> None:

@@ -46,13 +46,6 @@ def points_of(prepared: Prepared, use: str) -> tuple[Array, Array]:
     )
 
 
-def labels_of(prepared: Prepared) -> tuple[str, str]:
-    """Labels of the axes, with their units."""
-    axis = next(iter(prepared.experiment.bodies.values())).axis
-    velocity, force = (unit_on_page(unit_of(q, axis)) for q in ("velocity", "force"))
-    return f"velocity ({velocity})", f"force ({force})"
-
-
 def curve_graph(prepared: Prepared, models: Mapping[str, Fit]) -> Graph:
     """Force over speed: the points, and each fitted model with a band of two standard errors.
 
@@ -68,7 +61,10 @@ def curve_graph(prepared: Prepared, models: Mapping[str, Fit]) -> Graph:
         # a gap between both directions, for a line jumps there
         x, y, low, high = (np.insert(values, len(sides[0]), np.nan) for values in line)
         series.append(Series(name, x, y, "model", low, high))
-    return Graph(*labels_of(prepared), tuple(s for s in series if len(s.x)))
+    axis = next(iter(prepared.experiment.bodies.values())).axis
+    velocity, force_unit = (unit_on_page(unit_of(q, axis)) for q in ("velocity", "force"))
+    shown = tuple(s for s in series if len(s.x))
+    return Graph(f"velocity ({velocity})", f"force ({force_unit})", shown)
 
 
 def curve_finding(diagnosis: Diagnosis) -> Finding:

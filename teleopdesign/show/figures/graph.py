@@ -14,6 +14,7 @@ from .style import AFTER, BACKWARD, BEFORE, FORWARD, MEASURED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
 
 INK = "k"
 #: of two series of one kind the first is before, the second after, in the colours of every figure
@@ -99,10 +100,7 @@ def _draw(series: Series, axes: Axes, colour: str) -> None:
     # one point has no line: it is drawn as a point, its band as a bar
     is_cloud, count = series.kind in POINTS or len(series.x) == 1, len(series.x)
     if series.low is not None and series.high is not None:
-        if is_cloud:
-            axes.vlines(series.x, series.low, series.high, color=colour, lw=0.7)
-        else:
-            axes.fill_between(series.x, series.low, series.high, color=colour, alpha=0.22, lw=0)
+        draw_interval(axes, series.x, (series.low, series.high), colour, bars=is_cloud)
     style: dict[str, Any]
     if is_cloud:
         size = 4.5 if count <= FEW else 2.4 if count <= MANY else 1.0
@@ -112,27 +110,45 @@ def _draw(series: Series, axes: Axes, colour: str) -> None:
         style = {"linestyle": "--", "linewidth": 0.8}
     else:
         style = {"linestyle": "-", "linewidth": 2.6 if series.kind == "course" else 1.0}
-    axes.plot(series.x, series.y, color=colour, label=_label(series), **style)
-
-
-def _label(series: Series) -> str:
     # matplotlib leaves labels with a leading underscore out of the legend
-    return f"\u200b{series.name}" if series.name.startswith("_") else series.name
+    label = f"\u200b{series.name}" if series.name.startswith("_") else series.name
+    axes.plot(series.x, series.y, color=colour, label=label, **style)
 
 
 def _logarithmic(graph: Graph, axes: Axes) -> None:
     """Logarithmic y; also x if it is positive and spans more than a decade, as frequencies do."""
-    from matplotlib.ticker import FuncFormatter, NullFormatter
-
     axes.set_yscale("log")
     x = np.concatenate([s.x for s in graph.series]) if graph.series else np.zeros(1)
     x = x[np.isfinite(x)]
     if x.size and x.min() > 0 and x.max() > 10 * x.min():
         axes.set_xscale("log")
     for axis in (axes.xaxis, axes.yaxis):
-        if axis.get_scale() == "log":  # plain numbers: powers would be mathtext
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axis.set_minor_formatter(NullFormatter())
+        if axis.get_scale() == "log":
+            write_plain_numbers(axis)
+
+
+def write_plain_numbers(axis: Axis) -> None:
+    """Plain numbers at the major ticks of an axis: powers would be mathtext."""
+    from matplotlib.ticker import FuncFormatter, NullFormatter
+
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def draw_interval(
+    axis: Axes,
+    x: Array,
+    ends: tuple[Array, Array],
+    colour: Any,
+    *,
+    bars: bool = False,
+    label: str = "_",
+) -> None:
+    """An interval as a band, or as a bar at each point."""
+    if bars:
+        axis.vlines(x, *ends, color=colour, lw=0.7)
+    else:
+        axis.fill_between(x, *ends, color=colour, alpha=0.22, lw=0, label=label)
 
 
 def _legend(axes: Axes) -> None:

@@ -10,6 +10,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable
 from functools import cache, wraps
+from importlib import import_module
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
@@ -17,8 +19,20 @@ from ...base.files import write_beside
 
 if TYPE_CHECKING:
     import matplotlib.figure
+    import matplotlib.pyplot
     import numpy as np
     from matplotlib.axes import Axes
+
+    plt = matplotlib.pyplot
+else:
+
+    class _Pyplot:
+        """`matplotlib.pyplot`, which is loaded when the first figure is drawn, not with a text."""
+
+        def __getattr__(self, name: str) -> Any:
+            return getattr(import_module("matplotlib.pyplot"), name)
+
+    plt = _Pyplot()
 
 Draw = TypeVar("Draw", bound=Callable[..., Any])
 
@@ -88,8 +102,6 @@ def save_figure(
     path: its suffix is replaced by each of `suffixes`; an older file is replaced only when the new
         file is complete
     """
-    import matplotlib.pyplot as plt
-
     files = [Path(path).with_suffix(suffix) for suffix in suffixes]
     # fonts and resolution are taken when it is drawn; what has no layout keeps none
     layout = {"figure.constrained_layout.use": figure.get_layout_engine() is not None}
@@ -98,6 +110,21 @@ def save_figure(
             with write_beside(file) as part:
                 figure.savefig(part)
     return files
+
+
+def as_svg(figure: matplotlib.figure.Figure, *, title: str = "", dpi: float = 100.0) -> str:
+    """The figure as SVG for a page, which is closed; the same figure gives the same text.
+
+    title: alternative text;  dpi: of parts that are drawn as pixels
+    """
+    out = StringIO()
+    # the same identifiers in every process; text stays text: small, and sharp at every size
+    with plt.rc_context({"svg.hashsalt": "teleopdesign", "svg.fonttype": "none"}):
+        named = {"Title": title} if title else {}
+        figure.savefig(out, format="svg", metadata={"Date": None, **named}, dpi=dpi)
+    plt.close(figure)
+    text = out.getvalue()
+    return text[text.index("<svg") :]
 
 
 STYLE = Path(__file__).with_name("teleopdesign.mplstyle")
@@ -131,8 +158,6 @@ def in_house_style(draw: Draw) -> Draw:
 
     @wraps(draw)
     def drawn(*arguments: Any, **options: Any) -> Any:
-        import matplotlib.pyplot as plt
-
         with plt.style.context(house_style()):
             return draw(*arguments, **options)
 

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...base.sentences import unit_at_axis
-from ..figures.style import CASES, ONE_COLUMN, TWO_COLUMNS, in_house_style
+from ..figures.graph import draw_interval, write_plain_numbers
+from ..figures.style import CASES, ONE_COLUMN, TWO_COLUMNS, in_house_style, plt
 from ..registry import shows
 
 if TYPE_CHECKING:
@@ -51,8 +52,6 @@ def panels(columns: PageColumns, count: int = 2) -> tuple[matplotlib.figure.Figu
 
     A third panel is lower than the others.
     """
-    import matplotlib.pyplot as plt
-
     if columns == 2:
         return plt.subplots(1, count, sharex=True, figsize=(TWO_COLUMNS, 2.4))
     heights = [1.0, 1.0, 0.55][:count]
@@ -77,15 +76,14 @@ def share_abscissa(
 
 def logarithmic(axis: matplotlib.axes.Axes, low: float, high: float) -> None:
     """A logarithmic abscissa with plain numbers; also 2 and 5 on a range below two decades."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+    from matplotlib.ticker import LogLocator
 
     axis.set_xscale("log")
     if low < high:
         axis.set_xlim(low, high)
     subs = (1.0, 2.0, 5.0) if high < 100 * low else (1.0,)
     axis.xaxis.set_major_locator(LogLocator(subs=subs))
-    axis.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-    axis.xaxis.set_minor_formatter(NullFormatter())
+    write_plain_numbers(axis.xaxis)
 
 
 def mark_degrees(axis: matplotlib.axes.Axes) -> None:
@@ -103,22 +101,6 @@ def legend_below(figure: matplotlib.figure.Figure, axis: matplotlib.axes.Axes) -
     longest = max(len(str(label)) for label in labels)
     across = max(1, int(figure.get_figwidth() / (ENTRY + LETTER * longest)))
     figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), across))
-
-
-def draw_interval(
-    axis: matplotlib.axes.Axes,
-    x: np.ndarray,
-    ends: tuple[np.ndarray, np.ndarray],
-    colour: Any,
-    *,
-    bars: bool = False,
-    label: str = "_",
-) -> None:
-    """An interval as a band, or as a bar at each point; `keep_scale` follows."""
-    if bars:
-        axis.vlines(x, *ends, color=colour, lw=0.6)
-    else:
-        axis.fill_between(x, *ends, color=colour, alpha=0.22, lw=0, label=label)
 
 
 def keep_scale(axis: matplotlib.axes.Axes) -> None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...base.sentences import unit_at_axis
-from ..figures.style import ONE_COLUMN, TWO_COLUMNS
+from ..figures.graph import draw_interval
+from ..figures.style import ONE_COLUMN, TWO_COLUMNS, plt
 from ..registry import shows
 from .impedance import (
     PageColumns,
-    draw_interval,
     keep_scale,
     legend_below,
     look,
@@ -169,8 +169,6 @@ def plot_nyquist(
     response: drawn as lines, in its unit;  measured: drawn as points, of the same cases
     columns: width of the figure in columns of a page, 1 or 2
     """
-    import matplotlib.pyplot as plt
-
     unit = response.unit
     width = TWO_COLUMNS if columns == 2 else ONE_COLUMN
     figure, axis = plt.subplots(figsize=(width, 0.9 * ONE_COLUMN))

@@ -1,17 +1,24 @@
-"""The rows of the ladder, and every candidate with its result on each of them."""
+"""The rows of the ladder, and every candidate with its result on each of them.
+
+A row is a mapping, as the template and the data of the page take it. Errors are relative to the
+measured force.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from ...base.sentences import percent_on_page as percent
-from ...diagnose.diagnosis import Diagnosis
+from ...diagnose import Diagnosis
 from ...diagnose.ranking import REFUSALS
 from ...diagnose.statements import CandidateResult, LadderRow, StepResult
 from ...measurement.experiment import Experiment
 from ..diagnose.text import command_error_text, sentence
+
+#: a row of a table of the page: name of a cell -> its content
+PageRow = Mapping[str, Any]
 
 
 def sentence_of(entry: object | None) -> str:
@@ -52,104 +59,74 @@ def verdict(diagnosis: Diagnosis) -> str:
     )
 
 
-@dataclass(frozen=True)
-class LadderLine:
-    """One row of the ladder; errors are relative to the measured force, floors are noise floors.
+def ladder_lines(diagnosis: Diagnosis) -> tuple[PageRow, ...]:
+    """Every row of the ladder, the user's model first.
 
+    Errors are relative to the measured force, floors are noise floors
     alike: effects that explain the records equally well
-    at_command: error at the command and blind share in words, if they add information
+    at_command: error at the command and blind share in words, if they add information, else None
     """
-
-    name: str
-    brief: str
-    fit_error: float
-    check_error: float
-    floors: float
-    alike: tuple[str, ...] = ()
-    at_command: str | None = None
-
-
-@dataclass(frozen=True)
-class CandidateStep:
-    """A column of the table of candidates: its heading, and the check error without a candidate."""
-
-    heading: str
-    check_error: float
-
-
-@dataclass(frozen=True)
-class NumberColumn:
-    """A column with one number a candidate;  least: what is smaller is shown as less than this."""
-
-    heading: str
-    value: Callable[[CandidateResult], float | None]
-    least: float = 0.0
-
-
-#: columns between the effect and the steps: a column is a line here
-COLUMNS = (NumberColumn("probability", lambda one: one.probability, least=0.005),)
-
-
-@dataclass(frozen=True)
-class CandidateRow:
-    """A candidate, its number in each of `COLUMNS`, and its result on each step (None: none)."""
-
-    effect: str
-    at: str
-    probability: float
-    numbers: tuple[float | None, ...]
-    steps: tuple[StepResult | None, ...]
-
-
-def ladder_lines(diagnosis: Diagnosis) -> tuple[LadderLine, ...]:
-    """Every row of the ladder, the user's model first."""
     floor = diagnosis.floor.value
     return tuple(
-        LadderLine(
-            name=step_name(r),
-            brief="your model" if r.added is None else r.added.effect.name,
-            fit_error=r.fit_error,
-            check_error=r.check_error,
-            floors=r.check_error / floor if floor else float("inf"),
-            alike=tuple(str(one.candidate) for one in r.alternatives),
-            at_command=None if diagnosis.joints else command_error_text(r),
-        )
+        {
+            "name": step_name(r),
+            "brief": "your model" if r.added is None else r.added.effect.name,
+            "fit_error": r.fit_error,
+            "check_error": r.check_error,
+            "floors": r.check_error / floor if floor else float("inf"),
+            "alike": tuple(str(one.candidate) for one in r.alternatives),
+            "at_command": None if diagnosis.joints else command_error_text(r),
+        }
         for r in diagnosis.rungs
     )
 
 
-def candidate_steps(diagnosis: Diagnosis) -> tuple[CandidateStep, ...]:
-    """The steps on which candidates were fitted; only the best one where no others are known."""
+def candidate_steps(diagnosis: Diagnosis) -> tuple[PageRow, ...]:
+    """The steps on which candidates were fitted: heading, and the check error without a candidate.
+
+    Only the best step where no others are known.
+    """
     ladder = ladder_lines(diagnosis)
     if not any(c.steps for c in diagnosis.candidates):
-        return (CandidateStep("at its best step", ladder[0].check_error),)
+        return ({"heading": "at its best step", "check_error": ladder[0]["check_error"]},)
+    headings = ["on your model", *(f"with {line['brief']}" for line in ladder[1:])]
     return tuple(
-        CandidateStep(f"with {line.brief}" if i else "on your model", line.check_error)
-        for i, line in enumerate(ladder)
+        {"heading": heading, "check_error": line["check_error"]}
+        for heading, line in zip(headings, ladder, strict=True)
     )
 
 
-def candidate_rows(diagnosis: Diagnosis) -> tuple[CandidateRow, ...]:
-    """Every candidate with its check error on each step: added ones first, then by probability."""
+#: columns between the effect and the steps: a column is a line here. Heading -> the number of a
+#: candidate, and the least one: what is smaller is shown as less than this
+COLUMNS: Mapping[str, tuple[Callable[[CandidateResult], float | None], float]] = {
+    "probability": (lambda one: one.probability, 0.005),
+}
+
+
+def candidate_rows(diagnosis: Diagnosis) -> tuple[PageRow, ...]:
+    """Every candidate, its number in each of `COLUMNS`, and its result on each step (None: none).
+
+    Added ones come first, then the more probable ones.
+    """
     accepted = [r.added.key for r in diagnosis.rungs if r.added is not None]
     count = len(candidate_steps(diagnosis))
     rows = [
-        CandidateRow(
-            c.candidate.effect.name,
-            c.candidate.at,
-            c.probability,
-            tuple(column.value(c) for column in COLUMNS),
-            c.steps[:count] if c.steps else (_best_step(diagnosis, c),),
-        )
+        {
+            "effect": c.candidate.effect.name,
+            "at": c.candidate.at,
+            "probability": c.probability,
+            "numbers": tuple(number(c) for number, _ in COLUMNS.values()),
+            "steps": c.steps[:count] if c.steps else (_best_step(diagnosis, c),),
+        }
         for c in diagnosis.candidates
     ]
 
-    def place(row: CandidateRow) -> tuple[int, float, float]:
-        key = (row.effect, row.at)
+    def place(row: PageRow) -> tuple[int, float, float]:
+        key = (row["effect"], row["at"])
         order = accepted.index(key) if key in accepted else len(accepted)
-        errors = (step.check_error for step in row.steps if step is not None)
+        errors = (step.check_error for step in row["steps"] if step is not None)
         best = min((e for e in errors if math.isfinite(e)), default=math.inf)
-        return order, -round(row.probability, 2), best
+        return order, -round(row["probability"], 2), best
 
     return tuple(sorted(rows, key=place))
 

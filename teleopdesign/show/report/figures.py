@@ -11,7 +11,6 @@ from __future__ import annotations
 import warnings
 from base64 import b64encode
 from collections.abc import Callable
-from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from ...base.sentences import percent_on_page as percent
 from ...base.sentences import unit_on_page as unit_text
 from ..figures.diagnosis import draw_ladder
 from ..figures.graph import draw_graph
-from ..figures.style import AFTER, BEFORE, STYLE, further_fonts
+from ..figures.style import AFTER, BEFORE, STYLE, as_svg, further_fonts
 from ..frequency.impedance import legend_below
 from ..frequency.response import draw_bode
 from .motion import YOURS, ImpedanceView
@@ -34,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
 
-    from .candidate_table import LadderLine
+    from .candidate_table import PageRow
 
 #: inches: widths of a panel; a panel fits a telephone, and two or three fit side by side on a
 #: screen
@@ -53,15 +52,15 @@ def make_diverging_colormap() -> Colormap:
     return LinearSegmentedColormap.from_list("residual", stops)
 
 
-def ladder_figure(rows: tuple[LadderLine, ...], floor: float) -> Markup:
+def ladder_figure(rows: tuple[PageRow, ...], floor: float) -> Markup:
     """Check error of every rung as a bar, fit error as a ring, noise floor as a line."""
 
     def draw(figure: Figure) -> None:
         axes = figure.subplots()
-        draw_ladder(axes, [(r.name, r.check_error, r.fit_error) for r in rows], floor)
+        draw_ladder(axes, [(r["name"], r["check_error"], r["fit_error"]) for r in rows], floor)
         axes.set_xlabel("force error (% of the measured force)")
 
-    errors = ", ".join(f"{r.name}: {percent(r.check_error)}" for r in rows)
+    errors = ", ".join(f"{r['name']}: {percent(r['check_error'])}" for r in rows)
     alt = f"Bars of the force error. {errors}. Noise floor: {percent(floor)}."
     height = 0.55 + 0.52 * len(rows)
     return picture(draw, size=(WIDE, height), alt=alt)
@@ -180,8 +179,6 @@ def impedance_figure(view: ImpedanceView) -> Markup:
 
 #: settings of matplotlib for pictures of a page, besides the house style
 SETTINGS: Any = {
-    "svg.fonttype": "none",  # text stays text: small, and sharp at every size
-    "svg.hashsalt": "teleopdesign",  # the same identifiers in every process
     "text.parse_math": False,  # a name from a file may hold a dollar sign
     "axes.formatter.use_mathtext": False,
     "axes.formatter.limits": (-4, 5),
@@ -214,7 +211,5 @@ def picture(draw: Callable[[Figure], None], *, size: tuple[float, float], alt: s
         figure = Figure(figsize=size, layout="constrained")
         FigureCanvasSVG(figure)
         draw(figure)
-        out = BytesIO()
-        figure.savefig(out, format="svg", metadata={"Date": None}, dpi=PIXELS_PER_INCH)
-    data = b64encode(out.getvalue()).decode("ascii")
+        data = b64encode(as_svg(figure, dpi=PIXELS_PER_INCH).encode()).decode("ascii")
     return Markup('<img alt="{}" src="data:image/svg+xml;base64,{}">').format(alt, data)

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from ...base.errors import ModelError
 from ...base.finding import Array, Graph, Series
-from ...base.sentences import unit_on_page as unit_text
-from ...base.units import unit_of
+from ...base.sentences import readable_unit
 from ...blocks import free_space
 from ...diagnose import Diagnosis, SimulationComparison
 from ...diagnose.comparison import energetic_speed, recorded_impedance
@@ -66,19 +65,13 @@ def plot_over_carrier(
     """Mean residual over the carrier on the first and last rung, and 80 % of the samples."""
     quantity = "force" if carrier.name == "command" else carrier.name
     places = carrier.values(vars(rows))
-    scale = choose_prefix(unit_of(quantity, axis), size_of(places))
-    series = [
-        Series(
-            name=name,
-            x=scale.factor * np.array([p[0] for p in profile]),
-            y=force.factor * np.array([p[1] for p in profile]),
-            kind="model",
-            low=force.factor * np.array([p[2] for p in profile]),
-            high=force.factor * np.array([p[3] for p in profile]),
-        )
-        for name, r in _first_and_last(rows.residual)
-        if (profile := _profile(rows, places, r))
-    ]
+    scale = choose_prefix(quantity, axis, size_of(places))
+    series = []
+    for name, residual in _first_and_last(rows.residual):
+        if profile := _profile(rows, places, residual):
+            place, *force_lines = np.array(profile).T
+            mean, low, high = (force.factor * line for line in force_lines)
+            series.append(Series(name, scale.factor * place, mean, "model", low, high))
     label = f"residual force ({force.unit})"
     return Graph(f"{carrier.label(axis)} ({scale.unit})", label, tuple(series))
 
@@ -111,7 +104,7 @@ def excerpt(rows: BodySamples, axis: str, bandwidth: float) -> Graph:
     """Measured and modelled force where the residual decreased most (or is largest)."""
     window = _window(rows, bandwidth)
     kept = window[:: max(1, len(window) // EXCERPT_POINTS)]  # low-passed: neighbours are alike
-    force = choose_prefix(unit_of("force", axis), size_of(rows.measured[window]))
+    force = choose_prefix("force", axis, size_of(rows.measured[window]))
     series = [Series("measured", rows.clock[kept], force.factor * rows.measured[kept], "course")]
     for name, r in _first_and_last(rows.residual):
         model = force.factor * (rows.measured[kept] - r[kept])
@@ -120,6 +113,7 @@ def excerpt(rows: BodySamples, axis: str, bandwidth: float) -> Graph:
 
 
 def _window(rows: BodySamples, bandwidth: float) -> NDArray[np.intp]:
+    """Rows of a window of one stretch: that in which the residual decreased most for its force."""
     gain = rows.residual[0] ** 2
     if len(rows.residual) > 1:
         gain = gain - rows.residual[-1] ** 2
@@ -127,35 +121,17 @@ def _window(rows: BodySamples, bandwidth: float) -> NDArray[np.intp]:
     least = QUIET * float(np.mean(force))
     best, window = -np.inf, np.arange(len(rows.time))
     for number in np.unique(rows.stretch):
-        of_stretch = np.flatnonzero(rows.stretch == number)
-        step = float(np.median(np.diff(rows.time[of_stretch]))) if len(of_stretch) > 1 else 1.0
-        length = max(2, int(min(PERIODS / bandwidth, PART * len(of_stretch) * step) / step))
-        if len(of_stretch) < length:
+        here = np.flatnonzero(rows.stretch == number)
+        step = float(np.median(np.diff(rows.time[here]))) if len(here) > 1 else 1.0
+        length = max(2, int(min(PERIODS / bandwidth, PART * len(here) * step) / step))
+        if len(here) < length:
             continue
-        share = _moving_mean(gain[of_stretch], length) / (
-            _moving_mean(force[of_stretch], length) + least
-        )
+        gained, pushed = (np.convolve(x[here], np.ones(length), "valid") for x in (gain, force))
+        share = gained / (pushed + length * least)
         if share.max() > best:
             start = int(np.argmax(share))
-            best, window = float(share.max()), of_stretch[start : start + length]
+            best, window = float(share.max()), here[start : start + length]
     return window
-
-
-def _moving_mean(values: Array, length: int) -> Array:
-    """Mean of each window of `length` samples."""
-    sums = np.concatenate([[0.0], np.cumsum(values)])
-    return np.asarray((sums[length:] - sums[:-length]) / length)
-
-
-#: SI unit -> (unit that is shown, factor), from small to large; other units are not changed
-_SHOWN = {
-    "m": (("µm", 1e6), ("mm", 1e3), ("m", 1.0)),
-    "m/s": (("µm/s", 1e6), ("mm/s", 1e3), ("m/s", 1.0)),
-    "N": (("mN", 1e3), ("N", 1.0)),
-    "N*m": (("mN·m", 1e3), ("N·m", 1.0)),
-    "rad": (("mrad", 1e3), ("rad", 1.0)),
-    "rad/s": (("mrad/s", 1e3), ("rad/s", 1.0)),
-}
 
 
 @dataclass(frozen=True)
@@ -166,13 +142,10 @@ class Scaled:
     factor: float
 
 
-def choose_prefix(unit: str, size: float) -> Scaled:
-    """The largest prefix in which `size` (SI) is at least 0.5, or the smallest that exists."""
-    choices = _SHOWN.get(unit, ((unit_text(unit), 1.0),))
-    for shown, factor in reversed(choices):
-        if size * factor >= 0.5:
-            return Scaled(shown, factor)
-    return Scaled(*choices[0])
+def choose_prefix(quantity: str, axis: str, size: float) -> Scaled:
+    """The unit with the prefix in which a quantity of that size (SI) reads well."""
+    factor, unit = readable_unit(quantity, axis, size)
+    return Scaled(unit.replace(" ", "·"), factor)
 
 
 def size_of(values: Array) -> float:
@@ -247,9 +220,7 @@ def _overlay(comparison: SimulationComparison, use: str, at: str) -> Graph:
         gap = np.full((3, 1), np.nan)
         time, measured, simulated = np.hstack([p for one in stretches for p in (one, gap)])
         if scale is None:
-            scale = choose_prefix(
-                unit_of("position", axis), size_of(measured[np.isfinite(measured)])
-            )
+            scale = choose_prefix("position", axis, size_of(measured[np.isfinite(measured)]))
             low, high = float(np.nanmin(measured)), float(np.nanmax(measured))
             series.append(Series("measured", time, scale.factor * measured, "course"))
         room = 0.5 * (high - low)

@@ -14,19 +14,12 @@ from typing import Any
 import numpy as np
 
 from ...base.finding import Array, Graph
-from ...base.units import unit_of
+from ...base.sentences import round_up
 from ...diagnose import Diagnosis
 from ...diagnose.comparison import residual_data
 from ...diagnose.evidence import SAME
 from ..figures.carrier import carrier_of
-from .motion import (
-    BodySamples,
-    Scaled,
-    choose_prefix,
-    excerpt,
-    plot_over_carrier,
-    size_of,
-)
+from .motion import BodySamples, Scaled, choose_prefix, excerpt, plot_over_carrier, size_of
 
 #: cells of a map along the travel and along velocity, and fewest samples in a cell that is shown
 CELLS, FEWEST = (40, 25), 3
@@ -132,9 +125,9 @@ def _view(
     known = [np.abs(m[np.isfinite(m)]) for m in means]
     largest = [float(np.quantile(m, 0.98)) for m in known if m.size]
     noise = _noise(diagnosis)
-    limit = _round_up(max([*largest, OUTSIDE * noise]))
+    limit = round_up(max([*largest, OUTSIDE * noise]), digits=1) or 1.0
     buckets = np.array_split(np.arange(len(rows.time)), min(BUCKETS, len(rows.time)))
-    force = choose_prefix(unit_of("force", axis), size_of(rows.residual[0]))
+    force = choose_prefix("force", axis, size_of(rows.residual[0]))
     carrier = carrier_of(diagnosis, body)
     steps = tuple(
         RungResidual(
@@ -150,8 +143,8 @@ def _view(
     joints = np.flatnonzero(np.diff(rows.stretch)) + 1
     return BodyView(
         body=body,
-        position_scale=choose_prefix(unit_of("position", axis), size_of(rows.position)),
-        velocity_scale=choose_prefix(unit_of("velocity", axis), size_of(rows.velocity)),
+        position_scale=choose_prefix("position", axis, size_of(rows.position)),
+        velocity_scale=choose_prefix("velocity", axis, size_of(rows.velocity)),
         force_scale=force,
         position=position,
         velocity=velocity,
@@ -171,14 +164,6 @@ def _noise(diagnosis: Diagnosis) -> float:
     shown = diagnosis.prepared.of("check") or diagnosis.prepared.of("fit")
     rows = sum(s.weight * len(s.keep) for s in shown)
     return diagnosis.floor.value * float(np.sqrt(sum(s.measured for s in shown) / rows))
-
-
-def _round_up(value: float) -> float:
-    """The next of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten, as the end of a scale."""
-    if value <= 0:
-        return 1.0
-    power = 10.0 ** np.floor(np.log10(value))
-    return float(power * min(m for m in (1, 1.5, 2, 3, 4, 5, 6, 8, 10) if m * power >= value))
 
 
 def _edges(values: Array, cells: int) -> Array:

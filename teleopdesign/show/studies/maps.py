@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.errors import ModelError
-from ..figures.style import ONE_COLUMN, TWO_COLUMNS, hatch_region
+from ..figures.style import ONE_COLUMN, TWO_COLUMNS, hatch_region, plt
 from ..registry import shows
 from .data import StudyData, data_of, label, sort_axes, spread
 
@@ -46,8 +46,6 @@ def draw_map(
     marks: Marks,
 ) -> matplotlib.figure.Figure:
     """One map;  along: axes across and up, "" for the default: see `StudyPlots.map`."""
-    import matplotlib.pyplot as plt
-
     study, over = data_of(plots), Overlay(*marks)
     values = study.at(study.measure(measure), at)
     across, up = study.pair(values, *along)
@@ -69,8 +67,6 @@ def draw_panels(
     marks: Marks,
 ) -> matplotlib.figure.Figure:
     """Maps side by side;  along: axes across, up and by: see `StudyPlots.panels`."""
-    import matplotlib.pyplot as plt
-
     study, over = data_of(plots), Overlay(*marks)
     *plane, by = along
     whole = study.measure(measure)
@@ -119,12 +115,16 @@ def _draw_mesh(
     up: str,
     limits: tuple[float, float],
 ) -> Any:
+    from matplotlib.ticker import FixedLocator, MaxNLocator
+
     study.label_axis(axis, "x", across)
     study.label_axis(axis, "y", up)
+    field = values.transpose(up, across).values  # infinite values have the colours of the ends
+    shown = np.nan_to_num(field, nan=np.nan, neginf=limits[0], posinf=limits[1])
     mesh = axis.pcolormesh(
         _borders(study.data[across].values, axis.get_xscale()),
         _borders(study.data[up].values, axis.get_yscale()),
-        np.ma.masked_invalid(_clip_infinite(values.transpose(up, across).values, limits)),
+        np.ma.masked_invalid(shown),
         cmap="RdBu_r" if limits[0] < 0 and limits[1] == -limits[0] else "viridis",
         vmin=limits[0],
         vmax=limits[1],
@@ -139,7 +139,8 @@ def _draw_mesh(
         if places is not values_of:
             one.set_ticks(places, labels=[str(value) for value in values_of])
         elif scale == "linear":
-            _place_ticks(one, places)
+            few = len(places) <= _FEW_TICKS  # else some, so that labels are apart
+            one.set_major_locator(FixedLocator(places.tolist()) if few else MaxNLocator(_FEW_TICKS))
     return mesh
 
 
@@ -155,14 +156,6 @@ def _borders(values: np.ndarray, scale: str) -> np.ndarray:
     middle = at[:-1] + 0.5 * apart[: len(at) - 1]
     borders = np.concatenate([[at[0] - 0.5 * apart[0]], middle, [at[-1] + 0.5 * apart[-1]]])
     return np.exp(borders) if scale == "log" else borders
-
-
-def _place_ticks(axis: Any, values: np.ndarray) -> None:
-    """Ticks at the values of a linear axis if they are few, else some, so that labels are apart."""
-    from matplotlib.ticker import FixedLocator, MaxNLocator
-
-    few = len(values) <= _FEW_TICKS
-    axis.set_major_locator(FixedLocator(values.tolist()) if few else MaxNLocator(_FEW_TICKS))
 
 
 def _draw_marks(
@@ -226,11 +219,6 @@ def _limits(values: xarray.DataArray, onset: float | None) -> tuple[float, float
         most = float(np.percentile(np.abs(finite), 95))
         return -most, most
     return float(finite.min()), float(finite.max())
-
-
-def _clip_infinite(values: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
-    """The values, infinite ones at the ends of the colour scale."""
-    return np.asarray(np.nan_to_num(values, nan=np.nan, neginf=limits[0], posinf=limits[1]))
 
 
 def _extend(values: xarray.DataArray, limits: tuple[float, float]) -> str:

@@ -11,7 +11,7 @@ from ...base.errors import ModelError
 from ...base.shown import html_table
 from ...studies.points import SAMPLE
 from ...studies.result import REASON
-from ..figures.style import ONE_COLUMN, TWO_COLUMNS
+from ..figures.style import ONE_COLUMN, TWO_COLUMNS, plt
 from ..registry import shows
 from .data import StudyData, data_of, label, number, spread
 from .maps import MOST_PANELS
@@ -110,8 +110,6 @@ def draw_curves(
     plots: StudyPlots, measure: str, *, over: str, at: Mapping[str, Any] | None
 ) -> matplotlib.figure.Figure:
     """A measure over one parameter, a line for each value of a second one."""
-    import matplotlib.pyplot as plt
-
     study = data_of(plots)
     values = study.at(study.measure(measure), at)
     dims = [str(d) for d in values.dims]
@@ -153,8 +151,6 @@ def _lines(
 @shows("scatter")
 def draw_points(plots: StudyPlots, measure: str) -> matplotlib.figure.Figure:
     """A measure over each parameter, for points that were drawn together."""
-    import matplotlib.pyplot as plt
-
     study = data_of(plots)
     values = study.measure(measure)
     if SAMPLE not in values.dims or values.ndim > 2:
@@ -188,8 +184,6 @@ def draw_points(plots: StudyPlots, measure: str) -> matplotlib.figure.Figure:
 @shows("sensitivity")
 def draw_indices(plots: StudyPlots, *measures: str) -> matplotlib.figure.Figure:
     """Sobol indices as bars, largest total first, a panel for each measure."""
-    import matplotlib.pyplot as plt
-
     from ...studies import Study, sensitivity
 
     study, whole = data_of(plots), Study(plots.data)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import textwrap
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +19,7 @@ from ...unexplained.dependence import ALARM
 from ...unexplained.shapes import SHAPES
 from ..figures.diagnosis import direction_legend
 from ..figures.graph import draw_graph
-from ..figures.style import AFTER, BACKWARD, FORWARD, MEASURED
+from ..figures.style import AFTER, BACKWARD, FORWARD, MEASURED, plt
 from ..registry import shows
 
 if TYPE_CHECKING:
@@ -46,27 +47,24 @@ def description_text(description: ResidualDescription) -> str:
 def findings_of(description: ResidualDescription) -> tuple[Finding, ...]:
     """The sentences on all bodies."""
     many = len(description.parts) > 1
-    return tuple(f for p in description.parts for f in _findings_on(p, name_body=many))
+    return tuple(f for p in description.parts for f in _findings_on(p, p.body if many else ""))
 
 
-def _findings_on(part: BodyResidual, *, name_body: bool) -> tuple[Finding, ...]:
+def _findings_on(part: BodyResidual, where: str) -> Iterator[Finding]:
     """The sentences about one body, each with its numbers and its graph."""
-    where = part.body if name_body else ""
     numbers = {"error": part.error, "noise floor": part.floor, "noise floors": part.floors}
-    error, floors = percent(part.error, ".2g"), number(part.floors)
     time = part.views.get("time", part.views["velocity"])
+    sentence = f"the model leaves {percent(part.error, '.2g')} of the force, "
     if part.is_adequate:
-        sentence = f"the model leaves {error} of the force, no more than sensor noise would leave"
-        return (Finding("what is left", "fine", f"{sentence}.", numbers, where, time),)
-    sentence = (
-        f"the model leaves {error} of the force, {floors} times what sensor noise would leave"
-    )
-    findings = [Finding("what is left", "warning", f"{sentence}.", numbers, where, time)]
+        sentence += "no more than sensor noise would leave."
+        yield Finding("what is left", "fine", sentence, numbers, where, time)
+        return
+    sentence += f"{number(part.floors)} times what sensor noise would leave."
+    yield Finding("what is left", "warning", sentence, numbers, where, time)
     for one in part.dependences:
-        findings.append(_finding(one, where))
+        yield _finding(one, where)
     if part.floors > CRITERIA.adequate:
-        findings += _rest(part, where)
-    return tuple(findings)
+        yield from _rest(part, where)
 
 
 def _finding(one: DescribedDependence, where: str) -> Finding:
@@ -88,34 +86,24 @@ def _finding(one: DescribedDependence, where: str) -> Finding:
     return Finding(topic, "warning", sentence[0].upper() + sentence[1:], numbers, where, one.graph)
 
 
-def _rest(part: BodyResidual, where: str) -> list[Finding]:
+def _rest(part: BodyResidual, where: str) -> Iterator[Finding]:
     """Findings on the remaining residual: its frequencies, correlation in time, and size."""
-    findings = [] if part.whiteness is None else [_frequencies(part, part.whiteness, where)]
+    if part.whiteness is not None:
+        yield _frequencies(part, part.whiteness, where)
     if part.at_rest > MOSTLY:
-        share = percent(part.at_rest, ".0f")
-        sentence = f"{share} of the residual lies where no motion can be seen."
-        velocity = part.views["velocity"]
-        findings.append(Finding("rest", "note", sentence, {"share": part.at_rest}, where, velocity))
+        sentence = (
+            f"{percent(part.at_rest, '.0f')} of the residual lies where no motion can be seen."
+        )
+        numbers = {"share": part.at_rest}
+        yield Finding("rest", "note", sentence, numbers, where, part.views["velocity"])
     floors = part.after / part.floor if part.floor else float("inf")
     if floors > CRITERIA.adequate and part.after**2 > UNDESCRIBED * part.error**2:
-        what = "Beside that" if part.dependences else f"None of {len(SHAPES)} dependences is sure:"
-        verb = f"{number(floors)} times the sensors' noise"
-        sentence = (
-            f"{what}, {verb} stays undescribed."
-            if part.dependences
-            else f"{what} {verb} stay undescribed."
-        )
-        findings.append(
-            Finding(
-                "undescribed",
-                "note",
-                sentence,
-                {"noise floors": floors},
-                where,
-                part.views.get("time"),
-            )
-        )
-    return findings
+        what, stays = "Beside that,", "stays"
+        if not part.dependences:
+            what, stays = f"None of {len(SHAPES)} dependences is sure:", "stay"
+        sentence = f"{what} {number(floors)} times the sensors' noise {stays} undescribed."
+        numbers = {"noise floors": floors}
+        yield Finding("undescribed", "note", sentence, numbers, where, part.views.get("time"))
 
 
 def _frequencies(part: BodyResidual, white: Whiteness, where: str) -> Finding:
@@ -154,14 +142,8 @@ COLOURS = {
 @shows("figure")
 def plot_unexplained(failure: ResidualDescription) -> Figure:
     """The sentences of all findings, and below them the graphs of each body, dependences first."""
-    import matplotlib.pyplot as plt
-
     panels = [p for part in failure.parts for p in _panels(part, name=len(failure.parts) > 1)]
-    lines = [
-        line
-        for finding in failure.findings
-        for line in textwrap.wrap(_sentence_text(finding.where, finding.sentence), LETTERS)
-    ]
+    lines = [part for one in failure.findings for part in textwrap.wrap(_line(one), LETTERS)]
     rows = math.ceil(len(panels) / COLUMNS)
     title = 0.14 * (len(lines) + 1)
     figure, axes = plt.subplots(rows, COLUMNS, figsize=(7.16, HEIGHT * rows + title), squeeze=False)
@@ -180,7 +162,8 @@ def plot_unexplained(failure: ResidualDescription) -> Figure:
     return figure
 
 
-def _sentence_text(where: str, sentence: str) -> str:
+def _line(finding: Finding) -> str:
+    where, sentence = finding.where, finding.sentence
     return f"{where}: {sentence}" if where else sentence[:1].upper() + sentence[1:]
 
 

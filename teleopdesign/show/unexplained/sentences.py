@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ...base.sentences import amount, number, span
 from ...unexplained.curve import Curve, SignRegion, goes_up_and_down, largest_regions, regions_of
 from ...unexplained.dependence import Contrast
@@ -103,16 +105,15 @@ def sentence_for(
         assert formula is not None
         sentence = _wave(shape, formula, axis)
     elif goes_up_and_down(regions) and shape.variable.name in ("position", "time"):
-        low, high = float(curve.y.min()), float(curve.y.max())
-        over = _describe_range(shape.variable)
-        sentence = (
-            f"{_subject(shape)} goes up and down {over}, by {_spread(low, high, shape, axis)}"
-        )
+        half = amount(0.5 * float(np.ptp(curve.y)), shape.carrier.quantity, axis)
+        over = "along the travel" if shape.variable.name == "position" else "in time"
+        sentence = f"{_subject(shape)} goes up and down {over}, by {half} to either side"
     elif regions:
         sentence = _ranges(shape, regions, axis)
     else:
         return ""
-    return sentence + _qualify(shape, contrasts) + _describe_following(formula, axis)
+    following = "" if formula is None else f"; it follows {formula_text(formula, axis)}"
+    return sentence + _qualify(shape, contrasts) + following
 
 
 def _ranges(shape: Shape, regions: Sequence[SignRegion], axis: str) -> str:
@@ -146,17 +147,6 @@ def _subject(shape: Shape) -> str:
         "lost command": "the part of the command that arrives",
         "lateness": "the lateness of the command",
     }[shape.carrier.name]
-
-
-def _describe_range(variable: Variable) -> str:
-    return {"position": "along the travel", "time": "in time"}.get(
-        variable.name, f"with {variable.name.replace('_', ' ')}"
-    )
-
-
-def _spread(low: float, high: float, shape: Shape, axis: str) -> str:
-    half = amount(0.5 * (high - low), shape.carrier.quantity, axis)
-    return f"{half} to either side"
 
 
 def _wave(shape: Shape, formula: Formula, axis: str) -> str:
@@ -205,7 +195,3 @@ def _qualify(shape: Shape, contrasts: Sequence[Contrast]) -> str:
         elif directions and shape.carrier == FRICTION:
             words += ", in both directions"
     return words
-
-
-def _describe_following(formula: Formula | None, axis: str) -> str:
-    return "" if formula is None else f"; it follows {formula_text(formula, axis)}"

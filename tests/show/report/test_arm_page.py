@@ -43,17 +43,23 @@ def two_joints(diagnosis):
 
 def test_each_joint_has_separate_errors_and_a_page(two_joints, diagnosis):
     page = page_of(two_joints)
-    first, second = page.joints
-    assert (first.name, first.before, first.after) == ("j1", 0.07, 0.01)
-    assert (second.name, second.before, second.after) == ("j2", 0.09, 0.03)
-    assert second.floor == 2.0 * first.floor == 2.0 * diagnosis.floor.value
-    assert second.left == pytest.approx(0.5 * first.left) and first.left == diagnosis.left
+    first, second = page["joints"]
+    assert tuple(first[n] for n in ("name", "before", "after")) == ("j1", 0.07, 0.01)
+    assert tuple(second[n] for n in ("name", "before", "after")) == ("j2", 0.09, 0.03)
+    assert second["floor"] == 2.0 * first["floor"] == 2.0 * diagnosis.floor.value
+    assert second["left"] == pytest.approx(0.5 * first["left"]) and first["left"] == diagnosis.left
     alone = page_of(diagnosis)
-    assert first.page.parameters == alone.parameters and first.page.ladder == alone.ladder
-    assert first.sentence == "effects_missing: stribeck at device."
-    assert (page.before, page.after, page.left) == (0.08, 0.02, first.left)
-    assert page.floor == two_joints.floor.value
-    assert page.named == ("stribeck",) and page.added == () == page.parameters == page.views
+    assert (first["page"]["parameters"], first["page"]["ladder"]) == (
+        alone["parameters"],
+        alone["ladder"],
+    )
+    assert first["sentence"] == "effects_missing: stribeck at device."
+    assert (page["before"], page["after"], page["left"]) == (0.08, 0.02, first["left"])
+    assert page["floor"] == two_joints.floor.value
+    assert (
+        page["named"] == ("stribeck",)
+        and page["added"] == () == page["parameters"] == page["views"]
+    )
 
 
 @pytest.mark.slow

@@ -11,8 +11,8 @@ from teleopdesign.diagnose.by_simulation import simulated_if_possible
 from teleopdesign.diagnose.recording import DiagnosedRecording
 from teleopdesign.show.report.cannot_tell import cannot_tell
 from teleopdesign.show.report.motion import simulated_motions
-from teleopdesign.show.report.parameter_table import parameter_rows
 from teleopdesign.show.report.residuals import body_views
+from teleopdesign.show.report.tables import parameter_rows
 
 
 def with_experiment(diagnosis, experiment):
@@ -25,7 +25,7 @@ def topics(diagnosis):
 
 
 def test_the_rms_of_each_step_is_its_error_times_the_measured_force(page, diagnosis):
-    (view,) = page.views
+    (view,) = page["views"]
     shown = diagnosis.prepared.of("check")
     rows = sum(s.weight * len(s.keep) for s in shown)
     measured = np.sqrt(sum(s.measured for s in shown) / rows)
@@ -35,7 +35,7 @@ def test_the_rms_of_each_step_is_its_error_times_the_measured_force(page, diagno
 
 
 def test_the_right_model_has_the_recorded_impedance_along_the_motion(page):
-    (view,) = page.impedances
+    (view,) = page["impedances"]
     known = np.isfinite(view.recorded.magnitude[0]) & (view.recorded.frequency < 30.0)
     ratio = view.along.values()[known] / view.recorded.values()[known]
     assert known.sum() > 15 and np.abs(np.log(ratio)).max() < 0.05
@@ -55,15 +55,15 @@ def test_the_simulated_motion_lies_over_the_measured_one_with_its_fit(diagnosis)
 
 
 def test_parameters_stand_beside_what_was_stated(diagnosis):
-    rows = {r.name: r for r in parameter_rows(diagnosis)}
+    rows = {r["name"]: r for r in parameter_rows(diagnosis)}
     stated = diagnosis.experiment.bodies["device"]
-    assert rows["device.inertia"].stated == stated.inertia.value
+    assert rows["device.inertia"]["stated"] == stated.inertia.value
     level = rows["device.coulomb.level"]
-    assert level.stated == stated.effects["coulomb"]["level"].value
-    assert level.before == diagnosis.before.model.parameters["device.coulomb.level"].value
+    assert level["stated"] == stated.effects["coulomb"]["level"].value
+    assert level["before"] == diagnosis.before.model.parameters["device.coulomb.level"].value
     added = rows["device.stribeck.stribeck_velocity"]
-    assert added.stated is None and added.before is None and added.added
-    assert added.low == pytest.approx(added.after - 1.96 * added.stderr)
+    assert added["stated"] is None and added["before"] is None and added["added"]
+    assert added["low"] == pytest.approx(added["after"] - 1.96 * added["stderr"])
 
 
 def with_value(diagnosis, name, value):
@@ -74,7 +74,7 @@ def test_a_parameter_at_its_bound_or_left_open_is_reported_as_such(diagnosis):
     name = "device.viscous.damping"
     bound = replace(with_value(diagnosis, name, Value(0.0, stderr=1.0)), at_bound=(name,))
     assert "a parameter at its bound" in topics(bound)
-    assert next(r for r in parameter_rows(bound) if r.name == name).at_bound
+    assert next(r for r in parameter_rows(bound) if r["name"] == name)["at_bound"]
     unsure = cannot_tell(with_value(diagnosis, name, Value(0.1, stderr=1.0)))
     finding = next(f for f in unsure if f.topic == "a parameter left open")
     assert "device.viscous.damping is not determined: 0.1 ± 1.0 N·s/m" in finding.sentence
@@ -84,8 +84,8 @@ def test_records_come_with_the_digest_of_their_files(page, diagnosis):
     import hashlib
 
     folder = diagnosis.experiment.folder
-    for row in page.records:
-        assert row.digest == hashlib.sha256((folder / row.file).read_bytes()).hexdigest()
+    for row in page["records"]:
+        assert row["digest"] == hashlib.sha256((folder / row["file"]).read_bytes()).hexdigest()
 
 
 def test_a_record_too_short_for_any_cell_of_the_map_has_a_page(diagnosis):

@@ -21,8 +21,7 @@ from teleopdesign.base.finding import Finding, Graph, Series
 from teleopdesign.diagnose.answer import answer
 from teleopdesign.show.report import write_report
 from teleopdesign.show.report.figures import graph_figure
-from teleopdesign.show.report.page import page_of
-from teleopdesign.show.report.write import FIGURES, embedded_json, figure_script, render
+from teleopdesign.show.report.page import FIGURES, embedded_json, figure_script, page_of, render
 
 HOSTILE = (
     '</script><script>alert(1)</script>"><img src=x onerror=alert(1)>',
@@ -120,7 +119,7 @@ def test_a_page_stays_small_however_much_the_findings_hold(page, written, diagno
     graph = Graph("time (s)", "force (N)", (Series("measured", x, np.sin(1e4 * x)),) * 3)
     many = [finding(graph=graph) for _ in range(20)]
     full = page_of(diagnosis, soundness=many)
-    drawn = graph_figure(full.soundness[0].graph, "force")
+    drawn = graph_figure(full["soundness"][0].graph, "force")
     data = len(embedded_json(make_plain(full))) - len(embedded_json(make_plain(page)))
     assert len(written) + data + 20 * len(drawn) < 2e6
 
@@ -144,23 +143,22 @@ def with_text(page, text):
     """The page with this text wherever a text can come from a file."""
 
     def put(rows, *fields):
-        filled = [{f: text for f in fields if getattr(r, f)} for r in rows]
-        return tuple(dataclasses.replace(r, **f) for r, f in zip(rows, filled, strict=True))
+        return tuple({**row, **{f: text for f in fields if row[f]}} for row in rows)
 
-    return dataclasses.replace(
-        page,
-        title=text,
-        folder=text,
-        verdict=text,
-        floor_source=text,
-        ladder=put(page.ladder, "name", "brief"),
-        added=put(page.added, "effect", "at", "title", "law", "source"),
-        parameters=put(page.parameters, "effect", "parameter", "meaning", "unit"),
-        candidates=put(page.candidates, "effect", "at"),
-        records=put(page.records, "file", "use", "digest"),
-        channels=put(page.channels, "name", "column", "unit"),
-        version=text,
-    )
+    return {
+        **page,
+        "title": text,
+        "folder": text,
+        "verdict": text,
+        "floor_source": text,
+        "ladder": put(page["ladder"], "name", "brief"),
+        "added": put(page["added"], "effect", "at", "title", "law", "source"),
+        "parameters": put(page["parameters"], "effect", "parameter", "meaning", "unit"),
+        "candidates": put(page["candidates"], "effect", "at"),
+        "records": put(page["records"], "file", "use", "digest"),
+        "channels": put(page["channels"], "name", "column", "unit"),
+        "version": text,
+    }
 
 
 @pytest.mark.parametrize("text", HOSTILE)
@@ -188,7 +186,7 @@ def test_findings_are_escaped_in_text_names_and_figures(text, page):
     graph = Graph(text, text, (Series(text, np.arange(3.0), np.arange(3.0)),) * 2)
     one = Finding(text, "warning", text, {text: 1.5}, text)
     drawn = dataclasses.replace(one, graph=graph)
-    full = dataclasses.replace(page, soundness=(one,), unexplained=(one,), next_steps=(drawn,))
+    full = {**page, "soundness": (one,), "unexplained": (one,), "next_steps": (drawn,)}
     figures = {**BARE, "graph": graph_figure}
     read = HtmlPage(render(full, {"report": make_plain(full)}, figures))
     assert [e.attributes.get("type") for e in read.all("script")] == ["application/json", None]

@@ -1,4 +1,4 @@
-"""A drawing: shapes on a sheet, written as SVG, or painted by matplotlib for PDF and PNG."""
+"""A drawing: shapes on a sheet, painted by matplotlib."""
 
 from __future__ import annotations
 
@@ -8,22 +8,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ....base.files import write_text
-from ..style import house_style
+from ..style import as_svg, house_style, plt
 from .shapes import (
     BASELINE,
+    FONT,
     RAISED,
     SIZES,
     SMALLER,
     Box,
     Circle,
     Dot,
-    Run,
     SheetShape,
     Text,
     Wire,
     arrow_head,
+    readable,
+    run_width,
     shaft,
-    svg,
 )
 
 if TYPE_CHECKING:
@@ -33,14 +34,10 @@ if TYPE_CHECKING:
 
 POINTS_PER_INCH = 72.0
 LINE = 0.8
-#: both come with matplotlib, so that widths are the same everywhere; the second has more letters
-FONT = ["STIXGeneral", "DejaVu Sans"]
 
 
 def figure(shapes: Sequence[SheetShape], *, width: float, height: float) -> Figure:
     """A matplotlib figure with the shapes on a sheet of that size (points)."""
-    import matplotlib.pyplot as plt
-
     with plt.style.context(house_style()):
         size = width / POINTS_PER_INCH, height / POINTS_PER_INCH
         page = plt.figure(figsize=size, layout="none")
@@ -79,7 +76,7 @@ def _paint(shape: Box | Circle | Dot | Wire, axes: Axes) -> None:
 
 def _write(text: Text, axes: Axes) -> None:
     size = SIZES[text.role]
-    widths = [_width(run, size) for run in text.runs]
+    widths = [run_width(run, size) for run in text.runs]
     start = {"start": 0.0, "middle": -0.5, "end": -1.0}[text.anchor]
     x = text.x + start * sum(widths)
     for run, width in zip(text.runs, widths, strict=True):
@@ -95,21 +92,6 @@ def _write(text: Text, axes: Axes) -> None:
             zorder=5,
         )
         x += width
-
-
-def _width(run: Run, size: float) -> float:
-    """Width of characters in the font (points), including the space after the last letter."""
-    from matplotlib.font_manager import FontProperties
-    from matplotlib.textpath import text_to_path
-
-    font = FontProperties(family=FONT, style="italic" if run.italic else "normal")
-    scale = size * (SMALLER if run.level else 1.0)
-
-    def wide(text: str) -> float:
-        return float(text_to_path.get_text_width_height_descent(text, font, ismath=False)[0])
-
-    # between two strokes, so that spaces at the ends count
-    return (wide(f"|{run.text}|") - wide("||")) * scale / font.get_size_in_points()
 
 
 @dataclass(frozen=True, repr=False)
@@ -130,7 +112,7 @@ class Drawing:
 
     def svg(self) -> str:
         """The drawing as SVG text; the same drawing gives the same text."""
-        return svg(self.shapes, width=self.width, height=self.height, title=self.title)
+        return as_svg(self.plot(), title=readable(self.title))
 
     def plot(self) -> Figure:
         """The drawing as a matplotlib figure of the same size, for `save_figure`."""

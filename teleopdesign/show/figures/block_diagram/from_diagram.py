@@ -37,7 +37,8 @@ def formula(expression: sp.Expr, *, short: str) -> tuple[str, ...]:
     terms = sp.Add.make_args(sp.sympify(expression, strict=True))
     lines: list[str] = []
     for term in sorted(terms, key=sp.default_sort_key):
-        text = _pretty(term)
+        text = str(_Printer().doprint(term)).replace("**", "^").replace("*", " ")
+        text = text.replace("-", MINUS)
         text = text if not lines or text.startswith(MINUS) else f"+ {text}"
         if lines and len(lines[-1]) + len(text) < LONGEST:
             lines[-1] += f" {text}"
@@ -45,11 +46,6 @@ def formula(expression: sp.Expr, *, short: str) -> tuple[str, ...]:
             lines.append(text)
     readable = len(lines) <= MOST and all(len(line) <= LONGEST for line in lines)
     return tuple(lines) if readable else (short,)
-
-
-def _pretty(expression: sp.Expr) -> str:
-    text = str(_Printer().doprint(expression))
-    return text.replace("**", "^").replace("*", " ").replace("-", MINUS)
 
 
 MOST_INPUTS = 3  # most inputs of a circle, a box, a bar: from behind, from above, from below

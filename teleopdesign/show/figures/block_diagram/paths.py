@@ -136,14 +136,10 @@ def place(network: Network, branches: Sequence[Path], sides: Mapping[int, int]) 
     for column, node in enumerate(spine.nodes):
         cells.put(node, (column, 0), RIGHT)
     while waiting:
-        able = [i for i, p in waiting.items() if _is_known(p, cells)]
+        able = [i for i, p in waiting.items() if {p.start, p.end} - {None} <= cells.at.keys()]
         i = min(able, key=lambda i: (_small(waiting[i], network), _span(waiting[i], cells), i))
         _put(network, cells, waiting.pop(i), sides.get(i), spine.nodes)
     return cells
-
-
-def _is_known(path: Path, cells: Cells) -> bool:
-    return all(n is None or n in cells.at for n in (path.start, path.end))
 
 
 def _small(path: Path, network: Network) -> bool:

@@ -1,17 +1,14 @@
-"""A drawing as a short list of shapes, which an SVG writer and a matplotlib painter both render.
+"""A drawing as a short list of shapes, which matplotlib paints.
 
 Lengths are in points, x points to the right, y points down.
-
-A drawing of shapes as SVG: plain elements, no style sheet, so that any program reads it.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Literal
-from xml.sax.saxutils import escape, quoteattr
 
 RADIUS = 7.0
 BAR = (4.0, 24.0)  # width and height of a bar
@@ -174,7 +171,7 @@ class Text:
 
     @property
     def width(self) -> float:
-        """Estimated width (points), on the safe side for the font of the house style."""
+        """Width (points)."""
         return width(self.runs, self.role)
 
     @property
@@ -207,59 +204,34 @@ def _is_letter(text: str) -> bool:
 
 
 def width(runs: tuple[Run, ...], role: TextRole) -> float:
-    """Estimated width of a text (points), for a font like Times."""
-    return sum(
-        SIZES[role] * (SMALLER if run.level else 1.0) * sum(map(_em, run.text)) for run in runs
-    )
+    """Width of a text (points)."""
+    return sum(run_width(run, SIZES[role]) for run in runs)
 
 
-def _em(character: str) -> float:
-    if character in "ijl.,:;|!'()[] ":
-        return 0.34
-    if character in "mwMW":
-        return 0.92
-    return 0.74 if character.isupper() or ord(character) > 0x2000 else 0.53
+#: both come with matplotlib, so that widths are the same everywhere; the second has more letters
+FONT = ["STIXGeneral", "DejaVu Sans"]
+
+
+@cache
+def run_width(run: Run, size: float) -> float:
+    """Width of characters in the font (points), including the space after the last letter."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import text_to_path
+
+    font = FontProperties(family=FONT, style="italic" if run.italic else "normal")
+    scale = size * (SMALLER if run.level else 1.0)
+
+    def wide(text: str) -> float:
+        return float(text_to_path.get_text_width_height_descent(text, font, ismath=False)[0])
+
+    # between two strokes, so that spaces at the ends count
+    return (wide(f"|{run.text}|") - wide("||")) * scale / font.get_size_in_points()
 
 
 ARROW = (6.0, 2.2)  # length, half width
-FONT = "'STIX Two Text', STIXGeneral, 'Times New Roman', serif"
 #: how far below its middle the line on which letters stand lies, in sizes
 BASELINE = 0.32
 RAISED = {0: 0.0, -1: 0.22, 1: -0.38}
-
-
-def svg(shapes: Sequence[SheetShape], *, width: float, height: float, title: str) -> str:
-    """The text of an SVG file, on a sheet of that size (points); title: alternative text."""
-    lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}pt" height="{height:g}pt" '
-        f'viewBox="0 0 {width:g} {height:g}" role="img" fill="none" stroke="black" '
-        f'stroke-width="0.8" font-family={quoteattr(FONT)}>',
-        f"<title>{escape(readable(title))}</title>",
-        *(_element(shape) for shape in shapes),
-        "</svg>",
-    ]
-    return "\n".join(lines) + "\n"
-
-
-def _element(shape: SheetShape) -> str:
-    if isinstance(shape, Box):
-        left, top = shape.x - shape.width / 2, shape.y - shape.height / 2
-        size = f'width="{shape.width:g}" height="{shape.height:g}"'
-        return f'<rect x="{left:g}" y="{top:g}" {size} fill="white"/>'
-    if isinstance(shape, Circle):
-        return f'<circle cx="{shape.x:g}" cy="{shape.y:g}" r="{shape.radius:g}" fill="white"/>'
-    if isinstance(shape, Dot):
-        return f'<circle cx="{shape.x:g}" cy="{shape.y:g}" r="1.8" fill="black" stroke="none"/>'
-    return _wire(shape) if isinstance(shape, Wire) else _text(shape)
-
-
-def _wire(wire: Wire) -> str:
-    points = " ".join(f"{x:g},{y:g}" for x, y in shaft(wire))
-    line = f'<polyline points="{points}"/>'
-    if not wire.arrow:
-        return line
-    head = " ".join(f"{x:g},{y:g}" for x, y in arrow_head(wire))
-    return f'{line}<polygon points="{head}" fill="black" stroke="none"/>'
 
 
 def shaft(wire: Wire) -> tuple[SheetPoint, ...]:
@@ -283,18 +255,3 @@ def arrow_head(wire: Wire) -> tuple[tuple[float, float], ...]:
         (foot[0] - half * dy, foot[1] + half * dx),
         (foot[0] + half * dy, foot[1] - half * dx),
     )
-
-
-def _text(text: Text) -> str:
-    size = SIZES[text.role]
-    out, level = "", 0.0
-    for run in text.runs:
-        raised = RAISED[run.level]
-        style = ' font-style="italic"' if run.italic else ""
-        small = f' font-size="{size * SMALLER:.4g}"' if run.level else ""
-        moved = f' dy="{(raised - level) * size:.4g}"' if raised != level else ""
-        out += f"<tspan{style}{small}{moved}>{escape(run.text)}</tspan>"
-        level = raised
-    place = f'x="{text.x:g}" y="{text.y + BASELINE * size:.5g}"'
-    fill = 'fill="black" stroke="none"'
-    return f'<text {place} font-size="{size:g}" text-anchor="{text.anchor}" {fill}>{out}</text>'
