@@ -24,7 +24,6 @@ from ._header import (
     is_unit_cell,
     names_and_units,
     names_of_labelled_rows,
-    numbers_channels,
 )
 from ._log import number_names
 
@@ -92,7 +91,7 @@ def dialect_of(lines: Sequence[str], encoding: str, file: str) -> Dialect:
     if first >= len(lines):
         _refuse_without_rows(lines, separator, file)
     header, units = _header(lines[:first], separator, width, comma)
-    named = bool(header) and not numbers_channels(header)
+    named = bool(header)
     if not named:
         header = tuple(f"column {k + 1}" for k in range(width))
     elif header.count("") == 1:  # drives and pandas leave the name of the first column out

@@ -116,11 +116,3 @@ def names_of_labelled_rows(
         if row[0].casefold() in UNIT_LABELS:
             units = [u or bare_unit(c) * is_unit_cell(c) for u, c in zip(units, row, strict=True)]
     return names, tuple(units)
-
-
-def numbers_channels(header: Sequence[str]) -> bool:
-    """Whether names only count the channels of a plotter from 0, as VOFA+ does: "I0", "I1", ...
-
-    Phases of a motor are counted from 1, or stand beside a time.
-    """
-    return len(header) > 1 and all(cell == f"I{k}" for k, cell in enumerate(header))

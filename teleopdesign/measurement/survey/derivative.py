@@ -189,15 +189,3 @@ def is_mean_rate(x: Array, v: Array, sample_time: float) -> bool:
         return False
     factor = total / (sample_time * (len(x) - 1)) / mean
     return any(abs(factor / usual - 1.0) < SMALL for usual in RATES)
-
-
-def follows_direction(x: Array, v: Array, sample_time: float) -> bool:
-    """Whether a column v follows the direction of the motion of x more closely than its velocity.
-
-    Friction does, and so does the pressure that overcomes friction.
-    """
-    velocity, _, direction = motion_columns(x, sample_time)
-    inner = slice(len(x) // 50 + 1, -len(x) // 50 - 1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        alike = np.corrcoef([v[inner], velocity[inner], direction[inner]])[0]
-    return bool(alike[2] > alike[1])

@@ -117,9 +117,8 @@ def separate_clocks(table: CellTable) -> LongTable | None:
     if len(full) != 1 or likeness(full[0], "time") == 0.0 or full[0] not in table.numeric:
         return None  # beside a signal with numbers in all rows, another one has lost them
     partial = {n: mask for n, mask in filled.items() if 0.0 < share[n] < 1.0}
-    masks = [*partial.values()]
     # a channel that loses more readings than it keeps could not be used on the clock of others
-    if not any(is_most(~mask) for mask in masks) and not _never_share_a_row(masks):
+    if not any(is_most(~mask) for mask in partial.values()):
         return None
     time, groups = full[0], dict[bytes, str]()
     signals = []
@@ -133,15 +132,6 @@ def _is_filled(column: NDArray[Any]) -> NDArray[np.bool_]:
     if column.dtype.kind == "f":
         return np.asarray(np.isfinite(column))
     return np.array([bool(cell) for cell in column], dtype=bool)
-
-
-def _never_share_a_row(filled: Sequence[NDArray[np.bool_]]) -> bool:
-    """Whether two columns have no row in common: two topics at one rate fill half of the rows each.
-
-    Columns of one clock that lost some readings have most of the others in common.
-    """
-    masks = np.array([*{mask.tobytes(): mask for mask in filled}.values()], dtype=np.float32)
-    return len(masks) > 1 and bool(np.any(masks @ masks.T == 0.0))
 
 
 def two_part_time(table: CellTable) -> LongTable | None:
