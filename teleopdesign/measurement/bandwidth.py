@@ -108,26 +108,16 @@ def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
         return None
     limits = []
     for name, record in _moving(experiment):
-        frequency, density, noise = _spectrum(record, name, even_out=True)
-        above = (density > ABOVE * noise) & (frequency <= PROPOSED * record.rate_of(name))
-        # only the part above the noise of the readings
-        motion = np.where(above, density - noise, 0.0)
+        frequency, motion = _motion_in(record, name, PROPOSED, even_out=True)
         acceleration, beyond = motion * frequency**4, frequency > chosen
         if acceleration[beyond].sum() <= acceleration[~beyond].sum():
             return None
-        power = _mean_square(motion[beyond], len(frequency)).sum()
-        if power <= _rounding(experiment, name, record):
+        if motion[beyond].sum() <= _rounding(experiment, name, record):
             return None
-        limits.append(float(frequency[above].max()))
+        limits.append(float(frequency[motion > 0.0].max()))
     highest = min(limits)
     hidden = any(hides_motion(experiment, body, highest) for body in experiment.bodies)
     return None if hidden else highest
-
-
-def _mean_square(density: Array, count: int) -> Array:
-    """Mean square of the part of a signal at each of the `count` frequencies of `_spectrum`."""
-    samples = 2.0 * (count - 1)
-    return density * 16.0 / 3.0 / samples**2  # 3/8: mean square of the window
 
 
 def _rounding(experiment: Experiment, name: str, record: Record) -> float:
@@ -140,14 +130,11 @@ def _rounding(experiment: Experiment, name: str, record: Record) -> float:
 def _highest_acceleration(experiment: Experiment) -> float:
     limits, needed = [], [LOWEST]
     for name, record in _moving(experiment):
-        rate = record.rate_of(name)
-        frequency, density, noise = _spectrum(record, name)
-        above = (density > ABOVE * noise) & (frequency <= CHOSEN * rate)
-        power = np.where(above, _mean_square(density - noise, len(frequency)), 0.0)
-        power_from_here = np.cumsum(power[::-1])[::-1]
+        frequency, motion = _motion_in(record, name, CHOSEN)
+        above, from_here = motion > 0.0, np.cumsum(motion[::-1])[::-1]
         is_dense = _share_below(above, frequency) >= DENSE
-        above &= is_dense | (power_from_here > _rounding(experiment, name, record))
-        limits.append(frequency[above].max() if above.any() else 0.02 * rate)
+        above &= is_dense | (from_here > _rounding(experiment, name, record))
+        limits.append(frequency[above].max() if above.any() else 0.02 * record.rate_of(name))
         needed.append(min(FULLY * _frequency_of_motion(record, name), limits[-1]))
     return float(max(min(limits), *needed))
 
@@ -162,11 +149,8 @@ def _share_below(above: NDArray[np.bool_], frequency: Array) -> Array:
 
 def _frequency_of_motion(record: Record, name: str) -> float:
     """The frequency (Hz) below which `SHARE` of the squared velocity lies; 0 without a motion."""
-    frequency, density, noise = _spectrum(record, name, even_out=True)
-    above = (density > ABOVE * noise) & (frequency <= CHOSEN * record.rate_of(name))
-    velocity = np.where(above, density - noise, 0.0) * frequency**2
-    if not above.any():
-        return 0.0
+    frequency, motion = _motion_in(record, name, CHOSEN, even_out=True)
+    velocity = motion * frequency**2
     return float(frequency[np.searchsorted(np.cumsum(velocity), SHARE * velocity.sum())])
 
 
@@ -177,9 +161,12 @@ def _moving(experiment: Experiment) -> Iterator[tuple[str, Record]]:
             yield f"{body}.position", record
 
 
-def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Array, Array, float]:
-    """Frequencies (Hz), spectral density of a signal, and the density of its white noise.
+def _motion_in(
+    record: Record, name: str, highest: float, *, even_out: bool = False
+) -> tuple[Array, Array]:
+    """Frequencies (Hz), and the mean square of a position's motion at each: 0 where noise hides it.
 
+    highest: part of the rate of the readings, above which no motion counts
     even_out: subtract a straight line from each window; its ends would look like high frequencies
     """
     from scipy.signal import detrend
@@ -193,11 +180,13 @@ def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Arr
     windows = np.concatenate([*views])
     varying = detrend(windows, type="linear" if even_out else "constant")
     spectra = np.fft.rfft(varying * np.hanning(n))
-    density: Array = np.mean(np.abs(spectra) ** 2, 0).astype(np.float64)
+    # 3/8: mean square of the window
+    density = np.mean(np.abs(spectra) ** 2, 0) * 16.0 / 3.0 / (2.0 * (n // 2)) ** 2
     frequency: Array = np.fft.rfftfreq(n, record.sample_time).astype(np.float64)
     rate = record.rate_of(name)
-    noise = density[(frequency > PROPOSED * rate) & (2 * frequency <= rate)]
-    return frequency, density, float(np.median(noise))
+    noise = float(np.median(density[(frequency > PROPOSED * rate) & (2 * frequency <= rate)]))
+    above = (density > ABOVE * noise) & (frequency <= highest * rate)
+    return frequency, np.where(above, density - noise, 0.0)
 
 
 def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:

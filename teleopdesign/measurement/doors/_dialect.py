@@ -21,7 +21,6 @@ from ._header import (
     NAME_LABELS,
     bare_unit,
     is_row_of_units,
-    is_unit_cell,
     names_and_units,
     names_of_labelled_rows,
 )
@@ -231,12 +230,7 @@ def _header(
         return (() if is_title or _is_data(names, comma) else tuple(names)), ()
     joined, units_by_name = names_and_units(rows)
     for label, *units in rows[:-1]:  # a row of units that says so itself: "Y_Unit_Label"
-        if (
-            not units_by_name
-            and "unit" in label.lower()
-            and any(units)
-            and all(map(is_unit_cell, units))
-        ):
+        if not units_by_name and "unit" in label.lower():
             return rows[-1], ("", *map(bare_unit, units))
     return joined, units_by_name
 
