@@ -11,7 +11,7 @@ from .encoder import reading_step
 from .experiment import Experiment
 from .filtering import Array
 from .limits import HALF
-from .motion import Motion, motions
+from .motion import Motion
 from .record import Record
 from .repeated_rows import SENSED, SLOWER
 
@@ -62,39 +62,18 @@ def default_bandwidth(experiment: Experiment) -> float:
 
     The highest frequency below a tenth of the sample rate at which the spectrum of the position is
     10 dB above white reading noise: the lowest one of all records, unless another record moves
-    faster than that. The steps of an encoder are not white noise. Lines with no more power than the
-    error of rounding to these steps are no motion; and while the steps hide most of the motion, the
-    bandwidth is halved.
+    faster than that. The steps of an encoder are not white noise: lines with no more power than the
+    error of rounding to these steps are no motion.
     """
-    chosen = _highest_acceleration(experiment)
-    while any(hides_motion(experiment, body, chosen) for body in experiment.bodies):
-        chosen /= 2.0
-    return chosen
-
-
-def share_in_motion(experiment: Experiment, body: str, bandwidth: float) -> float:
-    """Share (0 to 1) of the fitted rows in which the position shows a direction of motion.
-
-    bandwidth: Hz. A wider band leaves more reading error in the velocity. Where a velocity cannot
-        be distinguished from rest, friction balances any force, so no model can be rejected there.
-    """
-    resolution = experiment.channels[f"{body}.position"].resolution
-    directions = [
-        motion.direction != 0
-        for record in experiment.fit_records
-        if bandwidth <= HIGHEST / record.sample_time
-        for motion in motions(record, body, bandwidth=bandwidth, resolution=resolution)
-    ]
-    return float(np.mean(np.concatenate(directions))) if directions else 0.0
-
-
-def hides_motion(experiment: Experiment, body: str, bandwidth: float) -> bool:
-    """Whether far fewer rows show a motion at this bandwidth (Hz) than at one two octaves lower."""
-    lower = bandwidth / 4.0
-    if lower < LOWEST:
-        return False
-    could = share_in_motion(experiment, body, lower)
-    return share_in_motion(experiment, body, bandwidth) < HALF * could
+    limits, needed = [], [LOWEST]
+    for name, record in _moving(experiment):
+        frequency, motion = _motion_in(record, name, CHOSEN)
+        above, from_here = motion > 0.0, np.cumsum(motion[::-1])[::-1]
+        is_dense = _share_below(above, frequency) >= DENSE
+        above &= is_dense | (from_here > _rounding(experiment, name, record))
+        limits.append(frequency[above].max() if above.any() else 0.02 * record.rate_of(name))
+        needed.append(min(FULLY * _frequency_of_motion(record, name), limits[-1]))
+    return float(max(min(limits), *needed))
 
 
 def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
@@ -115,9 +94,7 @@ def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
         if motion[beyond].sum() <= _rounding(experiment, name, record):
             return None
         limits.append(float(frequency[motion > 0.0].max()))
-    highest = min(limits)
-    hidden = any(hides_motion(experiment, body, highest) for body in experiment.bodies)
-    return None if hidden else highest
+    return min(limits)
 
 
 def _rounding(experiment: Experiment, name: str, record: Record) -> float:
@@ -125,18 +102,6 @@ def _rounding(experiment: Experiment, name: str, record: Record) -> float:
     readings = np.concatenate([record.signals[name][s] for s in record.segments])
     step = experiment.channels[name].resolution or reading_step(readings)
     return step**2 / 12.0
-
-
-def _highest_acceleration(experiment: Experiment) -> float:
-    limits, needed = [], [LOWEST]
-    for name, record in _moving(experiment):
-        frequency, motion = _motion_in(record, name, CHOSEN)
-        above, from_here = motion > 0.0, np.cumsum(motion[::-1])[::-1]
-        is_dense = _share_below(above, frequency) >= DENSE
-        above &= is_dense | (from_here > _rounding(experiment, name, record))
-        limits.append(frequency[above].max() if above.any() else 0.02 * record.rate_of(name))
-        needed.append(min(FULLY * _frequency_of_motion(record, name), limits[-1]))
-    return float(max(min(limits), *needed))
 
 
 def _share_below(above: NDArray[np.bool_], frequency: Array) -> Array:

@@ -39,8 +39,6 @@ VARIES = 0.01
 #: with another sign, surely explains more: 0.02 to 0.6 for sizes of simulated forces, 0.5 for the
 #: supply current of a servo; 0.99 and more of forces with a load that keeps their sign
 SURELY_LESS = 0.8
-#: rounds in which a size of a force finds its signs: most end after ten
-_SIGN_ROUNDS = 20
 
 
 @dataclass(frozen=True)
@@ -170,8 +168,8 @@ def is_size(force: Array, position: Array, sample_time: float) -> bool:
     """Whether a force (n,) that is never negative is the size of a force that takes both signs.
 
     Such as the supply current of a servo, which rises in motion, whatever the direction. Then the
-    force of the motion and of the place explains surely more where each row has the sign that it
-    has in this model itself, from that of the velocity on.
+    force of the motion and of the place explains surely more where each row has the sign of the
+    velocity.
     """
     stretch = stretch_of((force, position), position, sample_time)
     if stretch is None or np.min(force) < 0.0 or hardly_varies(force):
@@ -181,17 +179,11 @@ def is_size(force: Array, position: Array, sample_time: float) -> bool:
     if min(each) < SMALL * sum(each):
         return False
     place = (place - place.mean()) / max(float(np.ptp(place)), np.finfo(float).tiny)
-    columns = np.vstack([motion, place, place**2])
+    columns, sign = np.vstack([motion, place, place**2]), np.sign(motion[1])
     _, _, signed = least_squares(columns, target, sample_time)
-    sign, least = np.sign(motion[1]), signed
-    for _ in range(_SIGN_ROUNDS):
-        rows = np.vstack([sign * columns, np.ones_like(sign)])
-        solution, _, left = least_squares(rows, target, sample_time)
-        least, before = min(least, left), sign
-        sign = np.sign(solution[: len(columns)] @ columns)
-        if (sign == before).all():
-            break
-    return least < SURELY_LESS * signed
+    rows = np.vstack([sign * columns, np.ones_like(sign)])
+    _, _, of_size = least_squares(rows, target, sample_time)
+    return of_size < SURELY_LESS * signed
 
 
 def balance_factor(

@@ -20,7 +20,6 @@ from ._encoding import encoding_of
 from ._header import (
     NAME_LABELS,
     bare_unit,
-    is_row_of_units,
     names_and_units,
     names_of_labelled_rows,
 )
@@ -215,9 +214,6 @@ def _header(
     above = _without_constants([_cells_above(line, separator, width) for line in plain], width)
     wide = [tuple(cells) for cells in above if len(cells) == width]
     rows = [cells for cells in wide if not _is_data(cells, comma)]
-    above_last = wide[: wide.index(rows[-1])][-1:] if rows else []
-    if above_last and above_last[0] not in rows and is_row_of_units(rows[-1], above_last[0]):
-        rows.insert(-1, above_last[0])  # "x-axis, 1, 2": channels by their numbers
     cells = above[-1] if above else []
     if (labelled := names_of_labelled_rows(wide)) is not None:
         return labelled

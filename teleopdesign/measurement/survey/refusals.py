@@ -95,7 +95,7 @@ def error_without_force(
     if not best:
         return ExperimentError(
             f"{file}: found no column that could be a force beside {position!r}, found "
-            f"{join_names(survey.columns)}{listed}{_constant_columns(survey)}"
+            f"{join_names(survey.columns)}{listed or '; if one is: --force COLUMN'}"
             f"{reasons(survey.unread)}"
         )
     what = (
@@ -107,22 +107,6 @@ def error_without_force(
     return ExperimentError(
         f"{file}: found no force: no column has the name or unit of a force, and {what}; "
         f"--force COLUMN selects one of {join_names(survey.explained)}{listed}"
-    )
-
-
-def _constant_columns(survey: Survey) -> str:
-    """How to choose a command that is constant in a log, or a ramp, for a message; "": none is.
-
-    Each of several logs may hold another constant command.
-    """
-    free = {n: c for n, c in survey.columns.items() if n not in columns_in_use(survey)}
-    still = [n for n, c in free.items() if not moves(c)]
-    ramps = [n for n, c in free.items() if moves(c) and rises(c.readings)]
-    kinds = ((still, "does not change here", "such a command"), (ramps, "only rises", "a ramp"))
-    return "".join(
-        f"; {join_names(names)} {what}: --force {names[-1]!r} chooses {command}"
-        for names, what, command in kinds
-        if names
     )
 
 
@@ -138,8 +122,6 @@ def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[s
 
 
 def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Survey) -> str:
-    if (count := log.names.count(name)) > 1:
-        return f"{count} columns have this name"
     if name not in raw:
         why = survey.unread.get(name, "")
         return why if why.startswith("one value") else f"holds no numbers{f' ({why})' * bool(why)}"

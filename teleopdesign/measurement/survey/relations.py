@@ -19,7 +19,7 @@ from ..column_names import WANTED, likeness, words_of
 from ..encoder import SURELY, Array
 from ..first_guess import least_squares, stretch_of
 from ..law_of_readings import is_copy
-from ..limits import HALF, SEVERAL, SMALL
+from ..limits import SEVERAL, SMALL
 from .content import SURE_NAME, Survey, SurveyedColumn, columns_in_use, moves, rises, sample_time_of
 from .derivative import (
     DERIVATIVE,
@@ -167,8 +167,8 @@ def lags(column: Array, other: Array) -> bool:
     The delay may be less than a row, as that of a position behind the path that a drive plans: then
     the numbers agree a row later rather than a row earlier.
     """
-    _, later, earlier = _least_apart(column, other)
-    return has_numbers_of(column, other) and later < earlier
+    apart = _, later, earlier = _least_apart(column, other)
+    return min(apart) < APART and later < earlier
 
 
 def is_sent_to_places(position: Array, column: SurveyedColumn) -> bool:
@@ -179,9 +179,6 @@ def is_sent_to_places(position: Array, column: SurveyedColumn) -> bool:
     """
     values = column.values
     if likeness(column.name, "actuator_force") >= FORCE_NAME or values.min() * values.max() <= 0.0:
-        return False
-    # pulses of a hobby servo have 500 to 2500 us; no force keeps so far from zero beside a rest
-    if np.abs(values).min() < SMALL * np.abs(values).max():
         return False
     ends = np.flatnonzero(np.diff(values))  # the last row of each hold
     ends = ends[ends > 0]
@@ -202,10 +199,6 @@ def _rests_at(ends: Indices, position: Array) -> bool:
 
 def has_numbers_of(column: Array, position: Array) -> bool:
     """Whether a column has the numbers of the position, at the same time, earlier or later."""
-    spread = float(np.std(position))  # of the same numbers, mean and spread are alike: a first look
-    within = abs(float(np.mean(column) - np.mean(position))) < spread
-    if not (within and HALF * spread < float(np.std(column)) < 2.0 * spread):
-        return False
     return min(_least_apart(column, position)) < APART
 
 
