@@ -17,12 +17,7 @@ from ..encoder import is_most
 from ..limits import HALF, SEVERAL
 from ._cells import is_number, seconds_of
 from ._encoding import encoding_of
-from ._header import (
-    NAME_LABELS,
-    bare_unit,
-    names_and_units,
-    names_of_labelled_rows,
-)
+from ._header import NAME_LABELS, bare_unit, names_and_units, names_of_labelled_rows
 from ._log import number_names
 
 COMMENTS = ("#", "%", "//")

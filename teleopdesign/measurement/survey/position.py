@@ -7,10 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 
-from ..column_names import (
-    is_wanted,
-    likeness,
-)
+from ..column_names import is_wanted, likeness
 from ..encoder import Array
 from .content import (
     SURE_NAME,

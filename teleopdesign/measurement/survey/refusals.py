@@ -19,13 +19,7 @@ from .content import (
     rises,
     sample_time_of,
 )
-from .derivative import (
-    DERIVATIVE,
-    is_no_velocity,
-    is_velocity,
-    rate_agreement,
-    unwrap_column,
-)
+from .derivative import DERIVATIVE, is_no_velocity, is_velocity, rate_agreement, unwrap_column
 from .roles import is_unit_of, of_another_axis, says
 
 #: independent values of a low-passed force, from which an explanation is none by chance: the four

@@ -21,12 +21,7 @@ from ..first_guess import least_squares, stretch_of
 from ..law_of_readings import is_copy
 from ..limits import SEVERAL, SMALL
 from .content import SURE_NAME, Survey, SurveyedColumn, columns_in_use, moves, rises, sample_time_of
-from .derivative import (
-    DERIVATIVE,
-    derivative_factor,
-    is_velocity,
-    may_be_ramp,
-)
+from .derivative import DERIVATIVE, derivative_factor, is_velocity, may_be_ramp
 from .roles import LEAST_LEFT, is_nameless, is_unit_of, says
 
 Indices = NDArray[np.intp]
