@@ -72,8 +72,8 @@ def _band_that_shows_more(prepared: Prepared, body: str) -> dict[str, float]:
     experiment, bandwidth = prepared.experiment, prepared.bandwidth
     lower = (bandwidth / 2, bandwidth / 4)
     shares = {b: _share_in_motion(experiment, body, b) for b in (bandwidth, *lower)}
-    could = shares[bandwidth / 4]
-    if bandwidth / 4 < LOWEST or shares[bandwidth] >= HALF * could:
+    could = shares[lower[1]]
+    if lower[1] < LOWEST or shares[bandwidth] >= HALF * could:
         return {}
     proposed = max(b for b in lower if shares[b] >= NEARLY_ALL * could)
     numbers = {"bandwidth": bandwidth, "proposed": proposed, "seen": shares[bandwidth]}

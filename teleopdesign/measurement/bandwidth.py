@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .encoder import reading_step
 from .experiment import Experiment
 from .filtering import Array
-from .limits import HALF
+from .limits import HALF, NEARLY_ALL
 from .motion import Motion
 from .record import Record
 from .repeated_rows import SENSED, SLOWER
@@ -35,9 +35,9 @@ ABOVE = 10.0
 #: third of an octave below: an encoder makes such lines as it passes its steps at constant speed.
 #: Lower: its lines pass for motion; higher: a motion of a few tones counts only above the rounding
 DENSE, THIRD_OCTAVE = 0.5, 2.0 ** (1.0 / 3.0)
-#: the frequency below which this share of the squared velocity lies is that of the motion, and the
-#: bandwidth is at least `FULLY` times that frequency: the low-pass then passes 0.996 of the motion
-SHARE, FULLY = 0.9, 2.0
+#: least bandwidth over the frequency below which nearly all of the squared velocity lies: the
+#: low-pass then passes 0.996 of the motion
+FULLY = 2.0
 
 
 def bandwidth_of(experiment: Experiment) -> float:
@@ -113,10 +113,10 @@ def _share_below(above: NDArray[np.bool_], frequency: Array) -> Array:
 
 
 def _frequency_of_motion(record: Record, name: str) -> float:
-    """The frequency (Hz) below which `SHARE` of the squared velocity lies; 0 without a motion."""
+    """The frequency (Hz) below which nearly all of the squared velocity lies; 0: no motion."""
     frequency, motion = _motion_in(record, name, CHOSEN, even_out=True)
     velocity = motion * frequency**2
-    return float(frequency[np.searchsorted(np.cumsum(velocity), SHARE * velocity.sum())])
+    return float(frequency[np.searchsorted(np.cumsum(velocity), NEARLY_ALL * velocity.sum())])
 
 
 def _moving(experiment: Experiment) -> Iterator[tuple[str, Record]]:
