@@ -68,6 +68,9 @@ class Conversion:
     def signal(self, columns: Mapping[str, Array]) -> Array:
         """The signal (n,) in SI."""
         names = self.columns or tuple(columns)
+        is_one = len(names) == 1 and self.scales == (1.0,) and self.offset == self.period == 0.0
+        if is_one and self.code is None:  # a sum would lose the sign of a zero
+            return columns[names[0]] * self.factor
         total = np.full(len(columns[names[0]]), self.offset)
         for name, scale in zip(names, self.scales, strict=True):
             total += scale * self._unwrap(columns[name])
