@@ -125,9 +125,8 @@ def _exact_law(
 
     # past commands are those of the law, too, if they rest at no value and no limit
     past = np.stack([np.roll(u, j) for j in range(1, PAST + 1)])
-    rows = np.flatnonzero(np.logical_and.reduce([np.roll(free, j) for j in range(PAST + 1)]))[
-        :ENOUGH
-    ]
+    counted = np.logical_and.reduce([np.roll(free, j) for j in range(PAST + 1)])
+    rows = np.flatnonzero(counted)[:ENOUGH]
     every = np.vstack([readings, np.ones(len(u)), past])
     fewest = FOR_EACH * len(every)
     if np.count_nonzero(readings[0, rows] != readings[1, rows]) < fewest:
@@ -136,10 +135,11 @@ def _exact_law(
     factors = np.linalg.lstsq((every[:, rows] / sizes[:, None]).T, u[rows], rcond=None)[0] / sizes
     forward, (driven, back) = factors[:READINGS], np.split(factors, [-PAST])
     poles = np.array([1.0, *-back])
-    memory, (first, end) = np.abs(np.roots(poles)).max(), runs_of(np.isin(np.arange(len(u)), rows))
+    memory = float(np.abs(np.roots(poles)).max())
+    first, end = runs_of(counted[: rows[-1] + 1])
     if memory >= 1.0 or np.maximum(end - first - MEMORIES / (1.0 - memory), 0).sum() < fewest:
         return None
-    worst, push = 0.0, driven @ every[:-PAST]
+    push, worst = driven @ every[:-PAST], 0.0
     for a, b in zip(first.tolist(), end.tolist(), strict=True):  # from its own past commands
         law, _ = lfilter([1.0], poles, push[a:b], zi=lfiltic([1.0], poles, past[:, a]))
         worst = max(worst, float(np.abs(u[a:b] - law).max()))
@@ -153,7 +153,7 @@ def _exact_law(
     spring = float(forward.sum()) / now
     late = float(np.arange(READINGS) @ forward) + spring * float(np.arange(1, PAST + 1) @ back)
     damping = late / now * sample_time / step
-    speed = np.ptp(np.diff(readings[0, rows])) * step / sample_time
+    speed = np.ptp(readings[0, rows] - readings[1, rows]) * step / sample_time
     if len(readings) > READINGS:
         damping -= float(factors[READINGS]) / now
     return LawOfReadings(

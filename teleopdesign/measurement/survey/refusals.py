@@ -89,8 +89,7 @@ def error_without_force(
     if not best:
         return ExperimentError(
             f"{file}: found no column that could be a force beside {position!r}, found "
-            f"{join_names(survey.columns)}{listed or '; if one is: --force COLUMN'}"
-            f"{reasons(survey.unread)}"
+            f"{join_names(survey.columns)}{listed}{reasons(survey.unread)}"
         )
     what = (
         f"the motion explains {survey.explained[best]:.0%} of {best!r} beyond the place, which a "
