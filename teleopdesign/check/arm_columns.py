@@ -24,6 +24,7 @@ from ..base.sentences import join_names, percent
 from ..measurement.bandwidth import bandwidth_of
 from ..measurement.experiment import Experiment, excerpt, isolate_joint
 from ..measurement.filtering import Array
+from ..measurement.limits import NEARLY_ALL
 from ..measurement.prepare import Stretch, prepare
 from ._recording import CheckedRecording, RecordingCheck
 
@@ -38,8 +39,6 @@ UNEXPLAINED = 0.05
 #: quotient of two errors up to which both changes may be right: friction that the balance lacks
 #: decides. It is also the largest scale that is left to the diagnosis, as `actuator_gain`
 ALIKE = 1.25
-#: part of the error that one more change removes at least: each of two faults hides the other
-STEP = 0.1
 #: powers of ten of the scales of a force from which the best one is searched
 POWERS = [0.25 * k for k in range(-12, 13)]
 #: fewest rows in motion of a joint that is compared; low-passed share of motion of such a row
@@ -165,7 +164,7 @@ class ArmBalance:
             steps.append(tuple(Change(some[0], (j,)) for j in self.joints if len(some) == 1))
         left = {step: self.error(with_step(changes, step)) for step in steps if step}
         least = min(left.values())
-        if least > (1.0 - STEP) * error:
+        if least > NEARLY_ALL * error:  # each of two faults hides the other
             return []
         return [s for s in sorted(left, key=lambda s: left[s]) if left[s] <= ALIKE * least]
 

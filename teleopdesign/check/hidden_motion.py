@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.finding import Finding
-from ..measurement.bandwidth import hides_motion, share_in_motion
+from ..measurement.bandwidth import HIGHEST, LOWEST
 from ..measurement.encoder import rests
-from ..measurement.limits import NEARLY_ALL
+from ..measurement.experiment import Experiment
+from ..measurement.limits import HALF, NEARLY_ALL
+from ..measurement.motion import motions
 from ..measurement.prepare import Prepared, Stretch
 from ._recording import CheckedRecording, RecordingCheck
 
@@ -68,14 +70,30 @@ def _band_that_shows_more(prepared: Prepared, body: str) -> dict[str, float]:
     one "proposed" that shows most of this, and "shown" there. Empty where little is hidden.
     """
     experiment, bandwidth = prepared.experiment, prepared.bandwidth
-    if not hides_motion(experiment, body, bandwidth):
-        return {}
     lower = (bandwidth / 2, bandwidth / 4)
-    shares = {b: share_in_motion(experiment, body, b) for b in (bandwidth, *lower)}
-    could = shares[bandwidth / 4]
+    shares = {b: _share_in_motion(experiment, body, b) for b in (bandwidth, *lower)}
+    could = shares[lower[1]]
+    if lower[1] < LOWEST or shares[bandwidth] >= HALF * could:
+        return {}
     proposed = max(b for b in lower if shares[b] >= NEARLY_ALL * could)
     numbers = {"bandwidth": bandwidth, "proposed": proposed, "seen": shares[bandwidth]}
     return numbers | {"could": could, "shown": shares[proposed]}
+
+
+def _share_in_motion(experiment: Experiment, body: str, bandwidth: float) -> float:
+    """Share (0 to 1) of the fitted rows in which the position shows a direction of motion.
+
+    bandwidth: Hz. A wider band leaves more reading error in the velocity. Where a velocity cannot
+        be distinguished from rest, friction balances any force, so no model can be rejected there.
+    """
+    resolution = experiment.channels[f"{body}.position"].resolution
+    directions = [
+        motion.direction != 0
+        for record in experiment.fit_records
+        if bandwidth <= HIGHEST / record.sample_time
+        for motion in motions(record, body, bandwidth=bandwidth, resolution=resolution)
+    ]
+    return float(np.mean(np.concatenate(directions))) if directions else 0.0
 
 
 def _lack_of_motion(prepared: Prepared, model: Model) -> tuple[str, float]:

@@ -17,9 +17,9 @@ import numpy as np
 
 from ..base.finding import Finding
 from ..measurement.filtering import Array
+from ..measurement.limits import ONE_WAY
 from ..measurement.record import Record
 from ..measurement.record_clock import CLOCK
-from ..measurement.reversals import BACK
 from ._recording import CheckedRecording, RecordingCheck
 
 #: first turns from which the longest way back to the same position is searched
@@ -79,7 +79,7 @@ def _longest_loop(position: Array) -> tuple[int, int] | None:
 
 def _turns(position: Array) -> Iterator[int]:
     """Rows at which the motion turns round, by more than the noise of its readings."""
-    least = BACK * float(np.ptp(position))
+    least = ONE_WAY * float(np.ptp(position))
     ahead, side = 0, 0
     for row, value in enumerate(position.tolist()):
         step = value - position[ahead]

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from .encoder import reading_step
 from .experiment import Experiment
 from .filtering import Array
-from .limits import HALF
-from .motion import Motion, motions
+from .limits import HALF, NEARLY_ALL
+from .motion import Motion
 from .record import Record
 from .repeated_rows import SENSED, SLOWER
 
@@ -35,9 +35,9 @@ ABOVE = 10.0
 #: third of an octave below: an encoder makes such lines as it passes its steps at constant speed.
 #: Lower: its lines pass for motion; higher: a motion of a few tones counts only above the rounding
 DENSE, THIRD_OCTAVE = 0.5, 2.0 ** (1.0 / 3.0)
-#: the frequency below which this share of the squared velocity lies is that of the motion, and the
-#: bandwidth is at least `FULLY` times that frequency: the low-pass then passes 0.996 of the motion
-SHARE, FULLY = 0.9, 2.0
+#: least bandwidth over the frequency below which nearly all of the squared velocity lies: the
+#: low-pass then passes 0.996 of the motion
+FULLY = 2.0
 
 
 def bandwidth_of(experiment: Experiment) -> float:
@@ -62,39 +62,18 @@ def default_bandwidth(experiment: Experiment) -> float:
 
     The highest frequency below a tenth of the sample rate at which the spectrum of the position is
     10 dB above white reading noise: the lowest one of all records, unless another record moves
-    faster than that. The steps of an encoder are not white noise. Lines with no more power than the
-    error of rounding to these steps are no motion; and while the steps hide most of the motion, the
-    bandwidth is halved.
+    faster than that. The steps of an encoder are not white noise: lines with no more power than the
+    error of rounding to these steps are no motion.
     """
-    chosen = _highest_acceleration(experiment)
-    while any(hides_motion(experiment, body, chosen) for body in experiment.bodies):
-        chosen /= 2.0
-    return chosen
-
-
-def share_in_motion(experiment: Experiment, body: str, bandwidth: float) -> float:
-    """Share (0 to 1) of the fitted rows in which the position shows a direction of motion.
-
-    bandwidth: Hz. A wider band leaves more reading error in the velocity. Where a velocity cannot
-        be distinguished from rest, friction balances any force, so no model can be rejected there.
-    """
-    resolution = experiment.channels[f"{body}.position"].resolution
-    directions = [
-        motion.direction != 0
-        for record in experiment.fit_records
-        if bandwidth <= HIGHEST / record.sample_time
-        for motion in motions(record, body, bandwidth=bandwidth, resolution=resolution)
-    ]
-    return float(np.mean(np.concatenate(directions))) if directions else 0.0
-
-
-def hides_motion(experiment: Experiment, body: str, bandwidth: float) -> bool:
-    """Whether far fewer rows show a motion at this bandwidth (Hz) than at one two octaves lower."""
-    lower = bandwidth / 4.0
-    if lower < LOWEST:
-        return False
-    could = share_in_motion(experiment, body, lower)
-    return share_in_motion(experiment, body, bandwidth) < HALF * could
+    limits, needed = [], [LOWEST]
+    for name, record in _moving(experiment):
+        frequency, motion = _motion_in(record, name, CHOSEN)
+        above, from_here = motion > 0.0, np.cumsum(motion[::-1])[::-1]
+        is_dense = _share_below(above, frequency) >= DENSE
+        above &= is_dense | (from_here > _rounding(experiment, name, record))
+        limits.append(frequency[above].max() if above.any() else 0.02 * record.rate_of(name))
+        needed.append(min(FULLY * _frequency_of_motion(record, name), limits[-1]))
+    return float(max(min(limits), *needed))
 
 
 def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
@@ -108,26 +87,14 @@ def motion_beyond(experiment: Experiment, chosen: float) -> float | None:
         return None
     limits = []
     for name, record in _moving(experiment):
-        frequency, density, noise = _spectrum(record, name, even_out=True)
-        above = (density > ABOVE * noise) & (frequency <= PROPOSED * record.rate_of(name))
-        # only the part above the noise of the readings
-        motion = np.where(above, density - noise, 0.0)
+        frequency, motion = _motion_in(record, name, PROPOSED, even_out=True)
         acceleration, beyond = motion * frequency**4, frequency > chosen
         if acceleration[beyond].sum() <= acceleration[~beyond].sum():
             return None
-        power = _mean_square(motion[beyond], len(frequency)).sum()
-        if power <= _rounding(experiment, name, record):
+        if motion[beyond].sum() <= _rounding(experiment, name, record):
             return None
-        limits.append(float(frequency[above].max()))
-    highest = min(limits)
-    hidden = any(hides_motion(experiment, body, highest) for body in experiment.bodies)
-    return None if hidden else highest
-
-
-def _mean_square(density: Array, count: int) -> Array:
-    """Mean square of the part of a signal at each of the `count` frequencies of `_spectrum`."""
-    samples = 2.0 * (count - 1)
-    return density * 16.0 / 3.0 / samples**2  # 3/8: mean square of the window
+        limits.append(float(frequency[motion > 0.0].max()))
+    return min(limits)
 
 
 def _rounding(experiment: Experiment, name: str, record: Record) -> float:
@@ -135,21 +102,6 @@ def _rounding(experiment: Experiment, name: str, record: Record) -> float:
     readings = np.concatenate([record.signals[name][s] for s in record.segments])
     step = experiment.channels[name].resolution or reading_step(readings)
     return step**2 / 12.0
-
-
-def _highest_acceleration(experiment: Experiment) -> float:
-    limits, needed = [], [LOWEST]
-    for name, record in _moving(experiment):
-        rate = record.rate_of(name)
-        frequency, density, noise = _spectrum(record, name)
-        above = (density > ABOVE * noise) & (frequency <= CHOSEN * rate)
-        power = np.where(above, _mean_square(density - noise, len(frequency)), 0.0)
-        power_from_here = np.cumsum(power[::-1])[::-1]
-        is_dense = _share_below(above, frequency) >= DENSE
-        above &= is_dense | (power_from_here > _rounding(experiment, name, record))
-        limits.append(frequency[above].max() if above.any() else 0.02 * rate)
-        needed.append(min(FULLY * _frequency_of_motion(record, name), limits[-1]))
-    return float(max(min(limits), *needed))
 
 
 def _share_below(above: NDArray[np.bool_], frequency: Array) -> Array:
@@ -161,13 +113,10 @@ def _share_below(above: NDArray[np.bool_], frequency: Array) -> Array:
 
 
 def _frequency_of_motion(record: Record, name: str) -> float:
-    """The frequency (Hz) below which `SHARE` of the squared velocity lies; 0 without a motion."""
-    frequency, density, noise = _spectrum(record, name, even_out=True)
-    above = (density > ABOVE * noise) & (frequency <= CHOSEN * record.rate_of(name))
-    velocity = np.where(above, density - noise, 0.0) * frequency**2
-    if not above.any():
-        return 0.0
-    return float(frequency[np.searchsorted(np.cumsum(velocity), SHARE * velocity.sum())])
+    """The frequency (Hz) below which nearly all of the squared velocity lies; 0: no motion."""
+    frequency, motion = _motion_in(record, name, CHOSEN, even_out=True)
+    velocity = motion * frequency**2
+    return float(frequency[np.searchsorted(np.cumsum(velocity), NEARLY_ALL * velocity.sum())])
 
 
 def _moving(experiment: Experiment) -> Iterator[tuple[str, Record]]:
@@ -177,9 +126,12 @@ def _moving(experiment: Experiment) -> Iterator[tuple[str, Record]]:
             yield f"{body}.position", record
 
 
-def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Array, Array, float]:
-    """Frequencies (Hz), spectral density of a signal, and the density of its white noise.
+def _motion_in(
+    record: Record, name: str, highest: float, *, even_out: bool = False
+) -> tuple[Array, Array]:
+    """Frequencies (Hz), and the mean square of a position's motion at each: 0 where noise hides it.
 
+    highest: part of the rate of the readings, above which no motion counts
     even_out: subtract a straight line from each window; its ends would look like high frequencies
     """
     from scipy.signal import detrend
@@ -193,11 +145,13 @@ def _spectrum(record: Record, name: str, *, even_out: bool = False) -> tuple[Arr
     windows = np.concatenate([*views])
     varying = detrend(windows, type="linear" if even_out else "constant")
     spectra = np.fft.rfft(varying * np.hanning(n))
-    density: Array = np.mean(np.abs(spectra) ** 2, 0).astype(np.float64)
+    # 3/8: mean square of the window
+    density = np.mean(np.abs(spectra) ** 2, 0) * 16.0 / 3.0 / (2.0 * (n // 2)) ** 2
     frequency: Array = np.fft.rfftfreq(n, record.sample_time).astype(np.float64)
     rate = record.rate_of(name)
-    noise = density[(frequency > PROPOSED * rate) & (2 * frequency <= rate)]
-    return frequency, density, float(np.median(noise))
+    noise = float(np.median(density[(frequency > PROPOSED * rate) & (2 * frequency <= rate)]))
+    above = (density > ABOVE * noise) & (frequency <= highest * rate)
+    return frequency, np.where(above, density - noise, 0.0)
 
 
 def scales(motions: Sequence[Motion], bandwidth: float) -> dict[str, float]:

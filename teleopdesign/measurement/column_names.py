@@ -263,10 +263,8 @@ def _join_terms(words: list[str]) -> list[str]:
 @lru_cache(4096)
 def likeness(name: str, quantity: str) -> float:
     """How much a column's name suggests a quantity: from 0 (not at all) to 1."""
-    words = [*words_of(name)]
-    if len(words) > 1 and all(len(w) == 1 for w in words):
-        words.append("".join(words))  # a letter with its index: "f_h"
-    words = [w for w in words if w != "x" or ALONG.isdisjoint(words)]
+    words = words_of(name)
+    words = tuple(w for w in words if w != "x" or ALONG.isdisjoint(words))
     listed = WORDS[quantity]
     # a word that ends in "sensor", such as "Stromsensor", names no force
     may_end = quantity != "interaction_force"

@@ -68,18 +68,13 @@ class Conversion:
     def signal(self, columns: Mapping[str, Array]) -> Array:
         """The signal (n,) in SI."""
         names = self.columns or tuple(columns)
-        if self.is_plain:
+        is_one = len(names) == 1 and self.scales == (1.0,) and self.offset == self.period == 0.0
+        if is_one and self.code is None:  # a sum would lose the sign of a zero
             return columns[names[0]] * self.factor
         total = np.full(len(columns[names[0]]), self.offset)
         for name, scale in zip(names, self.scales, strict=True):
             total += scale * self._unwrap(columns[name])
         return total * self.factor
-
-    @property
-    def is_plain(self) -> bool:
-        """Whether the signal is one column times a factor."""
-        one = len(self.columns) <= 1 and self.scales == (1.0,)
-        return one and self.offset == 0.0 and self.period == 0.0 and self.code is None
 
     def wraps(self, columns: Mapping[str, Array]) -> int:
         """How many times the columns wrap."""

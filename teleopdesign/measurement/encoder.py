@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..base.errors import ExperimentError
 from ..base.toml import Table
-from .limits import HALF, NEARLY_ALL, SEVERAL, SMALL
+from .limits import HALF, NEARLY_ALL, SEVERAL
 
 #: keys of a channel, one for each code
 TWOS_COMPLEMENT, SIGN_BIT = "twos_complement", "sign_bit"
@@ -230,7 +230,7 @@ def sign_code_from(table: Table) -> SignCode | None:
 def sign_code_of(readings: Array) -> SignCode | None:
     """The code of a column of counts that change far less if read with a sign; None: there is none.
 
-    The highest bit is then the sign, both signs occur with several values, and their sizes compare.
+    The highest bit is then the sign, and both signs occur with several values.
     """
     counts = readings[np.isfinite(readings)]
     if not len(counts) or counts.min() < 0 or not LEAST_RANGE <= counts.max() < 2.0**MOST_BITS / 2:
@@ -246,10 +246,7 @@ def sign_code_of(readings: Array) -> SignCode | None:
     numbers = best.decode(counts)
     of_sign = [np.unique(numbers[sign * numbers > 0]) for sign in (1, -1)]
     # a command that is on or off has two values, and may be 0 and 200 by choice
-    if min(map(len, of_sign)) < SEVERAL:
-        return None
-    sizes = sorted(float(np.max(np.abs(values))) for values in of_sign)
-    return best if sizes[0] >= SMALL * sizes[1] else None
+    return best if min(map(len, of_sign)) >= SEVERAL else None
 
 
 def _changes(numbers: Array) -> float:

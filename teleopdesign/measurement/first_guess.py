@@ -17,20 +17,17 @@ from numpy.typing import NDArray
 
 from .encoder import SURELY, Array
 from .filtering import spectrum
-from .limits import HALF, SMALL
+from .limits import HALF, ONE_WAY, SMALL
 from .record import Record
 
 #: Hz, part of the sample rate and bounds of the low-pass before the fit
 _BAND = (0.02, 2.0, 40.0)
 #: part of the largest speed below which the direction of motion counts as unknown
 _SLOW = 0.02
-#: part of the largest speed below which friction may have any force, and s by which the low-pass
-#: spreads such a force over neighbouring rows (one period at 20 Hz): these rows are left out. On a
-#: simulated joint with a Stribeck peak, this lowers the error of a balance from 13 % to 0.5 %
-_AT_REST, _REACH = 0.1, 0.05
-#: a motion is in one direction if its direction or speed varies by less than this part of its rms:
-#: noise and the ends of the low-pass make about as much variation
-_ONE_WAY = 0.05
+#: s by which the low-pass spreads a force at rest over neighbouring rows (one period at 20 Hz):
+#: these rows are left out. On a simulated joint with a Stribeck peak, this lowers the error of a
+#: balance from 13 % to 0.5 %
+_REACH = 0.05
 #: part of its size (rms) by which a force must vary: below, a constant explains more of it than any
 #: model of a real machine. Lower: a motor that spins up under one torque passes for one that tells
 #: its inertia; higher: said of true small forces beside gravity
@@ -39,8 +36,6 @@ VARIES = 0.01
 #: with another sign, surely explains more: 0.02 to 0.6 for sizes of simulated forces, 0.5 for the
 #: supply current of a servo; 0.99 and more of forces with a load that keeps their sign
 SURELY_LESS = 0.8
-#: rounds in which a size of a force finds its signs: most end after ten
-_SIGN_ROUNDS = 20
 
 
 @dataclass(frozen=True)
@@ -136,7 +131,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
     force = target - target.mean()
     fits = []
     for braked in (direction, velocity):
-        if np.std(braked) > _ONE_WAY * np.sqrt(np.mean(braked**2)):
+        if np.std(braked) > ONE_WAY * np.sqrt(np.mean(braked**2)):
             # without the part that a constant force explains
             columns = np.stack([acceleration - acceleration.mean(), braked - braked.mean()])
             fits.append((columns, *_fit_with_place(columns, place, force, sample_time)))
@@ -155,7 +150,7 @@ def is_turned(force: Array, position: Array, sample_time: float) -> bool:
 def goes_one_way(direction: Array) -> bool:
     """Whether a body rests or moves in one direction, to the part that a low-pass leaves."""
     ways = [float(np.mean(way)) for way in rows_each_way(direction)]
-    return min(ways) < _ONE_WAY * max(ways)
+    return min(ways) < ONE_WAY * max(ways)
 
 
 def rows_each_way(direction: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -170,8 +165,8 @@ def is_size(force: Array, position: Array, sample_time: float) -> bool:
     """Whether a force (n,) that is never negative is the size of a force that takes both signs.
 
     Such as the supply current of a servo, which rises in motion, whatever the direction. Then the
-    force of the motion and of the place explains surely more where each row has the sign that it
-    has in this model itself, from that of the velocity on.
+    force of the motion and of the place explains surely more where each row has the sign of the
+    velocity.
     """
     stretch = stretch_of((force, position), position, sample_time)
     if stretch is None or np.min(force) < 0.0 or hardly_varies(force):
@@ -181,17 +176,11 @@ def is_size(force: Array, position: Array, sample_time: float) -> bool:
     if min(each) < SMALL * sum(each):
         return False
     place = (place - place.mean()) / max(float(np.ptp(place)), np.finfo(float).tiny)
-    columns = np.vstack([motion, place, place**2])
+    columns, sign = np.vstack([motion, place, place**2]), np.sign(motion[1])
     _, _, signed = least_squares(columns, target, sample_time)
-    sign, least = np.sign(motion[1]), signed
-    for _ in range(_SIGN_ROUNDS):
-        rows = np.vstack([sign * columns, np.ones_like(sign)])
-        solution, _, left = least_squares(rows, target, sample_time)
-        least, before = min(least, left), sign
-        sign = np.sign(solution[: len(columns)] @ columns)
-        if (sign == before).all():
-            break
-    return least < SURELY_LESS * signed
+    rows = np.vstack([sign * columns, np.ones_like(sign)])
+    _, _, of_size = least_squares(rows, target, sample_time)
+    return of_size < SURELY_LESS * signed
 
 
 def balance_factor(
@@ -211,7 +200,7 @@ def balance_factor(
     columns, (target, beside) = stretch
     speed = np.abs(columns[2])
     window = max(1, round(_REACH / sample_time))
-    slow = np.convolve(speed <= _AT_REST * speed.max(), np.ones(window), "same")
+    slow = np.convolve(speed <= SMALL * speed.max(), np.ones(window), "same")
     rows = slow == 0.0
     if np.count_nonzero(rows) * sample_time < 1.0:
         return 0.0, np.inf

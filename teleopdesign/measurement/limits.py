@@ -11,5 +11,9 @@ NEARLY_ALL = 0.9
 #: part of a quantity that is small beside it, so that it decides nothing: filters, offsets and
 #: errors of calibration leave as much
 SMALL = 0.1
+#: part of a motion by which a body comes back, or its direction varies, where it runs one way:
+#: noise of readings, the ends of a low-pass and overshoot at an end make as much. More: a record
+#: with one short return counts as one way
+ONE_WAY = 0.05
 #: times from which something is a rule: once or twice, it may be chance
 SEVERAL = 3

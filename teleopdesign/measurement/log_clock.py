@@ -58,12 +58,7 @@ def clock_of_log(
     if sample_rate is not None and len(rows) == len(filled):
         clock = counted_clock(len(rows), sample_rate, segments, where)
     else:
-        values = [columns.values[c][rows] for c in _on_this_clock(columns, channels, ("time",))]
-        same = np.ones(len(rows), dtype=bool)
-        same[:1] = False
-        for x in values:
-            same[1:] &= np.diff(x) == 0
-        clock = clock_of(stamps[rows], segments, same, where)
+        clock = clock_of(stamps[rows], segments, where)
         clock = replace(clock, rows=rows[clock.rows])
     positions = [
         columns.values[c][clock.rows]

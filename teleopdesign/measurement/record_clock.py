@@ -99,13 +99,10 @@ def counted_clock(count: int, rate: float, segments: tuple[slice, ...], where: s
     return RecordClock(rows, time, rows, time, 1 / rate, segments, segments, 0.0)
 
 
-def clock_of(
-    stamps: Array, segments: Sequence[slice], same_as_before: NDArray[np.bool_], where: str
-) -> RecordClock:
+def clock_of(stamps: Array, segments: Sequence[slice], where: str) -> RecordClock:
     """The clock of a log.
 
     stamps: (n,) s, finite, as written;  segments: as labelled in the log
-    same_as_before: (n,) the row equals the row before in every channel
     raises ExperimentError: fewer than 64 rows, less than 1 s, time that does not increase
     """
     _require_enough(len(stamps), math.inf, where)
@@ -120,9 +117,7 @@ def clock_of(
     restarts = len(parts) - len(written)
     in_order = [part[np.argsort(stamps[part], kind="stable")] for part in parts]
     moved = sum(int(np.sum(a != b)) for a, b in zip(in_order, parts, strict=True))
-    # stamps of a repeated row may differ by rounding: an equal row far too early is one
-    least = np.where(same_as_before, HALF * usual, 0.0)
-    once = [p[~(np.diff(stamps[p], prepend=-math.inf) <= least[p])] for p in in_order]
+    once = [p[np.diff(stamps[p], prepend=-math.inf) > 0.0] for p in in_order]
     dropped = len(stamps) - sum(map(len, once))
     if dropped > FEW * len(stamps):
         return _clock_of_shared_stamps(stamps, where)

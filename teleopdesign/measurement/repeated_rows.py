@@ -1,9 +1,9 @@
 """Repeated rows: rows in which no channel has a new reading; they are read as lost.
 
 A body at rest repeats its position, and a command may be constant or follow the position. A force
-measured with noise repeats only if all channels repeat. Repeated rows are lost rows if the readings
-seldom repeat separately, or if a position stops for one row and then continues. Many repeated rows
-may be a rest: these are lost rows only if a reading jumps afterwards by the motion in between.
+measured with noise repeats only if all channels repeat. Repeated rows are lost rows if there is
+such a force, or if a position stops for a row and then continues. Many repeated rows are a rest, or
+channels that are stuck (`stuck_stretches`).
 """
 
 from __future__ import annotations
@@ -21,11 +21,9 @@ from .record_clock import places_of, slope_of
 from .stamps import usual_step
 from .tables import LogColumns
 
-#: probability by chance up to which all readings of a row repeat because it is lost, a channel is
-#: stuck, or a sample is an outlier. Rows count as lost only if they are more than this share of all
+#: probability by chance up to which a channel is stuck, and share of the rows up to which a force
+#: with noise repeats alone
 BY_CHANCE = 1e-3
-#: rows to either side that show how often each channel repeats alone
-BESIDE = 25
 #: part of the rows that a log may lose. Where more of them repeat, or lack a number in some cell,
 #: the log or a column has a slower source
 MOST = 0.2
@@ -66,18 +64,12 @@ def repeated_rows(
     if not same.any() or same.mean() > MOST:  # at rest all rows are equal
         return out
     first, past = runs_of(same)
-    steps = [reading_step(x) for x in positions]
     stopped = np.zeros(count, dtype=bool)
-    for x, step in zip(positions, steps, strict=True):
-        stopped[repeats(x, step)] = True
+    for x in positions:
+        stopped[repeats(x, reading_step(x))] = True
     short = (past - first < LASTING) & (first > 0) & (past < len(same))
     noisy = [f for f in forces if np.mean(np.diff(f)[~same] == 0) <= BY_CHANCE]
-    unlikely = _chance_of_repeats([*positions, *forces], same, first, past) <= BY_CHANCE
-    unlikely &= np.count_nonzero(unlikely & short) > BY_CHANCE * len(same)
-    inside = short & (unlikely | bool(noisy) | stopped[past])
-    for k in np.flatnonzero(past - first >= LASTING).tolist():
-        ends = int(first[k]), int(past[k])
-        inside[k] = any(_leaps(x, *ends, s) for x, s in zip(positions, steps, strict=True))
+    inside = short & (bool(noisy) | stopped[past])
     for a, b in zip(first[inside].tolist(), past[inside].tolist(), strict=True):
         out[a + 1 : b + 1] = True
     return out
@@ -174,35 +166,6 @@ def stuck_stretches(x: Array, step: float, quantity: str) -> list[tuple[int, int
         if is_stuck:
             stretches.append((a, b + 1))
     return stretches
-
-
-def _chance_of_repeats(
-    read: Sequence[Array], same: NDArray[np.bool_], first: NDArray[np.intp], past: NDArray[np.intp]
-) -> Array:
-    """Probability of each run: that all readings repeat at once, from their repeats beside the run.
-
-    Commands are not counted; where a position repeats, a command that follows it repeats as well.
-    """
-    low, high = np.maximum(first - BESIDE, 0), np.minimum(past + BESIDE, len(same))
-
-    def beside(rows: NDArray[np.bool_]) -> Array:
-        counted = np.r_[0, np.cumsum(rows)]
-        return np.asarray(counted[high] - counted[low], dtype=float)
-
-    whole, chance = beside(~same), np.ones(len(first))
-    for y in read:
-        chance = chance * (beside((np.diff(y) == 0) & ~same) + 0.5) / (whole + 1.0)
-    return chance
-
-
-def _leaps(x: Array, first: int, past: int, step: float) -> bool:
-    """Whether a reading stands still from row `first` to `past` and jumps once afterwards."""
-    near = int(LEAP)
-    if first < near or past + 1 + near > len(x) - 1:
-        return False
-    change = np.abs(np.diff(x[first - near : past + 2 + near]))
-    before, leap, after = change[:near], change[-near - 1], change[-near:]
-    return bool(leap > LEAP * max(np.median(before), np.median(after), step))
 
 
 def with_slower_signals(

@@ -9,11 +9,8 @@ from numpy.typing import NDArray
 
 from .encoder import STEPS, reading_noise
 from .filtering import Array
+from .limits import ONE_WAY
 from .motion import play
-
-#: part of its travel by which a body comes back at most where it runs one way: noise of readings
-#: and overshoot at an end. More: a record with one short return counts as one way
-BACK = 0.05
 
 
 def runs_one_way(position: Array, step: float) -> bool:
@@ -25,7 +22,7 @@ def runs_one_way(position: Array, step: float) -> bool:
     followed = play(position, 2.0 * STEPS * max(step, noise))  # what moves within it moves nothing
     moves = np.diff(followed)
     forth, back = float(moves[moves > 0].sum()), float(-moves[moves < 0].sum())
-    return min(forth, back) <= BACK * float(np.ptp(position))
+    return min(forth, back) <= ONE_WAY * float(np.ptp(position))
 
 
 def count_reversals(direction: NDArray[np.int8]) -> int:

@@ -12,11 +12,7 @@ from .encoder import Array, is_on_grid, reading_step
 from .reading import ReadingStep, count_of
 from .record_clock import RecordClock
 from .repeated_rows import SLOWER
-from .resample import (
-    Rule,
-    filling_error,
-    resample_on_grid,
-)
+from .resample import Rule, filling_error, resample_on_grid
 from .spikes import filled_spikes
 from .tables import LogColumns
 

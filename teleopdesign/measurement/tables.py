@@ -207,11 +207,6 @@ def require_columns(columns: Iterable[str], file: str, wanted: Wanted) -> None:
                 f"{file}: {channel}: no column {quote(column)}, "
                 f"found {join_names(columns) or 'no column'}{did_you_mean(column, columns)}"
             )
-        if columns.count(column) > 1:
-            raise ExperimentError(
-                f"{file}: {channel}: found {columns.count(column)} columns {quote(column)}, "
-                "expected one"
-            )
 
 
 def _refuse_different_lengths(columns: LogColumns, file: str, wanted: Wanted) -> None:

@@ -5,11 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from check.made_channels import (
-    ask,
-    channel,
-    strange_velocity,
-)
+from check.made_channels import ask, channel, strange_velocity
 from clock import takes_less_than
 from shared_data import shared_folder
 

@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.measurement.bandwidth import (
-    default_bandwidth,
-)
+from teleopdesign.measurement.bandwidth import default_bandwidth
 
 RATE = 200.0
 STEP = 1e-4

@@ -21,7 +21,7 @@ def test_the_rate_of_the_rows_does_not_depend_on_the_cut_of_a_log(rate, step, st
     """Of 200 Hz in whole seconds 211 Hz became: inertia a tenth too small."""
     stamps = stamps_of(seconds, rate, step, start)
     rows = slice(0, len(stamps))
-    clock = clock_of(stamps, (rows,), np.zeros(len(stamps), dtype=bool), "log")
+    clock = clock_of(stamps, (rows,), "log")
     assert 1 / clock.sample_time == pytest.approx(rate, rel=2e-3)
     assert np.ptp(clock.time) == pytest.approx((len(stamps) - 1) / rate, rel=2e-3)
 

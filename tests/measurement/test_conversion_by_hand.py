@@ -51,7 +51,7 @@ def of(value, unit):
 def test_the_factor_to_si_is_that_of_hand_calculation(quantity, axis, unit, keys, factor):
     conversion, count = convert(quantity, axis, unit, **keys)
     assert conversion.factor == pytest.approx(factor, rel=1e-12)
-    assert conversion.is_plain and conversion.delay == 0.0
+    assert conversion.delay == 0.0
     assert count == (pytest.approx(abs(factor)) if unit in ("counts", "ticks") else None)
     assert conversion.signal({"x": np.array([0.0, 2.0])}) == pytest.approx([0.0, 2 * factor])
 
@@ -61,15 +61,13 @@ def test_columns_are_summed_with_their_scales_and_an_offset():
         "position", "prismatic", "counts", column=["a", "b"], scale=[2, -0.5], offset=3,
         count=of(1, "mm"), sign=-1,
     )  # fmt: skip
-    assert conversion.columns == ("a", "b") and not conversion.is_plain
+    assert conversion.columns == ("a", "b")
     values = {"a": np.array([1.0, 5.0]), "b": np.array([4.0, -6.0])}
     assert conversion.signal(values) == pytest.approx([-3e-3, -16e-3])
     assert count == pytest.approx(2e-3)  # a count of the column with the largest scale
     same = convert("position", "prismatic", "m", column=["a", "b"], scale=0.5)[0]
     assert same.scales == (0.5, 0.5)
     assert same.signal(values) == pytest.approx([2.5, -0.5])
-    for keys in ({"offset": 1.0}, {"scale": 2.0}, {"unwrap": 5.0}):
-        assert not convert("position", "prismatic", "m", **keys)[0].is_plain
     shifted = convert("position", "prismatic", "mm", offset=-4.0)[0]
     assert shifted.signal({"x": np.array([4.0, 5.0])}) == pytest.approx([0.0, 1e-3])
 

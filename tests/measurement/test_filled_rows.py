@@ -7,10 +7,7 @@ from hypothesis import strategies as st
 
 import teleopdesign as td
 from teleopdesign.measurement.record_clock import RecordClock
-from teleopdesign.measurement.resample import (
-    filling_error,
-    interpolate_by_rule,
-)
+from teleopdesign.measurement.resample import filling_error, interpolate_by_rule
 
 H = 0.01
 

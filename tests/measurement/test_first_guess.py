@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 
 import teleopdesign as td
-from teleopdesign.measurement.first_guess import (
-    balance_factor,
-    explain_force,
-    is_turned,
-)
+from teleopdesign.measurement.first_guess import balance_factor, explain_force, is_turned
 
 H = 0.005
 T = H * np.arange(4000)

@@ -50,21 +50,6 @@ def test_a_rest_is_no_repeat():
     assert not repeated_rows([x, u, f], [x], [f]).any()
 
 
-@pytest.mark.parametrize("with_force", [True, False])
-def test_a_span_in_which_all_channels_stand_is_lost_but_where_they_rest(with_force):
-    t, x, u, f = moved()
-    x = np.round(np.sin(5 * t), 3)
-    dead = [(120, 160), (900, 925)]
-    columns = (x, np.sin(3 * t), f) if with_force else (x, np.sin(3 * t))
-    for a, b in dead:
-        columns = tuple(np.r_[y[: a + 1], np.full(b - a, y[a]), y[b + 1 :]] for y in columns)
-    lost = np.zeros(ROWS, dtype=bool)
-    for a, b in dead:
-        lost[a + 1 : b + 1] = True
-    forces = columns[2:]
-    np.testing.assert_array_equal(repeated_rows(columns, columns[:1], forces), lost)
-
-
 def test_a_moving_position_that_stops_for_a_row_tells_of_a_lost_row_without_a_force():
     t, again = np.arange(ROWS) / 500, np.zeros(ROWS, dtype=bool)
     again[[300, 700, 1130]] = True

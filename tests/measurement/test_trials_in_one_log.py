@@ -7,11 +7,7 @@ from check.made_channels import interruptions
 import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors._log import Log
-from teleopdesign.measurement.survey import (
-    Choices,
-    longest_trial,
-    survey_log,
-)
+from teleopdesign.measurement.survey import Choices, longest_trial, survey_log
 
 H, ROWS = 2e-3, 1500
 ONE = np.arange(ROWS)

@@ -8,10 +8,8 @@ import pytest
 from teleopdesign.measurement.record_clock import clock_of, segments_of
 
 
-def clock_by(stamps, labels=None, same=None):
-    segments = segments_of(labels, len(stamps))
-    same = np.zeros(len(stamps), dtype=bool) if same is None else same
-    return clock_of(stamps, segments, same, "log")
+def clock_by(stamps, labels=None):
+    return clock_of(stamps, segments_of(labels, len(stamps)), "log")
 
 
 def counts_of(clock, noun):

@@ -17,15 +17,7 @@ from ..encoder import is_most
 from ..limits import HALF, SEVERAL
 from ._cells import is_number, seconds_of
 from ._encoding import encoding_of
-from ._header import (
-    NAME_LABELS,
-    bare_unit,
-    is_row_of_units,
-    is_unit_cell,
-    names_and_units,
-    names_of_labelled_rows,
-    numbers_channels,
-)
+from ._header import NAME_LABELS, bare_unit, names_and_units, names_of_labelled_rows
 from ._log import number_names
 
 COMMENTS = ("#", "%", "//")
@@ -92,7 +84,7 @@ def dialect_of(lines: Sequence[str], encoding: str, file: str) -> Dialect:
     if first >= len(lines):
         _refuse_without_rows(lines, separator, file)
     header, units = _header(lines[:first], separator, width, comma)
-    named = bool(header) and not numbers_channels(header)
+    named = bool(header)
     if not named:
         header = tuple(f"column {k + 1}" for k in range(width))
     elif header.count("") == 1:  # drives and pandas leave the name of the first column out
@@ -217,9 +209,6 @@ def _header(
     above = _without_constants([_cells_above(line, separator, width) for line in plain], width)
     wide = [tuple(cells) for cells in above if len(cells) == width]
     rows = [cells for cells in wide if not _is_data(cells, comma)]
-    above_last = wide[: wide.index(rows[-1])][-1:] if rows else []
-    if above_last and above_last[0] not in rows and is_row_of_units(rows[-1], above_last[0]):
-        rows.insert(-1, above_last[0])  # "x-axis, 1, 2": channels by their numbers
     cells = above[-1] if above else []
     if (labelled := names_of_labelled_rows(wide)) is not None:
         return labelled
@@ -232,12 +221,7 @@ def _header(
         return (() if is_title or _is_data(names, comma) else tuple(names)), ()
     joined, units_by_name = names_and_units(rows)
     for label, *units in rows[:-1]:  # a row of units that says so itself: "Y_Unit_Label"
-        if (
-            not units_by_name
-            and "unit" in label.lower()
-            and any(units)
-            and all(map(is_unit_cell, units))
-        ):
+        if not units_by_name and "unit" in label.lower():
             return rows[-1], ("", *map(bare_unit, units))
     return joined, units_by_name
 

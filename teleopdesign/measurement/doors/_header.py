@@ -10,8 +10,6 @@ from ..column_names import unit_of_text
 from ..limits import HALF
 
 _BRACKETED = re.compile(r"[(\[{<][^()\[\]{}<>]*+[)\]}>]$")
-#: begin of a label beside that of the names
-_LABEL = re.compile(r"data.?type|sample.?time|symbol|comment|description|unit", re.IGNORECASE)
 #: a cell that says what it states: "Unit: deg", "Type: double"
 _KEYED = re.compile(r"([^\W\d][\w ]*+):(?!:)\s*+(.*)$")
 #: labels of a row above a table that holds the names, and of one that holds the units
@@ -104,8 +102,6 @@ def names_of_labelled_rows(
         return None
     labels = [k for k, cell in enumerate(named) if cell == named[0]]
     rows = [row for row in rows if row[0] and all(row[k] == row[0] for k in labels)]
-    if not any(_LABEL.match(row[0]) for row in rows):
-        return None
     names = tuple("time" if k in labels else cell for k, cell in enumerate(named))
     units = [""] * len(names)
     for row in rows:
@@ -116,11 +112,3 @@ def names_of_labelled_rows(
         if row[0].casefold() in UNIT_LABELS:
             units = [u or bare_unit(c) * is_unit_cell(c) for u, c in zip(units, row, strict=True)]
     return names, tuple(units)
-
-
-def numbers_channels(header: Sequence[str]) -> bool:
-    """Whether names only count the channels of a plotter from 0, as VOFA+ does: "I0", "I1", ...
-
-    Phases of a motor are counted from 1, or stand beside a time.
-    """
-    return len(header) > 1 and all(cell == f"I{k}" for k, cell in enumerate(header))

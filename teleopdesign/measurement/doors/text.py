@@ -24,15 +24,7 @@ from numpy.typing import NDArray
 from ...base.errors import ExperimentError, quote
 from ._cell_shapes import LineShape
 from ._cells import part_of_column, parts_thousands
-from ._dialect import (
-    LOOKED_AT,
-    SEPARATORS,
-    Dialect,
-    cells_of,
-    dialect_of,
-    first_lines,
-    open_bytes,
-)
+from ._dialect import LOOKED_AT, SEPARATORS, Dialect, cells_of, dialect_of, first_lines, open_bytes
 from ._line_shapes import LINE_SHAPES
 from ._log import MOST_BYTES, Log, join_names, optional, refuse_damage, refuse_size
 from ._stray_lines import rows_of_numbers

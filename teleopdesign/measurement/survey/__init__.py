@@ -270,14 +270,11 @@ def name_trials(survey: Survey, raw: Mapping[str, Array]) -> None:
 
 
 def longest_trial(survey: Survey) -> dict[str, SurveyedColumn]:
-    """The columns in the longest trial; all rows, where it is short or the log has no trials.
+    """The columns in the longest trial; all rows, where the log has no trials.
 
     Between two trials a position may leap: of such a leap no physics tells signs or units.
     """
     longest = max(_trials(survey), key=lambda rows: rows.stop - rows.start)
-    rows = longest.stop - longest.start
-    if rows < FEWEST:
-        return survey.columns
     return {n: replace(c, values=c.values[longest]) for n, c in survey.columns.items()}
 
 

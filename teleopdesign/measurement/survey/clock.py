@@ -108,9 +108,7 @@ def interpolate_columns(
     origin = stamps[rows[0]]
     signals = [x[rows] for n, x in beside_time.items() if n != time_name and not rises(x[rows])]
     rows = rows[~rows_between_readings(signals, signals, stamps[rows])]
-    clock = clock_of(
-        stamps[rows] - origin, (slice(0, len(rows)),), np.zeros(len(rows), dtype=bool), file
-    )
+    clock = clock_of(stamps[rows] - origin, (slice(0, len(rows)),), file)
     used = rows[clock.rows]
     columns: dict[str, SurveyedColumn] = {}
     for name, values in raw.items():

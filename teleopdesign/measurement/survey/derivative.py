@@ -56,10 +56,6 @@ def wrap_of(x: Array) -> float | None:
     is_jump = np.abs(steps) > max(LEAP * reach, UNLIKE * usual)
     if reach == 0.0 or not is_jump.any():
         return None
-    jumps = np.abs(steps[is_jump])
-    jump = float(np.median(jumps))
-    if np.any(np.abs(jumps - jump) > SMALL * jump):
-        return None
     # across a wrap the motion is as in the neighbouring rows
     beside = np.pad(np.where(is_jump, 0.0, steps), 1)
     number = np.maximum(np.convolve(~is_jump, (1, 0, 1), "same"), 1)
@@ -111,16 +107,8 @@ def may_be_position(name: str, columns: Mapping[str, SurveyedColumn], sample_tim
     steps = np.diff(column.readings[np.isfinite(column.readings)])
     if column.unit is not None or likeness(name, "time") > 0 or np.all(steps == steps[0]):
         return False
-    x = column.values
-    for other in (c for n, c in columns.items() if n != name and not rises(c.readings)):
-        if is_mean_rate(x, other.values, sample_time):
-            return True
-        factor, agree = derivative_factor(x, other.values, sample_time)
-        # in a usual unit: what rises with a ramp agrees with the motion that the ramp causes, too
-        usual = any(abs(factor * u - 1.0) < SMALL for u in RATES)
-        if not is_force(other) and agree > DERIVATIVE and usual:
-            return True
-    return False
+    others = (c for n, c in columns.items() if n != name and not rises(c.readings))
+    return any(is_mean_rate(column.values, c.values, sample_time) for c in others)
 
 
 def may_be_ramp(column: SurveyedColumn) -> bool:
@@ -189,15 +177,3 @@ def is_mean_rate(x: Array, v: Array, sample_time: float) -> bool:
         return False
     factor = total / (sample_time * (len(x) - 1)) / mean
     return any(abs(factor / usual - 1.0) < SMALL for usual in RATES)
-
-
-def follows_direction(x: Array, v: Array, sample_time: float) -> bool:
-    """Whether a column v follows the direction of the motion of x more closely than its velocity.
-
-    Friction does, and so does the pressure that overcomes friction.
-    """
-    velocity, _, direction = motion_columns(x, sample_time)
-    inner = slice(len(x) // 50 + 1, -len(x) // 50 - 1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        alike = np.corrcoef([v[inner], velocity[inner], direction[inner]])[0]
-    return bool(alike[2] > alike[1])

@@ -22,12 +22,7 @@ from ..column_names import is_wanted, unit_in_name, why_no_unit
 from ..conversion import conversion_of
 from ..encoder import SIGN_BIT, Array, reading_noise
 from ..first_guess import balance_factor
-from .content import (
-    Choices,
-    Survey,
-    gear_ratio_in,
-    torque_constant_in,
-)
+from .content import Choices, Survey, gear_ratio_in, torque_constant_in
 from .roles import says
 
 FACTOR_OF_ONE = 1.25

@@ -126,7 +126,7 @@ def _find_driving_force(
             f"{force!r} is read as the actuator's force: the command {wanted!r} leaves "
             f"{apart:.0%} of it unexplained, more than noise"
         )
-    elif likeness(force, "actuator_force") < SURE_NAME or not is_named_force(free[force]):
+    elif likeness(force, "actuator_force") < SURE_NAME:
         share = survey.explained[force]
         if not is_named_force(free[force]):
             if AS_LIKELY * (1.0 - share) > 1.0 or not tells_forces(survey):

@@ -7,10 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 
-from ..column_names import (
-    is_wanted,
-    likeness,
-)
+from ..column_names import is_wanted, likeness
 from ..encoder import Array
 from .content import (
     SURE_NAME,
@@ -23,7 +20,6 @@ from .content import (
 )
 from .derivative import (
     DERIVATIVE,
-    follows_direction,
     is_no_velocity,
     is_velocity,
     leaps,
@@ -112,8 +108,7 @@ def _velocity_of(
             agree = rate_agreement(flat[name], column.values, h)
             if agree < DERIVATIVE:
                 continue
-            if is_velocity(column) or not follows_direction(flat[name], column.values, h):
-                scores[other] = score_of("velocity", column, left=1.0 - agree), agree
+            scores[other] = score_of("velocity", column, left=1.0 - agree), agree
         if scores:
             return max(scores, key=scores.__getitem__)
     return None

@@ -23,10 +23,7 @@ from .derivative import (
     wrap_of,
 )
 from .force_entry import describe_code
-from .roles import (
-    SAYS,
-    says,
-)
+from .roles import SAYS, says
 
 #: counts per turn if nothing in the log determines them
 USUAL = 4096.0

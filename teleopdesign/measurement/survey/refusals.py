@@ -19,13 +19,7 @@ from .content import (
     rises,
     sample_time_of,
 )
-from .derivative import (
-    DERIVATIVE,
-    is_no_velocity,
-    is_velocity,
-    rate_agreement,
-    unwrap_column,
-)
+from .derivative import DERIVATIVE, is_no_velocity, is_velocity, rate_agreement, unwrap_column
 from .roles import is_unit_of, of_another_axis, says
 
 #: independent values of a low-passed force, from which an explanation is none by chance: the four
@@ -95,8 +89,7 @@ def error_without_force(
     if not best:
         return ExperimentError(
             f"{file}: found no column that could be a force beside {position!r}, found "
-            f"{join_names(survey.columns)}{listed}{_constant_columns(survey)}"
-            f"{reasons(survey.unread)}"
+            f"{join_names(survey.columns)}{listed}{reasons(survey.unread)}"
         )
     what = (
         f"the motion explains {survey.explained[best]:.0%} of {best!r} beyond the place, which a "
@@ -107,22 +100,6 @@ def error_without_force(
     return ExperimentError(
         f"{file}: found no force: no column has the name or unit of a force, and {what}; "
         f"--force COLUMN selects one of {join_names(survey.explained)}{listed}"
-    )
-
-
-def _constant_columns(survey: Survey) -> str:
-    """How to choose a command that is constant in a log, or a ramp, for a message; "": none is.
-
-    Each of several logs may hold another constant command.
-    """
-    free = {n: c for n, c in survey.columns.items() if n not in columns_in_use(survey)}
-    still = [n for n, c in free.items() if not moves(c)]
-    ramps = [n for n, c in free.items() if moves(c) and rises(c.readings)]
-    kinds = ((still, "does not change here", "such a command"), (ramps, "only rises", "a ramp"))
-    return "".join(
-        f"; {join_names(names)} {what}: --force {names[-1]!r} chooses {command}"
-        for names, what, command in kinds
-        if names
     )
 
 
@@ -138,8 +115,6 @@ def unused_columns(log: Log, raw: Mapping[str, Array], survey: Survey) -> dict[s
 
 
 def _explain_unused(name: str, log: Log, raw: Mapping[str, Array], survey: Survey) -> str:
-    if (count := log.names.count(name)) > 1:
-        return f"{count} columns have this name"
     if name not in raw:
         why = survey.unread.get(name, "")
         return why if why.startswith("one value") else f"holds no numbers{f' ({why})' * bool(why)}"

@@ -19,14 +19,9 @@ from ..column_names import WANTED, likeness, words_of
 from ..encoder import SURELY, Array
 from ..first_guess import least_squares, stretch_of
 from ..law_of_readings import is_copy
-from ..limits import HALF, SEVERAL, SMALL
+from ..limits import SEVERAL, SMALL
 from .content import SURE_NAME, Survey, SurveyedColumn, columns_in_use, moves, rises, sample_time_of
-from .derivative import (
-    DERIVATIVE,
-    derivative_factor,
-    is_velocity,
-    may_be_ramp,
-)
+from .derivative import DERIVATIVE, derivative_factor, is_velocity, may_be_ramp
 from .roles import LEAST_LEFT, is_nameless, is_unit_of, says
 
 Indices = NDArray[np.intp]
@@ -167,15 +162,8 @@ def lags(column: Array, other: Array) -> bool:
     The delay may be less than a row, as that of a position behind the path that a drive plans: then
     the numbers agree a row later rather than a row earlier.
     """
-    if not has_numbers_of(column, other):
-        return False
-    later, earlier = (
-        [_apart(*pair, k) for k in _delays(len(column))]
-        for pair in ((column, other), (other, column))
-    )
-    if _apart(column, other, 0) < min(*later, *earlier):
-        return later[0] < earlier[0]
-    return min(later) < min(earlier)
+    apart = _, later, earlier = _least_apart(column, other)
+    return min(apart) < APART and later < earlier
 
 
 def is_sent_to_places(position: Array, column: SurveyedColumn) -> bool:
@@ -184,19 +172,12 @@ def is_sent_to_places(position: Array, column: SurveyedColumn) -> bool:
     The places are in proportion to the values, and the values keep away from zero: pulse widths of
     a hobby servo, or counts of a converter, are a set point in another unit than the position.
     """
-    if column.unit is not None and is_unit_of(column.unit, "force"):
-        return False
     values = column.values
-    if likeness(column.name, "actuator_force") >= FORCE_NAME or not np.ptp(values) > 0.0:
-        return False
-    if values.min() * values.max() <= 0.0:
-        return False
-    # pulses of a hobby servo have 500 to 2500 us; no force keeps so far from zero beside a rest
-    if np.abs(values).min() < SMALL * np.abs(values).max():
+    if likeness(column.name, "actuator_force") >= FORCE_NAME or values.min() * values.max() <= 0.0:
         return False
     ends = np.flatnonzero(np.diff(values))  # the last row of each hold
     ends = ends[ends > 0]
-    if not _rests_at(ends, position) or not np.ptp(values[ends]) > 0.0:
+    if not _rests_at(ends, position):
         return False
     line = np.polynomial.Polynomial.fit(values[ends], position[ends], 1)
     apart = float(np.mean((position[ends] - line(values[ends])) ** 2))
@@ -213,13 +194,7 @@ def _rests_at(ends: Indices, position: Array) -> bool:
 
 def has_numbers_of(column: Array, position: Array) -> bool:
     """Whether a column has the numbers of the position, at the same time, earlier or later."""
-    spread = float(np.std(position))  # of the same numbers, mean and spread are alike: a first look
-    within = abs(float(np.mean(column) - np.mean(position))) < spread
-    if not (within and HALF * spread < float(np.std(column)) < 2.0 * spread):
-        return False
-    delays = _delays(len(column))
-    least = (min(_apart(column, position, k), _apart(position, column, k)) for k in delays)
-    return min(_apart(column, position, 0), *least) < APART
+    return min(_least_apart(column, position)) < APART
 
 
 def may_be_set_point(column: SurveyedColumn) -> bool:
@@ -240,6 +215,14 @@ def _delays(rows: int) -> Iterator[int]:
     while delay <= max(SMALL * rows, 1.0):
         yield delay
         delay += 1 + delay // 4
+
+
+def _least_apart(column: Array, other: Array) -> tuple[float, float, float]:
+    """How far the numbers of a column are from another's: those of the same row, later, earlier."""
+    delays = [*_delays(len(column))]
+    pairs = ((column, other), (other, column))
+    later, earlier = (min(_apart(*pair, k) for k in delays) for pair in pairs)
+    return _apart(column, other, 0), later, earlier
 
 
 def _apart(late: Array, early: Array, delay: int) -> float:

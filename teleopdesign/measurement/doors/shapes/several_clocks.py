@@ -56,17 +56,11 @@ PARTS = {
 def clock_before_signals(table: CellTable) -> LongTable | None:
     """A time before each signal or group of signals: "time, Force, time, Position"."""
     clock_of = _clocks_before(table)
-    short, single, signals = _short_names(clock_of), list[str](), list[LongSignal]()
+    short, signals = _short_names(clock_of), list[LongSignal]()
     for name, clock in clock_of.items():
         rows = np.isfinite(table.numeric[clock])
-        if int(rows.sum()) < 2:  # a trace may hold a constant in one row
-            single.append(short[name])
-            continue
         signals.append(table.signal(name, rows, clock, f"time of {short[name]}", short[name]))
-    if not signals:
-        return None
-    left = f"signals of one row, left out: {join_names(single, most=4)}" if single else ""
-    return LongTable(tuple(signals), note=left)
+    return LongTable(tuple(signals)) if signals else None
 
 
 def _clocks_before(table: CellTable) -> dict[str, str]:
@@ -117,9 +111,8 @@ def separate_clocks(table: CellTable) -> LongTable | None:
     if len(full) != 1 or likeness(full[0], "time") == 0.0 or full[0] not in table.numeric:
         return None  # beside a signal with numbers in all rows, another one has lost them
     partial = {n: mask for n, mask in filled.items() if 0.0 < share[n] < 1.0}
-    masks = [*partial.values()]
     # a channel that loses more readings than it keeps could not be used on the clock of others
-    if not any(is_most(~mask) for mask in masks) and not _never_share_a_row(masks):
+    if not any(is_most(~mask) for mask in partial.values()):
         return None
     time, groups = full[0], dict[bytes, str]()
     signals = []
@@ -133,15 +126,6 @@ def _is_filled(column: NDArray[Any]) -> NDArray[np.bool_]:
     if column.dtype.kind == "f":
         return np.asarray(np.isfinite(column))
     return np.array([bool(cell) for cell in column], dtype=bool)
-
-
-def _never_share_a_row(filled: Sequence[NDArray[np.bool_]]) -> bool:
-    """Whether two columns have no row in common: two topics at one rate fill half of the rows each.
-
-    Columns of one clock that lost some readings have most of the others in common.
-    """
-    masks = np.array([*{mask.tobytes(): mask for mask in filled}.values()], dtype=np.float32)
-    return len(masks) > 1 and bool(np.any(masks @ masks.T == 0.0))
 
 
 def two_part_time(table: CellTable) -> LongTable | None:
@@ -245,8 +229,6 @@ def _run_together(labels: NDArray[np.intp], stamps: Array, signals: Sequence[NDA
     changes = np.diff(labels) != 0
     if min(map(len, rows)) < FEWEST_ROWS or int(changes.sum()) < 2 * len(rows):
         return False
-    if any(np.any(np.diff(stamps[r]) < 0) for r in rows):
-        return False
     if int(np.sum(np.diff(stamps)[changes] < 0)) >= len(rows):
         return True
     in_turn = float(changes.mean()) >= HALF
@@ -255,8 +237,6 @@ def _run_together(labels: NDArray[np.intp], stamps: Array, signals: Sequence[NDA
 
 def _leaps_between(signal: Array, rows: Sequence[NDArray[np.intp]]) -> bool:
     """Whether a signal changes less within the rows of each machine than from row to row."""
-    if not np.all(np.isfinite(signal)):
-        return False
     within = sum(float(np.abs(np.diff(signal[r])).sum()) for r in rows)
     return within < HALF * float(np.abs(np.diff(signal)).sum())
 
