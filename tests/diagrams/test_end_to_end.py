@@ -84,6 +84,6 @@ def test_the_command_prints_draws_and_writes(file, tmp_path, capsys):
     out = capsys.readouterr().out
     assert "x_m/f_h = (M + Z)^-1    (f_h to x_m)" in out
     assert "x_m/f_h = (1.667) / (s^2 + 10 s + 333.3)" in out
-    assert figure.read_text(encoding="utf-8").startswith("<svg")
+    assert "<svg" in figure.read_text(encoding="utf-8")
     first = json.loads(answer.read_text(encoding="utf-8"))["transfers"][0]
     assert first["name"] == "x_m/f_h" and first["latex"]
