@@ -9,10 +9,12 @@ import numpy as np
 
 #: of f over the sizes of its terms: nearer to zero on the contour a zero lies on it, or none does
 ZERO = 1e-9
+#: points of a contour: beyond, the turns are too many to be followed
+MOST = 200_000
 
 
 def count_growing(terms):
-    """Zeros of f with Re s > 0; None where one lies too near to the axis.
+    """Zeros of f with Re s > 0; None where one lies too near to the axis, or turns are too many.
 
     terms: pairs (polynomial, dead time), the first without one and of the highest degree
     """
@@ -51,7 +53,7 @@ def _turns(terms):
 
     f, size, slope = values(path)
     for _ in range(40):
-        if (np.abs(f) <= ZERO * size).any():
+        if (np.abs(f) <= ZERO * size).any() or len(path) > MOST:
             return None
         steepest = np.maximum(slope[1:], slope[:-1])
         wide = np.flatnonzero(steepest * np.abs(np.diff(path)) > np.abs(f[1:]) + np.abs(f[:-1]))
