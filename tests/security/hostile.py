@@ -56,21 +56,20 @@ CODE = (
 
 
 def pairs(places, texts):
-    """Every text at every place, as parameters of a test.
+    """Texts at places, as parameters of a test.
 
-    Plain are as many as it takes for every place and every text to occur, the others are slow.
+    Plain are as many as it takes for every place and every text to occur; a quarter of the others
+    is slow.
     """
     places, texts = list(places), list(texts)
-    return [
-        pytest.param(
-            place,
-            text,
-            id=f"{i}-{j}",
-            marks=() if i == j % len(places) or j == i % len(texts) else pytest.mark.slow,
-        )
-        for i, place in enumerate(places)
-        for j, text in enumerate(texts)
-    ]
+    cases = []
+    for i, place in enumerate(places):
+        for j, text in enumerate(texts):
+            plain = i == j % len(places) or j == i % len(texts)
+            if plain or (i + j) % 4 == 0:
+                marks = () if plain else pytest.mark.slow
+                cases.append(pytest.param(place, text, id=f"{i}-{j}", marks=marks))
+    return cases
 
 
 def quoted(text):
