@@ -3,6 +3,7 @@
 import control
 import numpy as np
 import pytest
+from clock import in_time
 from devices import CANCELLATION, FEEDBACK, body
 from effects.along import KNOWN, axis_of
 
@@ -86,14 +87,11 @@ def test_kernel_and_python_control_move_alike(name):
     fine = np.linspace(0, time[-1], 4001)  # it takes inputs as linear between these
     inputs = np.zeros((len(system.input_labels), len(fine)))
     inputs[system.input_labels.index("R_V")] = push(fine)
-    response = control.input_output_response(
-        system,
-        fine,
-        inputs,
-        t_eval=time,
-        solve_ivp_method="LSODA",
-        solve_ivp_kwargs={"rtol": 1e-9, "atol": 1e-12, "max_step": 1e-3},
-    )
+    options = {"rtol": 1e-9, "atol": 1e-12, "max_step": 1e-3}
+    with in_time(60):  # one second, where its rates are smooth enough
+        response = control.input_output_response(
+            system, fine, inputs, t_eval=time, solve_ivp_method="LSODA", solve_ivp_kwargs=options
+        )
     x = response.outputs[system.output_labels.index("L")]
     # 1e-5: inputs linear over 25 us leave 5e-8, LSODA at kinks of abs(v) some 1e-6. A touch falls
     # within a step of the kernel, 1e-4 s: half a step of the damper's first force, 2 N s/m at
@@ -126,29 +124,6 @@ def test_an_effect_at_zero_strength_changes_nothing(name):
     assert name not in [e.name for e in without_absent(with_it).effects]
     without = simulated(device(*needed), duration=0.02)["L"].values
     np.testing.assert_array_equal(simulated(with_it, duration=0.02)["L"].values, without)
-
-
-@pytest.mark.slow
-def test_kernel_and_python_control_agree_in_closed_loop(hybrid):
-    """Position loop, hybrid compensation, LuGre friction; 1e-4 of the peak force as above."""
-    time = np.linspace(0, 0.05, 51)
-    reference = 1e-3 * np.sin(2 * np.pi * 10 * time)  # linear between samples in both
-    kernel = simulate(
-        hybrid,
-        duration=0.05,
-        inputs={"L_D": lambda t: np.interp(t, time, reference)},
-        computer="continuous",
-        jit=False,
-    )
-    system = to_iosystem(hybrid)
-    inputs = [reference if n == "L_D" else 0 * time for n in system.input_labels]
-    options = {"rtol": 1e-7, "atol": 1e-11}
-    response = control.input_output_response(
-        system, time, inputs, solve_ivp_method="LSODA", solve_ivp_kwargs=options
-    )
-    for name in ("R_M", "Z_M_friction", "E"):
-        force = response.outputs[system.output_labels.index(name)]
-        assert np.abs(force - kernel[name].values).max() < 1e-4 * np.abs(force).max()
 
 
 @pytest.mark.slow
