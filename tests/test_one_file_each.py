@@ -1,7 +1,4 @@
-"""An effect, control law, diagram, command, check, theorem or shape of logs is one added file.
-
-A column of the table of candidates is one line.
-"""
+"""An effect, control law, command, check, theorem or shape of logs is one added file."""
 
 import os
 import shutil
@@ -66,16 +63,6 @@ kind = "haptic interface"
 law = "throw_away"
 parameters = { gain = 1.5 }
 """
-
-DIAGRAM = '''"""Throw-away: a haptic interface in free space."""
-
-from .haptic_interface import haptic_interface
-from ..wiring import Diagram
-
-
-def diagram() -> Diagram:
-    return haptic_interface()
-'''
 
 COMMAND = '''"""greet whoever runs a test"""
 
@@ -208,11 +195,6 @@ def test_a_control_law_is_one_file(copy, add_file, tmp_path):
     assert "R_MBC = C L" in run(copy, "derive", str(path))
 
 
-def test_a_diagram_is_one_file(copy, add_file):
-    add_file("diagrams/shipped/throw_away.py", DIAGRAM)
-    assert "Z_M" in run(copy, "derive", "throw-away")
-
-
 def test_a_command_is_one_file(copy, add_file):
     add_file("commands/throw_away.py", COMMAND)
     assert "--loudly" in run(copy, "throw-away", "--help")
@@ -256,19 +238,3 @@ def test_a_shape_of_logs_is_one_file_and_its_line_in_the_list(copy, add_file, tm
         assert '"pos_rad"' in run(copy, *command)
     finally:
         listing.write_text(before, encoding="utf-8")
-
-
-def test_a_column_of_the_table_of_candidates_is_one_line(copy, tmp_path):
-    answer = tmp_path / "answer.json"
-    few = ("--only", "coulomb", "viscous", "stribeck")
-    run(copy, "diagnose", str(td.example("rod")), *few, "--json", str(answer))
-    table = copy / ROOT.name / "show/report/candidate_table.py"
-    before = table.read_text(encoding="utf-8")
-    line = 'COLUMNS = (NumberColumn("throw-away", lambda one: 100.0 * one.check_error),'
-    try:
-        table.write_text(before.replace("COLUMNS = (", line), encoding="utf-8")
-        run(copy, "report", str(answer))
-    finally:
-        table.write_text(before, encoding="utf-8")
-    page = answer.with_suffix(".html").read_text(encoding="utf-8")
-    assert ">throw-away</th>" in page and ">probability</th>" in page

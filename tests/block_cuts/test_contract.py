@@ -5,7 +5,6 @@ import pytest
 
 import teleopdesign as td
 from teleopdesign.block_cuts.body import body_experiment
-from teleopdesign.block_cuts.diagram_experiment import last_digit
 from teleopdesign.measurement.prepare import prepare
 
 H = td.controller("low_pass", {"bandwidth": 15.0}).then(td.controller("gain", {"gain": 1.5}))
@@ -91,13 +90,6 @@ def test_a_floor_is_never_below_the_last_digit_of_its_column(diagram, log):
     (cut,) = [c for c in made.cuts.tested if c.name == "Z_H"]
     force = body_experiment(made, cut).channels["Z_H.actuator_force"]
     assert force.resolution == pytest.approx(0.01)
-
-
-def test_the_last_digit_of_small_numbers_is_not_that_of_large_ones():
-    """A micrometre "fits" a step of 1 m, rounded to nothing."""
-    values = np.round(1e-6 * np.sin(np.arange(1.0, 200.0)), 12)
-    assert last_digit(values) == pytest.approx(1e-12)
-    assert last_digit(np.round(values, 9)) == pytest.approx(1e-9)
 
 
 @pytest.mark.parametrize(("rows", "what"), [((899, 900, 900), "twice")])
