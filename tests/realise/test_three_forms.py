@@ -4,14 +4,14 @@ import control
 import numpy as np
 import pytest
 from clock import in_time
-from devices import CANCELLATION, FEEDBACK, body
+from devices import body
 from effects.along import KNOWN, axis_of
 
 from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value
-from teleopdesign.diagrams import four_cases, haptic_interface
+from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import CONTACT_ROLES, EFFECTS
-from teleopdesign.frequency import bode, transfer_function
+from teleopdesign.frequency import transfer_function
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.simulated import without_absent
 from teleopdesign.simulate import simulate
@@ -124,24 +124,3 @@ def test_an_effect_at_zero_strength_changes_nothing(name):
     assert name not in [e.name for e in without_absent(with_it).effects]
     without = simulated(device(*needed), duration=0.02)["L"].values
     np.testing.assert_array_equal(simulated(with_it, duration=0.02)["L"].values, without)
-
-
-@pytest.mark.slow
-def test_a_bode_plot_of_the_four_cases_says_what_it_leaves_out(tmp_path):
-    hand = body(0.05, viscous__damping=3.0, spring__stiffness=400.0)
-    diagram = haptic_interface(
-        body(coulomb__level=0.5, viscous__damping=0.4),
-        hand=hand,
-        cancellation=CANCELLATION,
-        force_feedback=FEEDBACK,
-    )
-    response = bode(four_cases(diagram))
-    assert list(response.data["case"].values) == ["none", "MBC", "FF", "hybrid"]
-    assert response.left_out["hybrid"] == ("Z_M.coulomb",)
-    assert response.data["frequency"].attrs["units"] == "Hz"
-    # all four are 1 at rest and the ratio of masses far above every loop's bandwidth
-    np.testing.assert_allclose(response.data["magnitude"].isel(frequency=0), 1.0, atol=0.01)
-    np.testing.assert_allclose(response.data["magnitude"].isel(frequency=-1), 0.25, rtol=0.02)
-    assert "left out: Z_M.coulomb" in repr(response)
-    response.to_netcdf(tmp_path / "bode.nc")
-    assert len(response.plot().axes) == 2
