@@ -107,7 +107,11 @@ def test_the_reason_why_laws_are_untested_stands_once(diagram, log, rows, what):
     ("change", "words"),
     [
         ({"R_M": lambda log: 1000.0 * log["R_M"]}, "channels.R_M: with 0.001 times"),
-        ({"R_D": lambda log: log["R_M"], "R_M": lambda log: log["R_D"]}, "exchanged"),
+        pytest.param(
+            {"R_D": lambda log: log["R_M"], "R_M": lambda log: log["R_D"]},
+            "exchanged",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_a_column_that_all_cuts_want_otherwise_stops_the_diagnosis(diagram, log, change, words):

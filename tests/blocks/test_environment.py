@@ -128,7 +128,7 @@ def test_effects_of_a_contact_are_candidates_where_one_is_modelled_only(folder):
         model.with_effect("viscous", at="environment")
 
 
-@pytest.mark.parametrize("case", ["018", "025"])
+@pytest.mark.parametrize("case", ["018", pytest.param("025", marks=pytest.mark.slow)])
 def test_a_right_model_in_contact_leaves_what_the_reference_leaves(case):
     """Two teleoperators in soft contact with nothing missing; figures of the cases' own truth."""
     hidden = shared_folder("hidden")

@@ -170,6 +170,7 @@ def test_a_shift_that_raises_the_error_on_unseen_records_is_held_at_none(adequat
     assert back.record_shift[place] == held.model.record_shift[place]
 
 
+@pytest.mark.slow
 def test_beside_a_gain_a_late_command_is_compared_with_a_dead_time(tmp_path):
     """In the place of a shift at its bound a dead time is tried, of an effect that is not there."""
     experiment = td.load_experiment(write_simulated(tmp_path / "late", "actuation_delay"))

@@ -148,6 +148,7 @@ def test_a_limit_that_is_missed_is_not_called_active():
     assert not passive.active and tuned.active == () and repr(passive).startswith("missed")
 
 
+@pytest.mark.slow
 def test_a_loop_with_margins_is_stable_in_its_computer():
     """Force feedback behind a low-pass: in continuous time no gain of it is too large."""
     device = td.hand(mass=0.15, damping=4.0, stiffness=0.0)
