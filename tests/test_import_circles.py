@@ -54,17 +54,3 @@ def test_no_module_imports_itself_by_way_of_others():
     graph = imports_of(PACKAGE, syntax_trees())
     assert len(graph) > 100
     assert circle_in(graph) == []
-
-
-def test_an_import_inside_a_function_counts_and_one_for_type_checkers_does_not(tmp_path):
-    root = tmp_path / "package"
-    root.mkdir()
-    (root / "__init__.py").write_text("from .first import one\n")
-    (root / "first.py").write_text("from . import second\n\ndef one(): pass\n")
-    second = root / "second.py"
-    second.write_text("def two():\n    from .first import one\n    return one()\n")
-    assert set(circle_in(imports_of(root))) == {"package.first", "package.second"}
-    second.write_text(
-        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from .first import one\n"
-    )
-    assert circle_in(imports_of(root)) == []

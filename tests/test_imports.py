@@ -95,14 +95,6 @@ def without_docstring(source):
     ]
 
 
-def test_the_picture_of_the_house_shows_every_folder():
-    """docs/make_house.py draws it from the contract of imports; drawn again when that changes."""
-    drawn = (ROOT.parent / "docs" / "_static" / "house.svg").read_text(encoding="utf-8")
-    for folder in ROOT.iterdir():
-        if folder.is_dir() and (folder / "__init__.py").is_file():
-            assert f">{folder.name}<" in drawn, f"{folder.name}: run python docs/make_house.py"
-
-
 def test_tests_mirror_the_package():
     """Each folder with code has a folder of tests with its name; `examples` holds data."""
     folders = {p.parent.name for p in ROOT.glob("*/__init__.py")} - {"examples"}

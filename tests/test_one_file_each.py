@@ -1,7 +1,4 @@
-"""An effect, control law, diagram, command, check, theorem or shape of logs is one added file.
-
-A column of the table of candidates is one line.
-"""
+"""An effect, control law, command, check, theorem or shape of logs is one added file."""
 
 import os
 import shutil
@@ -66,16 +63,6 @@ kind = "haptic interface"
 law = "throw_away"
 parameters = { gain = 1.5 }
 """
-
-DIAGRAM = '''"""Throw-away: a haptic interface in free space."""
-
-from .haptic_interface import haptic_interface
-from ..wiring import Diagram
-
-
-def diagram() -> Diagram:
-    return haptic_interface()
-'''
 
 COMMAND = '''"""greet whoever runs a test"""
 
@@ -206,11 +193,6 @@ def test_a_control_law_is_one_file(copy, add_file, tmp_path):
     assert "throw_away" in finished(copy, "derive", str(path)).stderr  # no such law yet
     add_file("controllers/throw_away.py", CONTROLLER)
     assert "R_MBC = C L" in run(copy, "derive", str(path))
-
-
-def test_a_diagram_is_one_file(copy, add_file):
-    add_file("diagrams/shipped/throw_away.py", DIAGRAM)
-    assert "Z_M" in run(copy, "derive", "throw-away")
 
 
 def test_a_command_is_one_file(copy, add_file):

@@ -113,25 +113,3 @@ def test_a_law_may_be_there_twice_under_numbered_names():
     assert changed.names() == {"low_pass.bandwidth": 20.0, "low_pass_2.bandwidth": 30.0}
     thrice = changed.then(low)
     assert list(thrice.names()) == [f"low_pass{n}.bandwidth" for n in ("", "_2", "_3")]
-
-
-def test_two_low_passes_in_series_are_the_product_of_their_transfer_functions():
-    import numpy as np
-
-    first, second = (td.controller("low_pass", {"bandwidth": b}) for b in (5.0, 20.0))
-    body = td.Body("prismatic", {"inertia": 0.15})
-    diagram = td.haptic_interface(body, force_feedback=first.then(second))
-    frequency = np.array([1.0, 7.0, 60.0])
-    s = 2j * np.pi * frequency
-    response = td.frequency.loop_gain(diagram, controller="H")
-    product = 1 / ((1 + s / (2 * np.pi * 5)) * (1 + s / (2 * np.pi * 20)))
-    ratio = response(s) / product
-    # the rest of the loop does not depend on the low-passes: the ratio is the loop with H = 1
-    one = td.haptic_interface(body, force_feedback=td.from_control(_unit(), name="one"))
-    np.testing.assert_allclose(ratio, td.frequency.loop_gain(one, controller="H")(s), rtol=1e-9)
-
-
-def _unit():
-    import control
-
-    return control.tf([1.0], [1.0])

@@ -55,11 +55,6 @@ def test_every_log_that_can_be_read_may_be_dropped(tmp_path, ending):
     assert len(names) == 2 and set(files.logs_in(tmp_path)) == names
 
 
-def test_answers_beside_experiments_are_no_logs(tmp_path):
-    (tmp_path / "answer.json").write_text("{}")
-    assert files.logs_in(tmp_path) == ()
-
-
 @settings(max_examples=10)
 @given(name=st.text(max_size=40))
 def test_a_dropped_file_stays_in_its_folder_whatever_its_name(tmp_path_factory, name):

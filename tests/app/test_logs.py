@@ -161,8 +161,3 @@ def test_a_constant_that_is_no_number_is_named(name, text):
 def test_a_number_that_no_device_has_is_refused(folder, name):
     with pytest.raises(ExperimentError, match=f"{logs.NUMBERS[name]}: found 0, expected"):
         logs.preview(folder, "swing.csv.gz", {name: "0"})
-
-
-def test_a_log_outside_of_the_folder_is_not_opened(folder):
-    with pytest.raises(ExperimentError, match="lies outside"):
-        logs.preview(folder, "../other.csv")

@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 import teleopdesign as td
-from teleopdesign.app import charts, logs, pages, server
+from teleopdesign.app import charts, logs, pages
 from teleopdesign.app.workbench import Workbench
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
@@ -30,12 +30,6 @@ def test_the_chosen_spans_are_those_of_the_records(folder):
     ]
     shaded = shown.plot(spans).axes[0].get_legend_handles_labels()[1]
     assert shaded == ["fit", "check"]
-
-
-def test_the_proposed_spans_fill_the_log(folder):
-    shown = logs.preview(folder, "swing.csv.gz")
-    (begin, cut), (after, end) = shown.spans()
-    assert begin == 0 and cut == after and end == shown.survey.duration
 
 
 @pytest.mark.parametrize(
@@ -81,18 +75,6 @@ def test_two_models_stand_beside_each_other(bench):
     assert after < before
 
 
-def test_correlations_of_the_last_model_stand_in_a_table(bench):
-    lines = pages.correlations(bench).splitlines()
-    assert lines[0].endswith("| 1 | 2 | 3 |") and len(lines) == 5
-    pair, value = next(iter(bench.state.fit.correlations.items()))
-    assert f"`{pair[0]}`" in "\n".join(lines) and f"{value:.2f}" in "\n".join(lines)
-
-
-def test_the_simulated_motion_of_the_last_model_is_drawn(bench):
-    figure = pages.simulated_motion(bench)
-    assert figure.axes[0].get_ylabel() == "position (mm)"
-
-
 def test_a_chart_shows_the_residual_of_both(bench):
     better = bench.add("stribeck", "device")
     data = pages.carried_residuals(better, 0, 1, "device")
@@ -102,14 +84,6 @@ def test_a_chart_shows_the_residual_of_both(bench):
     by_name = {n: [r["residual"] for r in rows if r["of"] == n] for n in ("yours", "other")}
     assert len(by_name["yours"]) == len(by_name["other"]) <= charts.MOST
     assert sum(x * x for x in by_name["other"]) < sum(x * x for x in by_name["yours"])
-
-
-def test_the_page_tries_the_effects_that_it_was_started_with(monkeypatch):
-    monkeypatch.delenv(server.EFFECTS, raising=False)
-    assert server.effects() is None
-    monkeypatch.setenv(server.EFFECTS, "stribeck,presliding")
-    assert server.effects() == ("stribeck", "presliding")
-    assert server.effects({"effects": "bias"}) == ("bias",)
 
 
 def test_the_workbench_tries_what_it_is_asked_to_beside_effects_that_are_described():

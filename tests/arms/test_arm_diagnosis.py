@@ -17,8 +17,6 @@ from teleopdesign.cli import main
 from teleopdesign.diagnose.error import force_error
 from teleopdesign.diagnose.parts import PreparedParts
 from teleopdesign.diagnose.parts_fit import PartsFit, error_over_joints, estimate_parts
-from teleopdesign.measurement.filtering import Array
-from teleopdesign.measurement.shared_links import Knowledge
 from teleopdesign.measurement.zero_phase import zero_phase
 
 
@@ -33,17 +31,6 @@ def made(tmp_path, seed, count, hidden=None, seconds=20.0):
     generator = np.random.default_rng(seed)
     arm = random_arm(generator, count)
     return arm, write_experiment(tmp_path / "arm", arm, generator, hidden, seconds=seconds)
-
-
-def test_knowledge_of_two_joints_adds_up():
-    rows = np.random.default_rng(0).normal(size=(6, 3))
-    target: Array = np.random.default_rng(1).normal(size=6)
-
-    def known(part):
-        return Knowledge(rows[part].T @ rows[part], rows[part].T @ target[part])
-
-    together = (known(slice(0, 3)) + known(slice(3, 6))).best()
-    assert np.allclose(together, np.linalg.lstsq(rows, target, rcond=None)[0])
 
 
 @pytest.mark.slow

@@ -66,15 +66,6 @@ def test_the_diagnosis_reads_back_as_it_was(diagnosis, answer, tmp_path):
     assert "+ spring at joint2" in shown and "joint1: " in shown
 
 
-def test_the_page_has_a_part_for_each_joint(answer, tmp_path):
-    path = tmp_path / "page.html"
-    assert main(["report", str(answer), "--output", str(path)]) == 0
-    html = path.read_text()
-    for place in ("ladder", "joints", "joint1-where", "joint2-candidates", "links", "provenance"):
-        assert html.count(f'id="{place}"') == 1
-    assert "lacks <b>spring</b> at joint2" in html
-
-
 def test_a_force_by_another_joint_s_motion_is_learned_from_that_motion_only(folder):
     """What is added to the command of joint 2 follows the place of joint 1."""
     experiment = td.load_experiment(folder)

@@ -115,34 +115,6 @@ def test_forces_are_those_of_an_independent_simulator(count, seed, prismatic):
     assert np.allclose(got, expected, rtol=0, atol=ROUNDING * max(np.abs(expected).max(), 1.0))
 
 
-def energy(arm, q, v):
-    """Kinetic and potential energy (n,), from forces at rest and from unit accelerations."""
-    still = Chain(arm.links, gravity=(0.0, 0.0, 0.0))
-    nothing = np.zeros_like(q)
-    kinetic = np.zeros(q.shape[1])
-    for j in range(len(arm.links)):
-        push = nothing.copy()
-        push[j] = 1.0
-        column = np.einsum("kpn,p->kn", force_columns(still, q, nothing, push), arm.inertial)
-        kinetic += 0.5 * v[j] * np.sum(v * column, axis=0)
-    return kinetic
-
-
-@given(count=st.integers(1, 5), seed=st.integers(0, 10_000))
-def test_power_at_the_joints_is_the_rate_of_energy(count, seed):
-    generator = np.random.default_rng(seed)
-    arm = Chain(arm_of(random_arm(generator, count, prismatic=True)).links, gravity=(0.0, 0.0, 0.0))
-    q, v, a = generator.normal(size=(3, count, 1))
-    step = 1e-4
-    course = [q + v * h + a * h**2 / 2 for h in (-step, step)]
-    speed = [v + a * h for h in (-step, step)]
-    before, after = (energy(arm, x, y) for x, y in zip(course, speed, strict=True))
-    force = np.einsum("kpn,p->kn", force_columns(arm, q, v, a), arm.inertial)
-    power = np.sum(force * v, axis=0)
-    # central differences err by step^2 times third derivatives, rounding by 1e-16 / step
-    assert np.allclose((after - before) / (2 * step), power, rtol=1e-4, atol=1e-4)
-
-
 @given(count=st.integers(1, 6), seed=st.integers(0, 1000))
 def test_base_parameters_say_all_that_the_links_do(count, seed):
     generator = np.random.default_rng(seed)

@@ -51,11 +51,6 @@ def test_a_bad_urdf_is_one_line(tmp_path, text, before, after, message):
     assert "\n" not in str(caught.value)
 
 
-def test_a_urdf_nested_deeper_than_any_robot_is_refused(tmp_path):
-    with pytest.raises(ExperimentError, match="nested deeper"):
-        read(tmp_path, "<robot>" + "<a>" * 1000 + "</a>" * 1000 + "</robot>")
-
-
 @given(st.text(max_size=200))
 def test_any_text_is_an_arm_or_one_line(tmp_path_factory, content):
     path = tmp_path_factory.mktemp("arm") / "arm.urdf"

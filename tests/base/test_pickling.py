@@ -21,18 +21,11 @@ EVERY = [
 ]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("make", EVERY)
-def test_what_was_pickled_is_the_same_again(make):
-    thing = make()
-    assert pickle.loads(pickle.dumps(thing)) == thing
-
-
 @pytest.mark.parametrize("make", EVERY)
 def test_a_copy_is_equal_and_it_prints_in_a_few_lines_and_in_a_notebook(make):
     thing = make()
     text, copied = repr(thing), copy.deepcopy(thing)
-    assert copied == thing and repr(copied) == text
+    assert copied == thing == pickle.loads(pickle.dumps(thing)) and repr(copied) == text
     # a design says its reasons and predictions: a page of sentences, everything else is a table
     # of which the ranking's has a line for each effect of the catalogue
     most = 6000 if isinstance(thing, td.Design) else 3500

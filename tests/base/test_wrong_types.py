@@ -57,24 +57,17 @@ CONSTRUCTORS = [
     passivity.Coulomb, passivity.Spring, passivity.DahlBehindSpring, passivity.Search,
 ]  # fmt: skip
 METHODS = [
-    (lambda: td.Model.from_experiment(objects.experiment()), "with_effect"),
-    (lambda: td.Model.from_experiment(objects.experiment()), "without_effect"),
-    (lambda: td.Model.from_experiment(objects.experiment()), "with_values"),
-    (lambda: td.Model.from_experiment(objects.experiment()), "body"),
-    (lambda: td.Model.from_experiment(objects.experiment()), "unit"),
-    (lambda: td.Model.from_experiment(objects.experiment()), "declared"),
-    (lambda: objects.BODY, "with_effect"),
-    (lambda: objects.BODY, "without_effect"),
-    (lambda: objects.BODY, "with_values"),
-    (lambda: objects.BODY, "effect"),
-    (lambda: objects.BODY, "unit"),
-    (lambda: objects.LAW, "then"),
-    (lambda: objects.LAW, "with_values"),
-    (objects.diagram, "with_block"),
-    (objects.diagram, "with_values"),
-    (objects.diagram, "block"),
-    (objects.diagram, "signal"),
-    (objects.diagram, "position"),
+    (make, name)
+    for make, names in (
+        (
+            lambda: td.Model.from_experiment(objects.experiment()),
+            "with_effect without_effect with_values body unit declared",
+        ),
+        (lambda: objects.BODY, "with_effect without_effect with_values effect unit"),
+        (lambda: objects.LAW, "then with_values"),
+        (objects.diagram, "with_block with_values block signal position"),
+    )
+    for name in names.split()
 ]
 
 
@@ -179,21 +172,20 @@ def test_a_public_function_refuses_what_it_cannot_take(function):
 
 @pytest.mark.parametrize("constructor", CONSTRUCTORS, ids=lambda c: c.__name__)
 def test_a_constructor_refuses_what_it_cannot_take(constructor):
-    for one in checked_parameters(constructor):
-        for wrong in WRONG.values():
-            parameters = checked_parameters(constructor)
-            values = {p.name: right(p, wrong) for p in parameters if p.default is p.empty}
-            refused_or_taken(constructor, {**values, one.name: wrong})
+    refuse_each(constructor)
 
 
 @pytest.mark.parametrize(("make", "name"), METHODS, ids=lambda x: x if isinstance(x, str) else "")
 def test_a_method_refuses_what_it_cannot_take(make, name):
-    method = getattr(make(), name)
-    for one in checked_parameters(method):
+    refuse_each(getattr(make(), name))
+
+
+def refuse_each(call):
+    parameters = checked_parameters(call)
+    for one in parameters:
         for wrong in WRONG.values():
-            parameters = checked_parameters(method)
             values = {p.name: right(p, wrong) for p in parameters if p.default is p.empty}
-            refused_or_taken(method, {**values, one.name: wrong})
+            refused_or_taken(call, {**values, one.name: wrong})
 
 
 def test_every_public_function_is_checked():

@@ -71,6 +71,7 @@ def test_the_columns_are_recognised_and_the_folder_is_an_experiment(log, capsys,
     assert main(["check", "log_experiment"]) == 0
 
 
+@pytest.mark.slow
 def test_columns_without_names_may_be_any_signal(log):
     """Among them a signal of the hand's cut that is no sum with the force of the hand."""
     log({"time": "a", "x": "b", "r_d": "c", "r_a": "d", "f_h": "e"})

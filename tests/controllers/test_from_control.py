@@ -9,7 +9,6 @@ from scipy.signal import butter
 
 from teleopdesign.controllers import from_control, invert_plant, parameter_symbol
 from teleopdesign.diagrams import haptic_interface
-from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.lti import S
 from teleopdesign.simulate import Trajectory, simulate, sine
 
@@ -48,28 +47,6 @@ def test_a_filter_of_high_order_keeps_its_digits():
         expected += share * (np.exp(pole * steps["time"].values) - 1)
     assert len(zeros) == 0
     np.testing.assert_allclose(steps["R_MBC"], expected.real, atol=1e-12)
-
-
-def test_a_nonlinear_system_goes_through_python_control_as_it_is():
-    """A cubic damper on its own state: dx/dt = 50 (u - x), y = x^3."""
-    cubic = control.nlsys(
-        lambda t, x, u, p: 50 * (u - x),
-        lambda t, x, u, p: x**3,
-        inputs=1,
-        outputs=1,
-        states=1,
-        name="cubic",
-    )
-    made = from_control(cubic)
-    diagram = haptic_interface(body(0.1), cancellation=made)
-    system = to_iosystem(diagram, prescribed=("L",))
-    time = np.linspace(0, 0.1, 201)
-    inputs = [(0.1 + 0 * time) * (n == "L") for n in system.input_labels]
-    response = control.input_output_response(system, time, inputs)
-    forces = response.outputs[system.output_labels.index("R_MBC")]
-    np.testing.assert_allclose(
-        forces, (0.1 * (1 - np.exp(-50 * time))) ** 3, atol=1e-6
-    )  # its own tolerance, 1e-3 of x
 
 
 def test_an_inverse_leaves_the_low_pass_alone():

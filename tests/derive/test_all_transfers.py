@@ -134,30 +134,6 @@ def test_transfers_solve_the_equations_of_the_wiring_for_matrices(diagram):
         np.testing.assert_allclose(value, expected, rtol=0, atol=limit)
 
 
-def test_a_sum_that_vanishes_only_exactly_determines_nothing():
-    """0.5 f = 0 from the loop of j3 fixes nothing of x0: weights such as 2.25 are fractions."""
-    diagram = Diagram(
-        "loop",
-        (
-            Moving("A", ANY, "x0", "j1", {"f1": -1, "j0": 1, "x2": 1, "j1": -1, "a": 0.5}, "j0"),
-            Moving("B", ANY, "x1", "j0", {"f0": -1, "j2": 1, "j1": -2.25, "j0": -1, "a": 1}, "j3"),
-            Moving("C", ANY, "x2", "j2", {"j2": -1}, "b"),
-            Attached("D", ANY, "j1", "f0", 1),
-            Attached("E", ANY, "j3", "f1", -1),
-        ),
-        (
-            Junction("j0", {"j2": -1, "x1": -1}),
-            Junction("j1", {"j0": -1}),
-            Junction("j2", {"a": 0.5, "j0": -1, "b": -1, "j1": -1, "x2": 1}),
-            Junction("j3", {"j3": 1, "f0": 0.5}),
-        ),
-        {"a": "force", "b": "force"},
-        ("j0",),
-    )
-    with pytest.raises(ModelError, match='the wiring does not determine "x0"'):
-        transfer(diagram, "j3")
-
-
 @pytest.mark.parametrize(
     ("diagram", "words"),
     [

@@ -1,13 +1,9 @@
 """Names of faults that are planted in a compensation or in its device, on a simulator.
 
-    PYTHONPATH=tests python -m design.faults_campaign [--devices 10] [--first 0]
-
 The design knows the device; one number of the compensator or of the device then differs. Three
 ways of recording: with the command, without it, and without it beside a recording with the
-compensation off. Printed: a row a recording, then how many faults are named, alone or in a group.
+compensation off.
 """
-
-import argparse
 
 import numpy as np
 from design.compensated_joint import PERIOD, STEP, Compensation, record, record_without
@@ -121,24 +117,3 @@ def is_right(fault, verified):
     if not FAULTS[fault]:
         return not groups
     return len(groups) == 1 and bool(set(FAULTS[fault]) & set(groups[0]))
-
-
-def main(devices, first):
-    for way in WAYS:
-        right = dict.fromkeys(FAULTS, 0)
-        for number in range(first, devices):
-            for fault in FAULTS:
-                verified = named(fault, number, way)
-                right[fault] += is_right(fault, verified)
-                print(way, number, fault, f"measured {verified.measured:.3f}",
-                      f"{verified.low:.3f} to {verified.high:.3f}", is_right(fault, verified),
-                      [[str(d) for d in g] for g in verified.deviations], flush=True)  # fmt: skip
-        print(way, right, "of", devices - first, flush=True)
-
-
-if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--devices", type=int, default=10)
-    parser.add_argument("--first", type=int, default=0)
-    options = parser.parse_args()
-    main(options.devices, options.first)

@@ -88,11 +88,10 @@ def test_each_body_of_a_teleoperator_is_a_separate_device(few, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["emps", "psm_insertion"])
-def test_a_real_recording_leads_to_a_design(name, choose_from, tmp_path):
+def test_a_real_recording_leads_to_a_design(choose_from, tmp_path):
     """Among effects that a drive may have; tests of `diagnose` choose from all."""
     choose_from((*FEW, "presliding", "bias", "coulomb_asymmetry"))
-    folder = shared_folder("data") / name
+    folder = shared_folder("data") / "emps"
     assert main(["design", str(folder), "--json", str(tmp_path / "d.json")]) == 0
     made = designs(tmp_path / "d.json")["device"]
     errors = {case: p["simulated"] for case, p in made["prediction"].items()}

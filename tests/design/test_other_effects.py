@@ -65,7 +65,7 @@ COGGING = {"amplitude": 0.1, "period": 0.57, "phase": 0.3}
 @pytest.mark.parametrize(
     "effects",
     [
-        {"position_dependent_friction": PLACE},
+        pytest.param({"position_dependent_friction": PLACE}, marks=pytest.mark.slow),
         pytest.param(
             {"stribeck": {"extra_static_level": 0.2, "stribeck_velocity": 0.2}},
             marks=pytest.mark.slow,

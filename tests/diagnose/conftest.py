@@ -19,17 +19,31 @@ def experiment(stribeck_case):
 
 
 @pytest.fixture(scope="session")
-def end(experiment):
-    """What the search on `stribeck_case` ends with, among effects that are quick to fit."""
+def search(experiment):
+    """The search on `stribeck_case`, among effects that are quick to fit."""
     from teleopdesign import EFFECTS, Model
-    from teleopdesign.diagnose.climb import climb
-    from teleopdesign.diagnose.conclusion import end_of
-    from teleopdesign.diagnose.ladder_state import begin, search_for
+    from teleopdesign.diagnose.ladder_state import search_for
 
     quick = ("coulomb", "viscous", "stribeck", "coulomb_asymmetry", "bias", "spring")
     known = {name: EFFECTS[name] for name in quick}
-    search = search_for(experiment, Model.from_experiment(experiment, known))
-    return end_of(search, *climb(search, begin(search)))
+    return search_for(experiment, Model.from_experiment(experiment, known))
+
+
+@pytest.fixture(scope="session")
+def first(search):
+    """Where that search begins: the user's model, and all candidates beside it."""
+    from teleopdesign.diagnose.ladder_state import begin
+
+    return begin(search)
+
+
+@pytest.fixture(scope="session")
+def end(search, first):
+    """What that search ends with."""
+    from teleopdesign.diagnose.climb import climb
+    from teleopdesign.diagnose.conclusion import end_of
+
+    return end_of(search, *climb(search, first))
 
 
 @pytest.fixture(scope="session")

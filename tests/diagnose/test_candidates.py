@@ -18,7 +18,6 @@ from teleopdesign.diagnose.candidates import (
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.identifiability import is_identifiable
 from teleopdesign.diagnose.rank import rank_candidates
-from teleopdesign.diagnose.solve import free_parameters
 from teleopdesign.effects import CONTACT_ROLES, EFFECTS, catalogue
 from teleopdesign.measurement.bandwidth import scales
 from teleopdesign.measurement.prepare import prepare
@@ -143,18 +142,6 @@ def test_the_period_of_teeth_is_known_however_many_turns_a_rotor_makes(tmp_path)
     assert one.fit.check_error < 0.3 * base.check_error
     period = one.fit.model.parameters["device.cogging.period"].value
     assert period == pytest.approx(2 * np.pi / 36, rel=1e-3)
-
-
-def test_a_fixed_parameter_stays(experiment, model, prepared):
-    inertia = model.parameters["device.inertia"]
-    fixed = model.with_values({"device.inertia": replace(inertia, fixed=True)})
-    fit = estimate(fixed, prepared)
-    assert "device.inertia" not in free_parameters(fixed)
-    assert fit.model.parameters["device.inertia"].value == inertia.value
-    assert (
-        fit.model.parameters["device.coulomb.level"].value
-        != model.parameters["device.coulomb.level"].value
-    )
 
 
 def test_an_effect_that_is_not_there_ends_at_its_bound_and_says_so(model, prepared):

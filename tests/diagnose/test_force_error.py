@@ -59,14 +59,6 @@ def test_the_error_can_be_recomputed_from_the_predictions(diagnosis, tmp_path):
     assert error == pytest.approx(diagnosis.after.check_error, rel=0.01)
 
 
-def test_a_model_with_nothing_in_it_leaves_everything(prepared, model):
-    body = model.body("device")
-    for name in [e.name for e in body.effects]:
-        body = body.without_effect(name)
-    empty = replace(model, bodies={"device": body.with_values({"inertia": 0.0})})
-    assert force_error(empty, prepared.of("check")) == pytest.approx(1.0, rel=1e-3)
-
-
 def test_the_true_parameters_leave_the_error_that_the_simulation_says(
     prepared, model, stribeck_case
 ):
@@ -158,13 +150,6 @@ def test_a_hands_force_of_unstated_noise_raises_the_floor_by_what_its_readings_s
 def test_a_bandwidth_too_high_for_the_samples_is_one_line(experiment):
     with pytest.raises(ExperimentError, match="bandwidth: 450 Hz is too high for fit.csv.gz"):
         prepare(experiment, bandwidth=450.0)
-
-
-def test_a_record_without_a_stretch_long_enough_is_one_line(experiment):
-    rows = tuple(slice(k, k + 400) for k in range(0, 4000, 400))
-    record = replace(experiment.fit_records[0], segments=rows)
-    with pytest.raises(ExperimentError, match="no stretch of 0.6 s or more"):
-        prepare(replace(experiment, records=(record,)))
 
 
 def test_segments_are_separate_stretches(experiment, model):

@@ -10,10 +10,8 @@ import numpy as np
 import pytest
 from diagnose.made_records import dahl, write_made
 
-from teleopdesign import Body, Model, find_missing, load_experiment
+from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.answer import load_answer, write_answer
-from teleopdesign.diagnose.candidates import Candidate
-from teleopdesign.diagnose.rung import Rung, restore_replaced, undo
 from teleopdesign.effects import EFFECTS
 
 pytestmark = pytest.mark.slow  # diagnoses of whole cases
@@ -85,35 +83,3 @@ def test_a_damper_that_is_there_stays_beside_the_bristle(tmp_path):
     assert diagnosis.rungs[1].instead_of is None
     damping = diagnosis.model.parameters["device.viscous.damping"]
     assert damping.value == pytest.approx(300.0, rel=0.1)
-
-
-#: an effect that another can count as -> its parameter
-STRENGTH = {"viscous": "damping"}
-
-
-def chains():
-    """(stands in, is replaced, rests on either) of the catalogue, by `counts_as` and `needs`."""
-    return [
-        (new, old, other.name)
-        for new, effect in EFFECTS.items()
-        if not effect.free  # no step of a search adds it
-        for old in effect.counts_as
-        for other in EFFECTS.values()
-        if old in other.needs and old not in other.parameters_of_others()
-    ]
-
-
-@pytest.mark.parametrize(("new", "old", "other"), chains())
-def test_what_rests_on_either_stays_while_one_gives_way_to_the_other(new, old, other):
-    """Each order of the two rungs can be taken back: no effect is left without what it needs."""
-    axis = "prismatic"
-    plain = Model(
-        {"device": Body(axis, {"inertia": 1.0, f"{old}.{STRENGTH[old]}": 2.0}, (EFFECTS[old],))}
-    )
-    before = plain.with_effect(other)
-    gave_way = restore_replaced(Candidate(EFFECTS[old], "device"), before)
-    model = Model({"device": Body(axis, {"inertia": 1.0}, ())}).with_effect(new).with_effect(other)
-    rung = Rung(Candidate(EFFECTS[new], "device"), None, replaced=gave_way)
-    back = undo([rung], model)
-    assert {n for n, _ in back.effects} == {old, other}
-    assert back.parameters[f"device.{old}.{STRENGTH[old]}"].value == 2.0

@@ -48,23 +48,6 @@ def test_a_tone_is_taken_away_whatever_its_phase_on_each_record(rod, frequency):
     assert best_tone(hum, prepared).squares < 0.03 * check_squares(hum)
 
 
-def test_noise_is_no_tone(rod):
-    prepared, fit = rod
-    noise = np.random.default_rng(2)
-    plain = with_residual(fit, prepared, lambda t: noise.standard_normal(len(t)))
-    assert best_tone(plain, prepared).squares > 0.98 * check_squares(plain)
-
-
-def test_what_repeats_with_the_motion_is_no_tone_from_outside(rod):
-    """The motion's own strongest frequency."""
-    prepared, fit = rod
-    motion = prepared.of("fit")[0].motion
-    power = np.abs(np.fft.rfft(motion.velocity))
-    frequency = np.fft.rfftfreq(len(motion.velocity), motion.sample_time)[int(np.argmax(power))]
-    swing = with_residual(fit, prepared, lambda t: np.sin(2 * np.pi * frequency * t))
-    assert best_tone(swing, prepared).squares == float("inf")
-
-
 @pytest.mark.parametrize("harmonic", [2, 3])
 def test_harmonics_of_a_periodic_motion_are_no_tone_from_outside(tmp_path, harmonic):
     """Friction makes them of one sine: of its direction the odd ones, of its size the even ones."""

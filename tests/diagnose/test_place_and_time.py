@@ -5,66 +5,16 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 from diagnose.made_records import write_made
-from hypothesis import given
-from hypothesis import strategies as st
 
 from teleopdesign import Model, find_missing, load_experiment
 from teleopdesign.diagnose.candidates import (
     candidates,
-    tells_place_from_time,
     tells_speed_from_time,
 )
 from teleopdesign.effects import EFFECTS
 from teleopdesign.measurement.prepare import prepare
 
 TURN = 2 * np.pi
-
-
-@dataclass
-class Way:
-    """A motion of which only position, time and direction are asked."""
-
-    position: np.ndarray
-    time: np.ndarray
-    file: str = "fit.csv"
-    body: str = "device"
-    direction: np.ndarray = field(init=False)
-
-    def __post_init__(self):
-        self.direction = np.sign(np.gradient(self.position)).astype(np.int8)
-
-
-def sweep(start, end, begin=0.0, duration=10.0, **more):
-    t = np.linspace(0.0, duration, 400)
-    return Way(start + (end - start) * t / duration, begin + t, **more)
-
-
-@given(speed=st.floats(0.1, 10.0), end=st.floats(0.01, 100.0))
-def test_a_sweep_and_its_way_back_tell_place_from_time(speed, end):
-    there, back = sweep(0, end, duration=1 / speed), sweep(end, 0, 1 / speed, 1 / speed)
-    assert tells_place_from_time([there, back])
-    # as two records, each from its own time zero
-    assert tells_place_from_time([there, sweep(end, 0, 0.0, 1 / speed, file="other.csv")])
-
-
-def test_constant_speeds_over_the_same_half_turn_tell_it_together_but_not_one_by_one():
-    runs = [sweep(0, 3, 10.0 * k, 30.0 / (k + 2)) for k in range(9)]
-    runs += [sweep(3, 0, 90 + 10.0 * k, 30.0 / (k + 2)) for k in range(9)]
-    assert tells_place_from_time(runs)
-    assert not any(tells_place_from_time([run]) for run in runs)
-
-
-def test_what_lies_next_to_it_in_another_record_is_the_same_place_only_with_one_zero():
-    ways = [sweep(0, 1, file="a.csv"), sweep(0, 1, 50.0, file="b.csv")]
-    assert tells_place_from_time(ways)
-    assert not tells_place_from_time(ways, separate_zeros={"a.csv", "b.csv"})
-
-
-def test_eight_turns_tell_what_repeats_every_turn_and_no_spring():
-    turning = [sweep(0, 8 * TURN)]
-    assert not tells_place_from_time(turning)
-    assert tells_place_from_time(turning, turn=TURN)
-    assert not tells_place_from_time([sweep(0, 0.9 * TURN)], turn=TURN)
 
 
 MODEL = """coulomb = { level = { value = 1.0, unit = "N*m" } }
@@ -212,12 +162,6 @@ def spin_up(final):
     return speeds(lambda t: final * (1.0 - np.exp(-t / 8.0)) + 1e-6)
 
 
-def test_runs_that_only_grow_faster_tell_no_speed_from_time():
-    assert not tells_speed_from_time([spin_up(200.0)])
-    # runs that end 10 % apart
-    assert not tells_speed_from_time([spin_up(200.0), spin_up(220.0)])
-
-
 @pytest.mark.parametrize(
     "motions",
     [
@@ -230,13 +174,6 @@ def test_runs_that_only_grow_faster_tell_no_speed_from_time():
 )
 def test_speeds_that_come_again_tell_speed_from_time(motions):
     assert tells_speed_from_time(motions)
-
-
-@given(st.floats(0.1, 1e3), st.floats(-1e3, 1e3))
-def test_neither_unit_of_speed_nor_begin_of_time_matter(scale, begin):
-    for motion in (spin_up(2.0), speeds(lambda t: np.sin(t))):
-        moved = Speed(scale * motion.velocity, motion.time + begin)
-        assert tells_speed_from_time([moved]) == tells_speed_from_time([motion])
 
 
 def test_a_drift_is_no_candidate_where_each_run_only_grows_faster(experiment):

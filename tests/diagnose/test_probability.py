@@ -3,19 +3,15 @@
 import math
 from dataclasses import replace
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.criteria import CRITERIA
 from teleopdesign.diagnose.free_functions import Belief
 from teleopdesign.diagnose.probability import (
     CandidateEvidence,
     evidence_of,
-    select_independent,
 )
-from teleopdesign.effects import EFFECTS
 
 
 class Scored:
@@ -41,19 +37,6 @@ def test_it_is_a_probability(left, share, score):
             EVIDENCE, ranked=Scored(score), accepted=accepted, share=share, left=left
         ).probability()
         assert 0.0 <= one <= 1.0
-
-
-@pytest.mark.parametrize("structure", ["transmission_compliance", "backlash"])
-def test_an_effect_is_not_named_without_the_accepted_one_that_it_needs(end, structure):
-    on, friction = (Candidate(EFFECTS[n], "device") for n in (structure, "tip_friction"))
-    first = end.rungs[0]
-    model = replace(end.before.model, known=EFFECTS)
-    first = replace(first, fit=replace(first.fit, model=model))
-    rungs = (first, *(replace(end.rungs[-1], added=c) for c in (on, friction)))
-    whole = replace(end, rungs=rungs)
-    assert select_independent(whole, {on.key, friction.key}) == (on, friction)
-    assert select_independent(whole, {friction.key}) == ()
-    assert select_independent(whole, {on.key}) == (on,)
 
 
 def test_an_effect_is_believed_by_what_it_explains_compare_free_functions(end):

@@ -73,22 +73,9 @@ def plain(adequate):
     return fitted(adequate)
 
 
-@pytest.fixture(scope="module")
-def a_row_late(adequate):
-    """Its model, estimated where the logger was a row late."""
-    return fitted(shifted(adequate, 1.0))
-
-
-def test_a_shift_of_a_row_is_detected_and_costs_nothing(adequate, plain, a_row_late):
-    check_shift(adequate, plain, a_row_late, 1.0)
-
-
-@pytest.mark.parametrize("rows", [-1.0, -0.3, 0.0, 0.3])
-def test_a_shift_of_less_than_a_row_or_the_other_way_is_detected(adequate, plain, rows):
-    check_shift(adequate, plain, fitted(shifted(adequate, rows)), rows)
-
-
-def check_shift(adequate, plain, late, rows):
+@pytest.mark.parametrize("rows", [1.0, -1.0, -0.3, 0.3])
+def test_a_shift_is_detected_and_costs_nothing(adequate, plain, rows):
+    late = fitted(shifted(adequate, rows))
     lateness, error = rows_late(late, adequate)
     before, _ = rows_late(plain, adequate)
     # the simulated actuator holds its command without any delay, so the clock is right
@@ -183,6 +170,7 @@ def test_a_shift_that_raises_the_error_on_unseen_records_is_held_at_none(adequat
     assert back.record_shift[place] == held.model.record_shift[place]
 
 
+@pytest.mark.slow
 def test_beside_a_gain_a_late_command_is_compared_with_a_dead_time(tmp_path):
     """In the place of a shift at its bound a dead time is tried, of an effect that is not there."""
     experiment = td.load_experiment(write_simulated(tmp_path / "late", "actuation_delay"))

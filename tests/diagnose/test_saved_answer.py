@@ -6,13 +6,11 @@ from dataclasses import replace
 
 import pytest
 from diagnose.simulated_cases import FEW
-from effects.along import axis_of
 from measurement.rod_example import PAIR, rows
 
 import teleopdesign as td
 from teleopdesign import EFFECTS, ExperimentError, Model, Value
 from teleopdesign.base.files import write_json
-from teleopdesign.blocks import CONTACT, Body
 from teleopdesign.cli import main
 from teleopdesign.diagnose.answer import answer, load_answer, write_answer
 from teleopdesign.diagnose.model_data import model_data, model_from
@@ -174,40 +172,6 @@ def test_a_modelled_environment_comes_back(tmp_path):
     write_json(tmp_path / "older.json", older)
     assert_same(load_answer(tmp_path / "older.json", experiment=experiment).model, model)
     assert load_answer(tmp_path / "older.json").model.body("environment").axis == "revolute"
-
-
-@pytest.mark.parametrize("name", sorted(EFFECTS))
-def test_any_body_comes_back_even_where_its_effects_are_absent(name):
-    body = Body(axis_of(name), {"inertia": Value(0.2)})
-    needs = [name]
-    while needs[0] in EFFECTS and EFFECTS[needs[0]].needs:
-        needs = [*sorted(EFFECTS[needs[0]].needs), *needs]
-    for effect in dict.fromkeys(needs):
-        body = body.with_effect(EFFECTS.get(effect, CONTACT))
-    model = Model({"device": body})
-    data = json.loads(json.dumps(model_data(model), allow_nan=False))
-    assert_same(model_from(data, EFFECTS, "models"), model)
-
-
-MISTAKES = {
-    "no JSON": ("not json", "line 1: no JSON"),
-    "no text": (b"\xff\xfe\x00", "not UTF-8 text"),
-    "an empty table": ("{}", 'no key "verdict", expected an answer of `teleopdesign diagnose'),
-    "a list": ("[]", "found a list, expected an answer"),
-    "NaN": ('{"verdict": NaN}', "found NaN, expected a finite number or null"),
-    "nested": ("[" * 100_000, "brackets nested too deeply"),
-    "a long number": ("9" * 5000, "no JSON: Exceeds the limit"),
-}
-
-
-@pytest.mark.parametrize("mistake", MISTAKES)
-def test_a_file_that_is_no_answer_is_one_line(mistake, tmp_path):
-    text, message = MISTAKES[mistake]
-    file = tmp_path / "answer.json"
-    file.write_bytes(text if isinstance(text, bytes) else text.encode())
-    with pytest.raises(ExperimentError, match=message) as caught:
-        load_answer(file)
-    assert str(caught.value).startswith(f"{file}: ") and "\n" not in str(caught.value)
 
 
 KEYS = {

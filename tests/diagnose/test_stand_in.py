@@ -7,7 +7,6 @@ from diagnose.made_records import write_made
 import teleopdesign as td
 from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.climb import stands_in_for_values
-from teleopdesign.diagnose.conclusion import estimable_on_all
 from teleopdesign.diagnose.fit import estimate
 from teleopdesign.diagnose.noise_floor import noise_floor
 from teleopdesign.diagnose.rung import Rung
@@ -70,13 +69,6 @@ def test_an_effect_that_all_records_do_not_ask_for_is_set_aside(tmp_path):
     _, _, none = judge_drag(recorded)
     assert none is not None and none.candidate.key == ("quadratic_drag", "device")
     assert "the fit records do not determine its values" in none.reason
-
-
-def test_an_experiment_without_a_check_record_has_nothing_to_hold_an_effect_against(tmp_path):
-    prepared = prepare(experiment(tmp_path, drag=0.0, speeds=(0.3,)))
-    assert estimable_on_all(prepared) is not None
-    alone = type(prepared)(prepared.experiment, prepared.bandwidth, prepared.of("fit"))
-    assert estimable_on_all(alone) is None
 
 
 @pytest.mark.slow

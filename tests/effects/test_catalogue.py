@@ -195,8 +195,3 @@ def test_the_catalogue_is_loaded_without_numba():
     code = "import sys, teleopdesign.effects; print('numba' in sys.modules)"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert out.stdout.strip() == "False"
-
-
-def test_no_ripple_turns_the_force_of_an_actuator_round():
-    amplitude = EFFECTS["torque_ripple"].parameters["amplitude"]
-    assert (amplitude.lower, amplitude.upper) == (-1.0, 1.0)

@@ -23,7 +23,6 @@ from teleopdesign.effects import (
     EFFECTS,
 )
 from teleopdesign.realise.along_motion import residual_along
-from teleopdesign.realise.stages_along import RECORD_SHIFT
 
 S = sp.Symbol("s")
 
@@ -58,17 +57,6 @@ def test_an_effect_at_its_absent_values_changes_nothing_along_a_motion(name):
     np.testing.assert_allclose(there, without, rtol=0, atol=1e-13 * np.abs(without).max())
     full = residual_along(body_of(*around, name), motion).residual.value
     assert np.abs(full - without).max() > 1e-3 * np.abs(without).max(), "at typical values it shows"
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_no_parameter_moves_a_force_in_which_its_derivative_is_declared_zero(name):
-    x, u, f = signals()
-    motion = motion_along(encoded(x), u, f, resolution=1e-6)
-    body = body_of(*dict.fromkeys(("coulomb", "viscous", *with_needs(name), name)))
-    along = residual_along(body, motion, (*body.parameters, RECORD_SHIFT))
-    for traced in (along.residual, along.friction, along.acting, along.moving):
-        still = np.setdiff1d(np.arange(len(traced.tangent)), traced.moving_rows)
-        assert not traced.tangent[still].any()
 
 
 def in_time(name):
@@ -111,7 +99,7 @@ def test_a_linear_effect_superposes(name, a, b):
     np.testing.assert_allclose(both, apart, rtol=0, atol=1e-9 * size)
 
 
-@pytest.mark.parametrize("frequency", [2.0, 7.0, 15.0])
+@pytest.mark.parametrize("frequency", [2.0, 15.0])
 @pytest.mark.parametrize("name", [n for n in NAMES if EFFECTS[n].linear])
 def test_the_linear_form_is_the_law_along_a_sine(name, frequency):
     """Residual along x = sin(wt), command = sin(wt): G u - (m s^2 + Z) x at s = jw."""

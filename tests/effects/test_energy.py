@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from math import inf
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from effects.along import KNOWN, NAMES, body_of, motion_along, typical, with_nee
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import teleopdesign.effects as folder
 from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value
 from teleopdesign.effects import EFFECTS, SIGNALS, Effect, load_effect
@@ -63,12 +61,6 @@ def is_conservative(effect):
     rest = sp.expand(law - inertia * SIGNALS["acceleration"])
     used = rest.free_symbols & set(SIGNALS.values())
     return used <= {SIGNALS["position"]} and not inertia.free_symbols & set(SIGNALS.values())
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_every_file_of_the_catalogue_says_what_it_does_with_energy(name):
-    text = (Path(folder.__file__).parent / f"{name}.py").read_text()
-    assert f'energy="{EFFECTS[name].energy}"' in text
 
 
 @pytest.mark.parametrize("name", declaring("dissipates", STATIC))

@@ -171,13 +171,6 @@ def test_noise_that_swings_a_lightly_damped_tip_is_led_out_of_it(monkeypatch):
     assert relative(residual_along(wrong, motion), motion) > 3 * led
 
 
-def test_the_direction_of_motion_is_known_within_a_few_steps_of_every_reversal():
-    motion = simulated("coulomb")
-    moving = np.abs(motion.velocity) > 0.02  # m/s; 20 steps a sample
-    assert moving.mean() > 0.3
-    assert np.mean(motion.direction[moving] == np.sign(motion.velocity[moving])) > 0.99
-
-
 PARAMETERS = [(name, p) for name in NAMES for p in EFFECTS[name].parameters]
 
 

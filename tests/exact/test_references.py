@@ -56,14 +56,6 @@ def test_kinks_between_steps_cost_no_more_than_the_docs_say(name):
     check(*KINKED[name])
 
 
-@pytest.mark.parametrize("name", [n for n in SUITE if n != "sampled limit cycle"][:2])
-def test_half_the_step_has_less_of_the_error(name):
-    """At kinks the order is two and an error depends on where in the step they fall."""
-    coarse, fine = (errors(SUITE[name], step=step) for step in (1e-4, 2.5e-5))
-    for column, error in fine.items():
-        assert error < 0.5 * coarse[column] + 1e-10, column
-
-
 def test_a_late_signal_that_jumps_at_the_start_comes_neither_early_nor_as_a_ramp():
     """It came as a ramp over the step before: half a step early, an error of first order."""
     late = LateSpring(delay=3e-3)

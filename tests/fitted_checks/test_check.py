@@ -14,7 +14,6 @@ from teleopdesign import Model, example, load_experiment
 from teleopdesign.cli import main
 from teleopdesign.effects import catalogue
 from teleopdesign.fitted_checks import check_experiment
-from teleopdesign.measurement.experiment import excerpt
 from teleopdesign.measurement.prepare import prepare
 
 #: effects that stand for each way of being seen; all of them take longer
@@ -240,15 +239,6 @@ def test_what_a_record_can_show_is_not_asked_while_signs_disagree(rod):
 def test_a_body_that_never_moves_is_reported_as_at_rest(rod):
     findings = check_experiment(changed(rod, "position", np.zeros_like))
     assert "device never moves" in findings[-1].sentence
-
-
-def test_a_long_record_is_judged_on_windows_of_itself(rod):
-    short = excerpt(rod, most=16_000)
-    assert sum(s.stop - s.start for r in short.records for s in r.segments) == 16_000
-    assert short.records[0].segments[0].start == 0
-    assert short.records[0].segments[-1].stop == 12_000
-    assert short.records[0].signals is rod.records[0].signals
-    assert excerpt(rod) is rod
 
 
 def test_the_command_prints_findings_and_writes_them(short_rod, tmp_path, capsys):

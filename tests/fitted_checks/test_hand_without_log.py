@@ -1,6 +1,7 @@
 """A hand that is not logged makes the force of a virtual wall look late, or its sign look wrong."""
 
 import numpy as np
+import pytest
 
 import teleopdesign as td
 from teleopdesign.fitted_checks import check_experiment
@@ -46,6 +47,7 @@ def test_a_sign_that_seems_wrong_may_be_that_of_a_hand():
     assert "A hand that moves the device and is not logged looks the same" in sign.sentence
 
 
+@pytest.mark.slow
 def test_friction_that_the_model_lacks_is_no_delay_of_a_log():
     """A Stribeck peak after each reversal looks like a position that lags the forces."""
     t = 1e-3 * np.arange(8000)

@@ -62,20 +62,6 @@ def test_a_controller_in_discrete_time_is_in_the_loop_as_it_samples_and_holds():
     assert np.abs(response.values()).min() > 0 and response.left_out == {"haptic interface": ()}
 
 
-def test_the_delay_margin_of_a_sampled_loop_is_that_of_the_continuous_one_less_its_samples():
-    """A low-pass stepped for a held input lags half a sample, its own hold another half; the force
-    passes straight through, so that whole samples of it count.
-    """
-    period, tau = 1e-4, 1 / (2 * np.pi * 20.0)
-    plain = control.tf([5.0], [tau, 1.0])
-    diagrams = [
-        haptic_interface(body(0.15), hand=body(0.5), force_feedback=from_control(system))
-        for system in (plain, control.sample_system(plain, period))
-    ]
-    continuous, sampled = (delay_margin(loop_gain(d)) for d in diagrams)
-    assert sampled == pytest.approx(np.floor(continuous / period - 1) * period, rel=1e-6)
-
-
 @pytest.mark.parametrize("law", ["dahl", "coulomb"])
 def test_a_law_without_linear_form_has_no_loop_gain_of_zero(law):
     values = {"level": 0.4} | ({"stiffness": 1e4} if law == "dahl" else {})

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from devices import FEEDBACK, body
 
-from teleopdesign.diagrams import four_cases, haptic_interface, world_haptics_2005
+from teleopdesign.diagrams import haptic_interface
 from teleopdesign.frequency import bode, measured_response
 
 HAND = body(0.2, viscous__damping=4.0, spring__stiffness=300.0)
@@ -36,13 +36,3 @@ def test_measured_phase_is_drawn_on_the_turn_of_the_model(model):
     line, points = figure.axes[1].lines
     np.testing.assert_allclose(line.get_ydata(), points.get_ydata(), atol=1e-6)
     plt.close(figure)
-
-
-def test_a_response_that_is_zero_says_so_and_has_no_decibels():
-    cases = bode(four_cases(world_haptics_2005()))  # its only impedance is ideal friction
-    assert all(cases.is_zero(c) for c in ("none", "MBC", "FF", "hybrid"))
-    assert "MBC: zero at every frequency, left out: Z_M.coulomb" in repr(cases)
-    figure = cases.plot()
-    assert all(len(line.get_xdata()) == 0 for axis in figure.axes for line in axis.lines)
-    names = [t.get_text() for t in figure.legends[0].get_texts()]
-    assert len(names) == 4 and all(n.endswith("(zero)") for n in names)

@@ -128,23 +128,6 @@ def test_where_others_sample_too_margins_are_called_approximate():
     assert loop_gain(mixed).sampled is None
 
 
-@pytest.mark.slow
-def test_a_window_of_dead_times_about_a_whole_sample_is_detected():
-    """Late by 3/8 of a sample; it grows from 0.623 to 0.65 of a sample more, then at 0.875 again.
-
-    Drawn by the attack; the crossing beyond the window was called the margin.
-    """
-    numbers = [tuple(Fraction(repr(c)) for c in p)
-               for p in ([1.0, 3.09, 6.569, 8.031], [5.548, 3.124, 0.395])]  # fmt: skip
-    period = Fraction("0.21")
-    one = ((Fraction(1),), (Fraction(1),))
-    loop = SampledLoop(period, one, numbers[0], ((period * 3 / 8, numbers[1]),))
-    margin = delay_margin(replace(loop_gain(interface(gain(0.3))), sampled=loop))
-    assert margin == pytest.approx(0.130849, rel=1e-5)
-    for share, grows in ((0.999, False), (1.001, True)):
-        assert loop.with_delay(share * margin).grows() == grows
-
-
 @pytest.mark.parametrize("hidden", [(), (0.7,), (1.5,)])
 def test_a_law_of_two_axes_hides_what_neither_of_its_outputs_shows(hidden):
     """States of two entries each, integrators among them, count once; margins with 0.7 hidden."""

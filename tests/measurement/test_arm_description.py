@@ -83,20 +83,13 @@ def test_how_inertial_parameters_are_treated_is_kept(tmp_path, estimate):
         ('joint = "slide"', 'joint = "wrist"', "found joints wrist, wrist, expected those of"),
         ("axis = [0, 3, -4]", "axis = [0, 0, 0]", "e.toml: model.arm.links[1].axis: found 0, 0, 0"),
         ("axis = [0, 3, -4]", "axis = [0, 3]", "axis: found a list, expected 3 finite numbers"),
-        ("axis = [0, 3, -4]", 'axis = "abc"', "expected 3 finite numbers"),
         ("axis = [0, 3, -4]", "axis = [0, true, 1]", "expected 3 finite numbers"),
         ("axis = [0, 3, -4]", 'axis = [0, "3", 1]', "expected 3 finite numbers"),
         ("axis = [0, 3, -4]", "axis = [0, nan, 1]", "expected 3 finite numbers"),
-        ("axis = [0, 3, -4]", "axis = [0, -inf, 1]", "expected 3 finite numbers"),
         ("22, 23, 33]", "22, 23]", "inertia: found a list, expected 6 finite numbers"),
         ("mass = 2", "mass = -0.5", "mass: found -0.5, expected 0 or more"),
         ("value = 250", "value = -250", "motor_inertia: found -0.25, expected 0 or more"),
         ('kind = "prismatic"', 'kind = "slider"', 'kind: found "slider", expected revolute'),
-        (
-            "[model.arm]",
-            '[model.arm]\nestimate = "as give"',
-            'found "as give", expected base parameters, as',
-        ),
         ("[model.arm]", '[model.arm]\nestimate = "as give"', 'did you mean "as given"?'),
         (
             "[model.arm]",
@@ -114,7 +107,6 @@ def test_how_inertial_parameters_are_treated_is_kept(tmp_path, estimate):
             "[model.arm.joints.wrist]\ninertia = 1\n",
             'unknown key "inertia"',
         ),
-        ("mass = 2", "weight = 2", 'unknown key "weight"'),
         ("[model.arm]\n", "[model.device]\n[model.arm]\n", 'unknown key "device"'),
     ],
 )

@@ -75,15 +75,6 @@ def test_two_bodies_have_separate_axes_and_units(pair):
     assert experiment.records[0].sample_time == 0.01
 
 
-def test_channels_of_one_body_may_carry_its_name(rod, edit):
-    plain = load_experiment(rod).records[0]
-    edit(rod / "experiment.toml", "position = {", '"device.position" = {')
-    named = load_experiment(rod).records[0]
-    np.testing.assert_array_equal(
-        named.signals["device.position"], plain.signals["device.position"]
-    )
-
-
 def test_quotes_around_a_channel_with_a_point_may_be_left_out(pair):
     quoted = load_experiment(pair).channels
     file = pair / "experiment.toml"
@@ -100,10 +91,6 @@ def test_a_sample_rate_stands_for_the_time(rod, edit, place):
     edit(file, place, place + rate if place == "[channels]\n" else rate + place)
     counted = load_experiment(rod).records[0]
     np.testing.assert_allclose(counted.time, timed.time, atol=1e-12)
-
-
-def test_the_path_of_the_toml_itself_will_do(rod):
-    assert load_experiment(rod / "experiment.toml").folder == rod
 
 
 def test_an_experiment_can_be_loaded_from_inside_its_folder(rod, monkeypatch):

@@ -1,6 +1,5 @@
 """Every mistake in a record file is one line: file, column, row, what was found and expected."""
 
-import gzip
 import sys
 
 import numpy as np
@@ -99,13 +98,6 @@ def test_a_file_that_is_not_what_its_name_says_is_named(rod, edit, ending, conte
     (rod / f"fit{ending}").write_bytes(content)
     edit(rod / "experiment.toml", "fit.csv", f"fit{ending}")
     assert_says(error_of(rod), f"^rod/fit{ending}: ")
-
-
-def test_a_file_that_was_cut_off_is_named(rod, edit):
-    packed = gzip.compress((rod / "fit.csv").read_bytes())
-    (rod / "fit.csv.gz").write_bytes(packed[: len(packed) // 2])
-    edit(rod / "experiment.toml", "fit.csv", "fit.csv.gz")
-    assert_says(error_of(rod), "^rod/fit.csv.gz: cannot be read")
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig"])

@@ -180,12 +180,6 @@ POOR = {
         swing(8.0, amplitude=0.0015, frequency=3.5, middle=0.04),
         wider=4.0,
     ),
-    "one amplitude": Poor(
-        ("stribeck", "position_dependent_friction"),
-        (dict(extra_static_level=0.15, stribeck_velocity=0.01),),
-        swing(10.0, amplitude=0.002, frequency=3.0),
-        swing(8.0, amplitude=0.002, frequency=3.5),
-    ),
     "no scale of force": Poor(
         ("added_inertia", "actuator_gain"),
         (dict(inertia=0.2), dict(gain=0.8)),
@@ -193,16 +187,4 @@ POOR = {
         swing(8.0, amplitude=0.008, frequency=3.5) + swing(8.0, amplitude=0.002, frequency=6.1),
         fixed_inertia=True,
     ),
-    "one stroke": Poor(
-        ("spring", "hardening_spring"),
-        (dict(spring=0.3), dict(hardening=75.0)),
-        shuttle(10.0, speed=0.2, reach=0.07),
-        shuttle(8.0, speed=0.2, reach=0.07),
-        wider=2.0,
-    ),
 }
-#: effects that the tests choose from, so that they stay quick
-KNOWN = (
-    "coulomb viscous stribeck quadratic_drag bias coulomb_asymmetry spring hardening_spring "
-    "position_dependent_friction actuation_delay actuator_lag added_inertia actuator_gain"
-).split()

@@ -44,21 +44,6 @@ def test_every_proof_has_certificates_that_the_checker_accepts(certificates):
         assert certificate.check(), name
 
 
-def test_the_statement_is_made_from_the_content_and_holds_its_values(certificates):
-    """An edited title changes nothing that is called proved; an edited value changes the words."""
-    for certificate in certificates.values():
-        edited = {**certificate.content, "title": "passive within 500 N, whatever is done"}
-        assert resealed(edited).check() == certificate.check()
-        assert "500 N" not in resealed(edited).check()
-    content = certificates["bounded 0"].content
-    assert "f_D = 9/10" in resealed(content).check()
-    content = {**content, "example": {**content["example"], "f_D": "1/5"}}
-    assert "f_D = 1/5" in resealed(content).check()
-    content = {**content, "example": {**content["example"], "f_D": "500"}}
-    with pytest.raises(ModelError, match="example: enough does not hold"):
-        resealed(content).check()
-
-
 @pytest.mark.slow
 def test_the_checker_runs_alone(certificates, tmp_path):
     """Copied away from the package, in a fresh interpreter without it on the path."""
@@ -91,10 +76,7 @@ def test_a_certificate_survives_its_file(certificates, tmp_path):
     "name",
     [
         "lugre 0",
-        *(
-            pytest.param(n, marks=pytest.mark.slow)
-            for n in ("presliding 0", "coulomb 0", "quantised 0", "motor 0")
-        ),
+        *(pytest.param(n, marks=pytest.mark.slow) for n in ("quantised 0", "motor 0")),
     ],
 )
 def test_forged_proofs_are_refused_with_a_digest_that_fits(certificates, name):
@@ -175,28 +157,3 @@ def motions(tmp_path_factory):
         assert read_record(path).replay() > 0
         strokes[name] = json.loads(path.read_text())
     return strokes
-
-
-@pytest.mark.parametrize(
-    ("name", "key", "value"),
-    [
-        ("wave", "rate", "1e999999999"),
-        ("wave", "frequency", "9" * 100_000),
-        ("wave", "rate", 3),
-        ("wave", "impedance", [["__import__('os').system('true')"]]),
-        ("wave", "impedance", [["9**9**9**9"]]),
-        ("wave", "velocity", [[1e308, 1e308]]),
-        ("cycle", "rounds", 10**15),
-        ("cycle", "rounds", -1),
-        ("cycle", "rounds", "__import__('os')"),
-        ("cycle", "turning_points", [0.1] * 100_000),
-        ("cycle", "compensator", ["sys", "exit"]),
-        ("cycle", "kind", "__class__"),
-    ],
-)
-def test_a_spoilt_record_is_refused_in_one_line(motions, name, key, value, tmp_path):
-    path = tmp_path / "motion.json"
-    path.write_text(json.dumps({**motions[name], key: value}))
-    with pytest.raises(ModelError) as refused:
-        read_record(path)
-    assert "\n" not in str(refused.value) and len(str(refused.value)) < 400

@@ -17,7 +17,6 @@ from teleopdesign.diagrams import Control, Diagram, Junction, Moving
 from teleopdesign.effects import Effect, Parameter, State
 from teleopdesign.passivity import (
     absolutely_stable,
-    claim_over_intervals,
     damping_excess,
     impedance,
     passive,
@@ -30,25 +29,6 @@ from teleopdesign.passivity import (
 from teleopdesign.passivity.linear.family import family_at
 from teleopdesign.passivity.linear_diagrams import linear_claims
 from teleopdesign.realise.lti import S
-
-CHAIN, APART = [[0.0, 1.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 0.0]]
-COLUMN, ROW = np.array([[0.0], [0.0]]), np.array([[1.0, 0.0]])
-
-
-@pytest.mark.parametrize(
-    ("system", "status"),
-    [
-        (ct.ss(CHAIN, COLUMN, ROW, [[2.0]]), "unknown"),
-        (ct.ss(APART, COLUMN, ROW, [[2.0]]), "unknown"),
-        (ct.tf([2.0, 0.0, 0.0], [1.0, 0.0, 0.0]), "unknown"),
-        (ct.tf([2.0, 0.0], [1.0, 0.0]), "unknown"),
-        (ct.tf([2.0, 2.0], [1.0, 1.0]), "proved"),
-        (ct.ss(CHAIN, [[1.0], [0.0]], ROW, [[2.0]]), "unknown"),  # 2 + 1/s, and what drives 1/s
-    ],
-)
-def test_an_impedance_of_python_control_is_proved_only_where_its_states_decay(system, status):
-    assert positive_real(system).status == status
-
 
 #: (s + 2)/(s + 1) from rest, with a state that nothing shows
 GROWS, DECAYS = (
@@ -92,17 +72,6 @@ def loop(law, weight=-1):
         Control("C", made, "x", "y", "x"),
     )
     return Diagram("loop", parts, (Junction("u", {"y": weight}),), {"f": "force"}, ("x",))
-
-
-@pytest.mark.slow
-def test_a_mode_that_no_port_shows_and_that_grows_at_one_end_of_the_box_is_not_proved():
-    diagram = loop(UNSEEN)
-    claim = claim_over_intervals(diagram, {"C.unseen.a": (-2.0, 0.5)}, points=4)
-    assert claim.status == "unknown"
-    assert claim.worst["C.unseen.a"] > 0
-    assert "no port shows" in claim.how
-    claim = claim_over_intervals(diagram, {"C.unseen.a": (-2.0, -0.5)}, points=4)
-    assert claim.status == "proved"
 
 
 def test_weights_that_are_decimals_sum_up_as_they_are_written():

@@ -130,19 +130,8 @@ def test_there_is_no_evidence_beside_what_the_axis_does_not_show(name, claim):
         assert made.status == "evidence", made
 
 
-@pytest.mark.parametrize(("r1", "r2"), [(1, 4), (2, 2)])
-@pytest.mark.parametrize("rest", [0, pytest.param(10 / (S + 1), marks=pytest.mark.slow)])
-def test_late_dampers_stay_within_those_of_the_ports_far_out(r1, r2, rest):
-    """Dampers that are ten times as strong at low frequency bound no late coupling beyond."""
-    for forth, back in ((1, 1), (2, 2), (4, 2), (1, 4), (3, 1)):
-        system = two_port([[r1 + rest, forth * E_T], [back * E_T, r2 + rest]])
-        if r1 * r2 != forth * back:  # at equality rounding may decide
-            assert bool(absolutely_stable(system).holds) == (r1 * r2 > forth * back)
-        assert not passive(system).holds or 2 * (r1 * r2) ** 0.5 >= forth + back
-
-
 TIME = "T_1.delay.time"
-DAMPING, STIFFNESS, MASS = 5.0, 20.0, 0.1
+DAMPING, MASS = 5.0, 0.1
 
 
 def limit(stiffness):

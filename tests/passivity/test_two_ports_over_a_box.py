@@ -5,20 +5,8 @@ Springs, dampers and masses between two ports are passive. With forces passed on
 whose product is c r^2, are stable so up to c = 1 (Llewellyn).
 """
 
-from fractions import Fraction
-
 import pytest
-import sympy as sp
-from passivity.test_certificates_over_a_box import HIGH, LOW, is_accepted, made
-
-from teleopdesign.passivity.growing_mode import growing_mode
-from teleopdesign.passivity.linear.conditions import is_shown
-from teleopdesign.passivity.linear.family import Family, family_of_matrix
-from teleopdesign.passivity.linear.matrices import close, dampers
-from teleopdesign.passivity.linear.signs import Signs
-from teleopdesign.realise.lti import S
-
-V = sp.Symbol("v", real=True)
+from passivity.test_certificates_over_a_box import is_accepted, made
 
 
 def between(damping, stiffness="5", first="1", second="2", forth="1", back="1"):
@@ -69,77 +57,9 @@ def held(case):
     return {"numerators": numerators, "denominator": denominator}, passive, stable
 
 
-RING = sp.ring((S, V), sp.QQ)[0]
-
-
-def family(numerators, denominator):
-    """The family of N/d, texts in s and v, over the interval of v; no further modes."""
-    names = {"s": S, "v": V}
-    n = [[RING.from_expr(sp.expand(sp.sympify(e, locals=names))) for e in r] for r in numerators]
-    d = RING.from_expr(sp.expand(sp.sympify(denominator, locals=names)))
-    return Family(n, d, close(n, d, dampers(n, d)), names=("v",), ends=((LOW, HIGH),))
-
-
-def is_shown_over(made, claim, margin=Fraction(0)):
-    return is_shown(Signs(made.ends), made, claim, margin)
-
-
-@pytest.mark.parametrize("case", CASES)
-def test_a_search_shows_a_two_port_passive_or_stable_only_where_it_is(case):
-    _, passive, stable = held(case)
-    made = family(*CASES[case][0])
-    assert is_shown_over(made, "passive") == passive
-    assert is_shown_over(made, "absolutely stable") == stable
-
-
 # of the one left out the checker looks at every part of the box before it refuses
 @pytest.mark.parametrize("case", [c for c in CASES if c != "link that drives"])
 def test_a_certificate_of_a_two_port_is_accepted_only_where_it_is_true(case):
     fields, passive, stable = held(case)
     assert is_accepted(made("positive real over a box", scale="1", **fields)) == passive
     assert is_accepted(made("absolute stability over a box", **fields)) == stable
-
-
-BAND = 2 * S / (S**2 + 2 * S + 100)
-NARROW = S / 10 / (S**2 + S / 10 + 100)
-LITTLE = sp.Rational(1, 10**6)
-TRANSFERS = {
-    # times nine, of two resistances of three; how much the product exceeds what is allowed
-    "at every frequency": (sp.S(1) + LITTLE, True),
-    "in a band": (BAND * (1 + LITTLE), True),
-    "in a narrow gap": (NARROW * (1 + LITTLE / 1000), True),
-    "turned by its phase": ((1 - S) / (1 + S) * (1 + LITTLE), True),
-    "exactly as much": (BAND, False),
-    "a little less": (NARROW * (1 - LITTLE), False),
-}
-
-
-def exact(number):
-    assert number >= 0
-    return sp.Rational(number.numerator, number.denominator)
-
-
-@pytest.mark.parametrize("case", TRANSFERS)
-@pytest.mark.parametrize("turned", [False, True])
-def test_terminations_between_which_the_motion_grows_are_detected_however_little_is_too_much(
-    case, turned
-):
-    transfer, grows = TRANSFERS[case]
-    above, below = (9 * transfer, sp.S(1)) if not turned else (sp.S(1), 9 * transfer)
-    z = sp.ImmutableMatrix([[3, above], [below, 3]])
-    mode = growing_mode(family_of_matrix(sp.ImmutableMatrix(z)))
-    assert (mode is not None) == grows
-    for candidate in filter(None, [mode]):
-        assert grows and candidate.is_confirmed() and candidate.rate > 0 and candidate.energy > 0
-        # both terminations take energy, and with them the loop is singular where it grows
-        s = exact(candidate.rate) + sp.I * exact(candidate.frequency)
-        first, second = (exact(t.damping) + exact(t.inertia) * s + exact(t.stiffness) / s
-                         for t in candidate.terminations)  # fmt: skip
-        entries = z.subs(S, s)
-        products = (
-            (entries[0, 0] + first) * (entries[1, 1] + second),
-            entries[0, 1] * entries[1, 0],
-        )
-        passing, back = (sp.N(product, 60) for product in products)
-        if not any(t.clamped for t in candidate.terminations):
-            assert abs(passing - back) < 1e-40 * abs(passing)

@@ -5,63 +5,11 @@ import pytest
 from scipy.optimize import lsq_linear
 from scipy.signal import sosfilt
 
-from teleopdesign.measurement.zero_phase import gains, response, sections, zero_phase
-from teleopdesign.realise.friction_along import STEPS, balance_within_bounds
-from teleopdesign.realise.traced import Traced, constant
+from teleopdesign.measurement.zero_phase import sections, zero_phase
+from teleopdesign.realise.friction_along import balance_within_bounds
+from teleopdesign.realise.traced import constant
 
-SAMPLE_TIME, BANDWIDTH = 2e-3, 60.0
-
-
-def step_by_step(needed, low, high):
-    """The same accelerated projected steps with every sample filtered in each: slow, and plain."""
-    rows = [a.rows() for a in (needed, low, high)]
-    is_open = (rows[1] != rows[2]).any(axis=0)
-    length = np.ones(len(is_open))
-    of_filter = response(BANDWIDTH, SAMPLE_TIME)
-    length[is_open] = 1.0 / gains(np.flatnonzero(is_open), len(is_open), of_filter)
-    ahead, momentum = np.where(is_open, rows[0], rows[1]), 1.0
-    friction = ahead
-    for turn in range(STEPS + 1):
-        carried = 0.0
-        trial = ahead
-        if turn > 0:
-            left = np.where(is_open, rows[0] - ahead, rows[0] - rows[1])
-            trial = ahead + length * zero_phase(left, BANDWIDTH, SAMPLE_TIME)
-            later = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
-            carried, momentum = (momentum - 1.0) / later, later
-        now = np.where(
-            trial[0] >= rows[2][0], rows[2], np.where(trial[0] <= rows[1][0], rows[1], trial)
-        )
-        now = np.where(is_open, now, rows[1])
-        ahead = now + carried * (now - friction) if turn > 0 else now
-        friction = now
-    return friction
-
-
-def bounded(seed, open_share, tangents=3, n=2_400):
-    rng = np.random.default_rng(seed)
-    time = SAMPLE_TIME * np.arange(n)
-    needed = Traced(
-        np.sin(2 * np.pi * 1.3 * time) + 0.2 * rng.normal(size=n), rng.normal(size=(tangents, n))
-    )
-    level = Traced(0.6 + 0.1 * np.cos(time), rng.normal(size=(tangents, n)))
-    is_open = np.zeros(n, dtype=bool)
-    for begin in rng.integers(0, n, 12):
-        is_open[begin : begin + int(open_share * n / 12)] = True
-    ahead = np.sin(2 * np.pi * 0.7 * time) > 0.0
-    low = level.times(np.where(ahead & ~is_open, 1.0, -1.0))
-    high = level.times(np.where(ahead | is_open, 1.0, -1.0))
-    return needed, low, high
-
-
-@pytest.mark.parametrize(
-    ("seed", "open_share", "n"), [(1, 0.02, 2_400), (2, 0.3, 2_400), (1, 1.5, 2_400)]
-)
-def test_only_what_changes_is_filtered_and_nothing_else_comes_out(seed, open_share, n):
-    signals = bounded(seed, open_share, n=n)
-    friction = balance_within_bounds(*signals, bandwidth=BANDWIDTH, sample_time=SAMPLE_TIME)
-    # rounding, through eight turns of a filter that amplifies nothing
-    assert friction.rows() == pytest.approx(step_by_step(*signals), abs=1e-10)
+SAMPLE_TIME = 2e-3
 
 
 @pytest.mark.parametrize("rows_of_a_turn", [1, 2])

@@ -1,8 +1,9 @@
-"""Exported difference equations, compiled, are the block as the simulation steps it."""
+"""A block along recorded rows, and its export compiled, is the block as the simulation steps it."""
 
 import ctypes
 import shutil
 import subprocess
+from functools import cache
 
 import control
 import numpy as np
@@ -12,6 +13,7 @@ from devices import body
 from teleopdesign.controllers import CONTROLLERS, Controller, Stage, controller, from_control
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.realise.c_header import as_c_header
+from teleopdesign.realise.controller_along import controller_along
 from teleopdesign.simulate import Sampling, Trajectory, simulate
 
 PERIOD = 1e-3
@@ -33,6 +35,7 @@ def probe(name):
 
 
 BLOCKS = {n: probe(n) for n in CONTROLLERS if CONTROLLERS[n].takes != "force"} | {
+    "delay": controller("delay", {"time": 2.4e-3}),
     "transfer function": from_control(NOTCH),
     "state space": from_control(SECOND),
     "discrete": from_control(control.sample_system(NOTCH, PERIOD)),
@@ -57,26 +60,47 @@ def library(text, folder):
     return ctypes.CDLL(str(target))
 
 
+@pytest.fixture(scope="module")
+def simulated():
+    """simulated(name): positions, velocities and outputs of a block, at 100 samples from rest."""
+
+    @cache
+    def run(name):
+        made = simulate(
+            haptic_interface(body(0.1), cancellation=BLOCKS[name]),
+            duration=0.1,
+            motion={"L": MOTION},
+            computer=Sampling(period=PERIOD),
+            step=PERIOD,
+            jit=False,
+        )
+        x = np.ascontiguousarray(made["L"].values)
+        return x, np.diff(x, prepend=x[0]) / PERIOD, made["R_MBC"].values
+
+    return run
+
+
+SOME = ("dahl", "low_pass", "delay", "velocity_schedule")
+
+
+@pytest.mark.parametrize(
+    "name", [n if n in SOME else pytest.param(n, marks=pytest.mark.slow) for n in BLOCKS]
+)
+def test_a_block_along_the_readings_is_that_of_the_simulation(name, simulated):
+    """1e-9 of the range, here and below: rounding, and order of sums."""
+    x, v, expected = simulated(name)
+    out = controller_along(BLOCKS[name], input=x, velocity=v, travel_rate=v, period=PERIOD)
+    assert np.abs(out - expected).max() <= 1e-9 * max(np.ptp(expected), 1e-12)
+
+
 @pytest.mark.slow
 @compiled
 @pytest.mark.parametrize("name", BLOCKS)
-def test_the_compiled_export_gives_the_output_of_the_block(name, tmp_path):
-    """Along a motion from rest, 100 samples; 1e-9 of the range: rounding, and order of sums."""
-    block = BLOCKS[name]
-    simulation = simulate(
-        haptic_interface(body(0.1), cancellation=block),
-        duration=0.1,
-        motion={"L": MOTION},
-        computer=Sampling(period=PERIOD),
-        step=PERIOD,
-        jit=False,
-    )
-    x = np.ascontiguousarray(simulation["L"].values)
-    v = np.diff(x, prepend=x[0]) / PERIOD
+def test_the_compiled_export_gives_the_output_of_the_block(name, simulated, tmp_path):
+    x, v, expected = simulated(name)
     out = np.zeros_like(x)
     pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in (x, v, out)]
-    library(as_c_header(block, period=PERIOD, name="law"), tmp_path).run(len(x), *pointers)
-    expected = simulation["R_MBC"].values
+    library(as_c_header(BLOCKS[name], period=PERIOD, name="law"), tmp_path).run(len(x), *pointers)
     assert np.abs(out - expected).max() <= 1e-9 * max(np.ptp(expected), 1e-12)
 
 

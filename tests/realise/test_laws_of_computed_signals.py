@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from devices import body
 
-from teleopdesign.base.errors import ModelError
 from teleopdesign.controllers import controller
-from teleopdesign.diagrams import Control, Junction, haptic_interface
+from teleopdesign.diagrams import Control, haptic_interface
 from teleopdesign.simulate import Sampling, simulate, sine
 
 LIMIT = controller("karnopp", {"level": 0.3, "band": 10.0})
@@ -41,15 +40,3 @@ def test_two_blocks_are_the_series_of_their_laws(computer):
     expected = moved(replace(series, blocks=blocks), computer)
     assert np.abs(expected).max() == pytest.approx(0.3)
     np.testing.assert_allclose(moved(in_two_blocks(), computer), expected, rtol=0, atol=1e-15)
-
-
-def test_a_law_of_the_output_of_that_law_is_refused_in_one_line():
-    made = in_two_blocks()
-    loop = replace(
-        made,
-        blocks=tuple(replace(b, input="sum") if b.name == "C" else b for b in made.blocks),
-        junctions=(*made.junctions, Junction("sum", {"doubled": 1, "R_MBC": 0.5})),
-    )
-    with pytest.raises(ModelError, match="enters an equation other than linearly") as caught:
-        moved(loop, Sampling())
-    assert "\n" not in str(caught.value)

@@ -22,7 +22,7 @@ from teleopdesign.diagrams import (
     haptic_interface,
     position_symbol,
 )
-from teleopdesign.simulate import prepare, simulate
+from teleopdesign.simulate import simulate
 
 #: words that generated code, Python, sympy or the package might want for itself
 WORDS = (
@@ -168,14 +168,6 @@ def test_no_word_is_taken(before):
         simulation = run(renamed(diagram, names))
         for quantity in ("", "_velocity"):
             np.testing.assert_array_equal(simulation[names["L"] + quantity], known["L" + quantity])
-
-
-def test_diagrams_that_differ_by_names_alone_share_one_kernel():
-    diagram = DIAGRAMS["hybrid"]
-    names = {n: f"other_{n}" for n in (*diagram.signals, *(b.name for b in diagram.blocks))}
-    one, other = (prepare(d, duration=0.1, jit=False) for d in (diagram, renamed(diagram, names)))
-    assert one.program.loop is other.program.loop
-    assert other.program.layout.states[0] in {f"other_{n}" for n in one.program.layout.states}
 
 
 @pytest.mark.parametrize(

@@ -35,32 +35,6 @@ def test_the_residual_is_what_forces_leave_of_the_acceleration():
     assert moves.mean() > 0.9 and np.ptp(motion.direction) == 2
 
 
-def test_what_is_touched_takes_its_force_only_where_it_is_touched():
-    motion = recorded()
-    named = {"environment.stiffness": 500.0, "environment.damping": 0.0,
-             "environment.contact_position": 2e-3}  # fmt: skip
-    body = body_of("viscous", "environment", values=named)
-    free = residual_along(body_of("viscous"), motion).residual.value
-    force = free - residual_along(body, motion).residual.value
-    beyond = motion.position > 2e-3
-    assert 0.1 < beyond.mean() < 0.9
-    expected = np.where(beyond, 500.0 * (motion.position - 2e-3), 0.0)
-    np.testing.assert_allclose(force, expected, atol=1e-9)
-
-
-def test_friction_by_the_acting_force_counts_to_what_moves_the_body():
-    """Of an acting force u, mu abs(u) against the motion goes: u - mu abs(u) sgn(v) moves it."""
-    motion = recorded()
-    named = {"load_dependent_friction.coefficient": 0.2}
-    others = ("driving_difference", "extra_at_rest", "output_share")
-    named |= {f"load_dependent_friction.{n}": 0.0 for n in others}
-    along = residual_along(body_of("coulomb", "load_dependent_friction", values=named), motion)
-    moves = motion.direction != 0
-    lost = along.acting.value - along.moving.value
-    expected = 0.2 * np.abs(along.acting.value) * motion.direction
-    np.testing.assert_allclose(lost[moves], expected[moves], atol=1e-9)
-
-
 @pytest.fixture(scope="module")
 def two_masses():
     """A motor of 0.1 kg and a tip of 0.05 kg on 400 N/m, pushed at the motor and at the tip."""

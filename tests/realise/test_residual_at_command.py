@@ -12,7 +12,6 @@ from teleopdesign.effects import EFFECTS, Effect, Parameter
 from teleopdesign.measurement.motion import motion_of
 from teleopdesign.realise.along_motion import residual_along
 from teleopdesign.realise.residual_at_command import (
-    is_between,
     residual_at_command,
 )
 from teleopdesign.realise.traced import Traced
@@ -119,19 +118,6 @@ def test_samples_beyond_a_limit_are_blind(side):
         body_with(EFFECTS["actuator_saturation"], {"limit": 3.0}), motion
     )
     np.testing.assert_array_equal(command_error.blind, side * motion.command > 3.0)
-
-
-def test_without_a_law_between_nothing_is_changed():
-    motion = one_way()
-    body = Body("prismatic", {"inertia": Value(0.2), "coulomb.level": Value(1.0)},
-                (EFFECTS["coulomb"],))  # fmt: skip
-    before = residual_along(body, motion)
-    command_error = residual_at_command(body, motion)
-    assert not is_between(body) and not command_error.blind.any()
-    np.testing.assert_array_equal(command_error.residual, before.residual.value)
-    for name in PASSING:
-        effect = {**EFFECTS, **CHEATS}[name]
-        assert is_between(body_with(effect, PASSING[name])), name
 
 
 @pytest.mark.parametrize("side", [1, -1])

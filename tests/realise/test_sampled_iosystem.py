@@ -7,7 +7,7 @@ from devices import body
 from scipy.linalg import expm
 
 from teleopdesign.controllers import controller, from_control
-from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_interface
+from teleopdesign.diagrams import Control, Diagram, Moving, haptic_interface
 from teleopdesign.realise.iosystem import to_iosystem
 
 DT = 1e-3
@@ -32,31 +32,6 @@ def discrete_steps(system, forces, **options):
     return response, {name: response.outputs[i] for i, name in enumerate(system.output_labels)}
 
 
-def exact_steps(law, forces):
-    """The rod by its exact step for held forces, a discrete state space for its law; no package."""
-    rate = DAMPING / MASS
-    e = np.exp(-rate * DT)
-    a = np.array([[1.0, (1 - e) / rate], [0.0, e]])
-    b = np.array([(DT - (1 - e) / rate) / DAMPING, (1 - e) / DAMPING])
-    law = control.ss(law)
-    x, z, out = np.zeros(2), np.zeros(law.nstates), []
-    for force in forces:
-        u = float((law.C @ z + law.D[:, 0] * x[0]).item())
-        out.append(x[0])
-        z, x = law.A @ z + law.B[:, 0] * x[0], a @ x + b * (force + u)
-    return np.array(out)
-
-
-def test_it_is_the_exact_discrete_system_where_that_is_known():
-    """1e-9 of the range: order four at 0.1 ms, for a time constant of 50 ms."""
-    forces = np.random.default_rng(3).normal(size=120)
-    system = to_iosystem(rod(from_control(DISCRETE)), dt=DT)
-    assert system.dt == DT
-    _, signals = discrete_steps(system, forces)
-    expected = exact_steps(DISCRETE, forces)
-    assert np.abs(signals["x"] - expected).max() < 1e-9 * np.ptp(expected)
-
-
 def test_its_linearisation_has_the_poles_of_the_exact_loop():
     """Poles by differences, 1e-5; a state that is only remembered adds poles at zero."""
     system = to_iosystem(rod(from_control(DISCRETE)), dt=DT)
@@ -77,21 +52,6 @@ def test_parameters_are_its_params():
     )
     np.testing.assert_allclose(one, two, rtol=1e-12)
     assert abs(one[-1] / discrete_steps(system, forces)[1]["x"][-1] - 1) > 0.1
-
-
-def test_a_diagram_without_a_computer_has_its_bodies_sampled():
-    free = Diagram(
-        "free",
-        (Moving("M", body(MASS, viscous__damping=DAMPING), "x", "u", {"f": 1}, "f"),),
-        (Junction("u", {}),),
-        {"f": "force"},
-        measured=("x",),
-    )
-    forces = np.random.default_rng(3).normal(size=60)
-    _, signals = discrete_steps(to_iosystem(free, dt=DT), forces)
-    nothing = control.tf([0.0], [1.0], DT)
-    expected = exact_steps(nothing, forces)
-    assert np.abs(signals["x"] - expected).max() < 1e-9 * np.ptp(expected)
 
 
 @pytest.mark.parametrize("stiffness", [2e5, 2e7, 2e8])

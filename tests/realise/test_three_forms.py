@@ -3,14 +3,15 @@
 import control
 import numpy as np
 import pytest
-from devices import CANCELLATION, FEEDBACK, body
+from clock import in_time
+from devices import body
 from effects.along import KNOWN, axis_of
 
 from teleopdesign.base.errors import ModelError
 from teleopdesign.blocks import Body, Value
-from teleopdesign.diagrams import four_cases, haptic_interface
+from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import CONTACT_ROLES, EFFECTS
-from teleopdesign.frequency import bode, transfer_function
+from teleopdesign.frequency import transfer_function
 from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.simulated import without_absent
 from teleopdesign.simulate import simulate
@@ -95,14 +96,11 @@ def test_kernel_and_python_control_move_alike(names):
     fine = np.linspace(0, time[-1], 4001)  # it takes inputs as linear between these
     inputs = np.zeros((len(system.input_labels), len(fine)))
     inputs[system.input_labels.index("R_V")] = push(fine)
-    response = control.input_output_response(
-        system,
-        fine,
-        inputs,
-        t_eval=time,
-        solve_ivp_method="LSODA",
-        solve_ivp_kwargs={"rtol": 1e-9, "atol": 1e-12, "max_step": 1e-3},
-    )
+    options = {"rtol": 1e-9, "atol": 1e-12, "max_step": 1e-3}
+    with in_time(60):  # one second, where its rates are smooth enough
+        response = control.input_output_response(
+            system, fine, inputs, t_eval=time, solve_ivp_method="LSODA", solve_ivp_kwargs=options
+        )
     x = response.outputs[system.output_labels.index("L")]
     # 1e-5: inputs linear over 25 us leave 5e-8, LSODA at kinks of abs(v) some 1e-6. A touch falls
     # within a step of the kernel, 1e-4 s: half a step of the damper's first force, 2 N s/m at
@@ -135,47 +133,3 @@ def test_an_effect_at_zero_strength_changes_nothing(name):
     assert name not in [e.name for e in without_absent(with_it).effects]
     without = simulated(device(*needed), duration=0.02)["L"].values
     np.testing.assert_array_equal(simulated(with_it, duration=0.02)["L"].values, without)
-
-
-@pytest.mark.slow
-def test_kernel_and_python_control_agree_in_closed_loop(hybrid):
-    """Position loop, hybrid compensation, LuGre friction; 1e-4 of the peak force as above."""
-    time = np.linspace(0, 0.05, 51)
-    reference = 1e-3 * np.sin(2 * np.pi * 10 * time)  # linear between samples in both
-    kernel = simulate(
-        hybrid,
-        duration=0.05,
-        inputs={"L_D": lambda t: np.interp(t, time, reference)},
-        computer="continuous",
-        jit=False,
-    )
-    system = to_iosystem(hybrid)
-    inputs = [reference if n == "L_D" else 0 * time for n in system.input_labels]
-    options = {"rtol": 1e-7, "atol": 1e-11}
-    response = control.input_output_response(
-        system, time, inputs, solve_ivp_method="LSODA", solve_ivp_kwargs=options
-    )
-    for name in ("R_M", "Z_M_friction", "E"):
-        force = response.outputs[system.output_labels.index(name)]
-        assert np.abs(force - kernel[name].values).max() < 1e-4 * np.abs(force).max()
-
-
-@pytest.mark.slow
-def test_a_bode_plot_of_the_four_cases_says_what_it_leaves_out(tmp_path):
-    hand = body(0.05, viscous__damping=3.0, spring__stiffness=400.0)
-    diagram = haptic_interface(
-        body(coulomb__level=0.5, viscous__damping=0.4),
-        hand=hand,
-        cancellation=CANCELLATION,
-        force_feedback=FEEDBACK,
-    )
-    response = bode(four_cases(diagram))
-    assert list(response.data["case"].values) == ["none", "MBC", "FF", "hybrid"]
-    assert response.left_out["hybrid"] == ("Z_M.coulomb",)
-    assert response.data["frequency"].attrs["units"] == "Hz"
-    # all four are 1 at rest and the ratio of masses far above every loop's bandwidth
-    np.testing.assert_allclose(response.data["magnitude"].isel(frequency=0), 1.0, atol=0.01)
-    np.testing.assert_allclose(response.data["magnitude"].isel(frequency=-1), 0.25, rtol=0.02)
-    assert "left out: Z_M.coulomb" in repr(response)
-    response.to_netcdf(tmp_path / "bode.nc")
-    assert len(response.plot().axes) == 2

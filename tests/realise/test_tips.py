@@ -5,13 +5,12 @@ import numpy as np
 import pytest
 from devices import body
 
-from teleopdesign.blocks import Body, spring_damper
+from teleopdesign.blocks import Body
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import SIGNALS, load_effect
 from teleopdesign.frequency import bode, transfer_function
 from teleopdesign.frequency.matrix_response import matrix_response
 from teleopdesign.passivity import hand_port
-from teleopdesign.realise.iosystem import to_iosystem
 from teleopdesign.realise.tips import with_tips
 from teleopdesign.simulate import simulate, sine
 
@@ -46,43 +45,6 @@ def test_actuator_and_tip_move_as_two_masses_on_a_spring(computer):
     _, expected = control.step_response(two_masses(), simulation["time"].values)
     for name, row in zip(("L", "L_tip"), expected[:, 0], strict=True):
         assert np.abs(simulation[name].values - row).max() < 1e-7 * np.abs(row).max()
-
-
-def test_python_control_moves_the_tip_alike():
-    """Friction at the actuator's side, a wall at the tip; 5e-4 as for other contacts."""
-    made = spring_damper(
-        body(M, coulomb__level=0.2, presliding__stiffness=2e4, **COMPLIANT),
-        stiffness=1e3,
-        damping=0.0,
-        position=2e-3,
-    )
-    diagram = haptic_interface(made)
-    arguments = {"inputs": {"R_D": 1.0}, "computer": "continuous", "jit": False}
-    kernel = simulate(diagram, duration=0.1, **arguments)
-    system = to_iosystem(diagram)
-    time = kernel["time"].values
-    inputs = [1.0 + 0 * time if n == "R_D" else 0 * time for n in system.input_labels]
-    options = {"rtol": 1e-9, "atol": 1e-12, "max_step": 1e-4}
-    response = control.input_output_response(
-        system, time, inputs, solve_ivp_method="LSODA", solve_ivp_kwargs=options
-    )
-    assert kernel["L_tip"].max() > 3e-3
-    for name in ("L", "L_tip"):
-        x = response.outputs[system.output_labels.index(name)]
-        assert np.abs(x - kernel[name].values).max() < 5e-4 * np.abs(x).max()
-
-
-def test_a_stiff_transmission_is_the_rigid_body():
-    """K = 2e6 N/m: give of F/K; 1e-4 of the travel."""
-    stiff = COMPLIANT | {
-        "transmission_compliance__stiffness": 2e6,
-        "transmission_compliance__damping": 200.0,
-    }
-    arguments = {"duration": 0.1, "inputs": {"R_D": 1.0}, "jit": False}
-    rigid = simulate(haptic_interface(body(M, viscous__damping=B), hand=HAND), **arguments)["L"]
-    simulation = simulate(haptic_interface(body(M, **stiff), hand=HAND), step=2e-5, **arguments)
-    for name in ("L", "L_tip"):
-        assert np.abs(simulation[name].values - rigid.values).max() < 1e-4 * float(rigid.max())
 
 
 def test_a_hand_leads_the_tip_and_feels_both_bodies():

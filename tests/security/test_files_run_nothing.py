@@ -23,25 +23,10 @@ pytest.importorskip("h5py")  # asks the machine what it is when it is first load
 
 #: what stands in an experiment's file
 ENTRIES = (
-    '"Vertical rod of a one-axis haptic interface"',
-    '"prismatic"',
-    "0.15",
-    '"kg"',
-    "false",
-    "coulomb",
-    "level",
-    "device",
-    '"t"',
-    '"u"',
-    '"mm"',
-    "actuator_force",
-    "5e-3",
-    "20",
-    '"Hz"',
-    '"fit.csv"',
-    '"check"',
-    '"own"',
-)
+    '"Vertical rod of a one-axis haptic interface"', '"prismatic"', "0.15", '"kg"', "false",
+    "coulomb", "level", "device", '"t"', '"u"', '"mm"', "actuator_force", "5e-3", "20", '"Hz"',
+    '"fit.csv"', '"check"', '"own"',
+)  # fmt: skip
 TITLE = ENTRIES[0]
 
 

@@ -17,17 +17,8 @@ from teleopdesign.diagrams.expressions import read_expression
 NAMES = ["ｆ", "f\u200b", "f\u202e", "\u0131", "x\u0301", "ſ", "ª", "𝐟"]
 #: that Python's own reader takes for something else, or that only look like it
 TEXTS = [
-    "ｓｉｎ(x)",
-    "0.1*𝒙",
-    "x²",
-    "½",
-    "sin\u2061(x)",
-    "0.1\u2212x",
-    "１+x",
-    "x\u00a0+1",
-    "ª",
-    "π",
-]
+    "ｓｉｎ(x)", "0.1*𝒙", "x²", "½", "sin\u2061(x)", "0.1\u2212x", "１+x", "x\u00a0+1", "ª", "π",
+]  # fmt: skip
 #: of Python, sympy, numpy, the kernel and generated source
 WORDS = ["__builtins__", "__import__", "np", "exp", "S", "I", "E", "sin", "print", "self", "numba",
          "math", "output", "state", "late_0", "__class__", "Symbol", "oo", "x0"]  # fmt: skip

@@ -202,18 +202,6 @@ def test_a_result_that_says_more_than_it_holds_is_refused_before_it_is_read(tmp_
         read_study(path)
 
 
-CONTENTS = (b"", b"\x89HDF\r\n\x1a\n", b"CDF\x01" + b"\xff" * 90_000, b"x")
-
-
-@pytest.mark.parametrize("content", CONTENTS)
-def test_what_is_no_result_is_one_line(guard_of_results, tmp_path, content):
-    pytest.importorskip("h5netcdf")
-    path = tmp_path / "s.nc"
-    path.write_bytes(content)
-    with in_time(), pytest.raises(ExperimentError, match="no study can be read"):
-        read_study(path)
-
-
 def test_objects_in_a_result_are_never_unpickled(guard_of_results, tmp_path):
     path = result_file(tmp_path / "s.nc")
     with h5py.File(path, "a") as file:

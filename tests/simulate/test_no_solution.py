@@ -9,7 +9,7 @@ from teleopdesign.base.errors import GrowsWithoutBound, ModelError
 from teleopdesign.controllers import controller
 from teleopdesign.diagrams import Control, Diagram, Junction, Moving, haptic_interface
 from teleopdesign.frequency import bode, transfer_function
-from teleopdesign.simulate import Sampling, simulate, simulate_many, sine
+from teleopdesign.simulate import Sampling, simulate, sine
 
 BODY = td.Body("prismatic", {"inertia": 0.2}).with_effect(td.EFFECTS["viscous"], {"damping": 3.0})
 NOTHING = BODY.with_values({"inertia": 0.0})
@@ -51,15 +51,6 @@ def test_a_prescribed_motion_needs_no_mass():
     motion = {"L": td.sine(amplitude=0.01, frequency=2.0)}
     run = td.simulate_diagram(td.haptic_interface(NOTHING), duration=0.02, motion=motion, jit=False)
     assert np.allclose(run["R_V"], 3.0 * run["L_velocity"])
-
-
-def test_one_case_without_mass_leaves_the_others_alone():
-    masses = [0.0, 0.2, 0.4]
-    run = td.simulate_many(
-        td.haptic_interface(BODY), {"Z_M.inertia": masses}, duration=0.02, inputs={"R_D": 1.0}
-    )
-    assert "nothing on L has inertia" in str(run["reason"].values[0])
-    assert list(run["reason"].values[1:]) == ["", ""]
 
 
 def test_a_loop_without_delay_has_no_solution_at_gain_one():
@@ -121,44 +112,9 @@ def test_a_level_that_falls_below_zero_in_fast_sliding_alone_is_refused():
         simulate(haptic_interface(slippery), duration=0.01, motion=MOTION, jit=False)
 
 
-@pytest.mark.slow  # a loop of lanes; simulate/test_many.py has cases that fail beside others
-def test_among_many_cases_only_those_are_refused():
-    simulation = simulate_many(
-        device(0.1),
-        {"Z_M.coulomb_asymmetry.half_difference": [0.1, 0.6, 0.5]},
-        duration=0.01,
-        motion=MOTION,
-    )
-    reasons = [str(r) for r in simulation["reason"].values]
-    assert reasons[0] == "" == reasons[2] and "friction of -0.1 N backward" in reasons[1]
-
-
 def test_a_level_of_zero_one_way_is_simulated():
     simulation = simulate(device(0.5), duration=0.01, motion=MOTION, jit=False)
     assert np.isfinite(simulation["R_V"].values).all()
-
-
-LATE = body(0.1, viscous__damping=1.0, actuation_delay__delay=0.0)
-
-
-def scheme(delay=0.0, *, actuator=0.0, computer=None):
-    name = "Z_M.actuation_delay.delay"
-    diagram = td.haptic_interface(LATE if actuator else body(0.1, viscous__damping=1.0))
-    if actuator:
-        diagram = diagram.with_values({name: actuator})
-    made = td.simulate_diagram(
-        diagram,
-        duration=0.01,
-        inputs={"R_D": 1.0},
-        computer=computer or td.Sampling(delay=delay),
-        jit=False,
-    )
-    return made.data.attrs["scheme"], repr(made)
-
-
-def test_a_delay_far_from_whole_steps_is_refused():
-    with pytest.raises(ModelError, match="is no whole number of steps"):
-        scheme(1.5e-4)
 
 
 PERIOD = 1e-3

@@ -128,13 +128,3 @@ def test_what_computer_and_body_read_may_be_one_table():
         for x in (push(TIMES), push)
     )
     assert np.allclose(table["x"].values, function["x"].values, rtol=1e-12, atol=0)
-
-
-DEVICE = td.haptic_interface(body(0.1, viscous__damping=1.0))
-
-
-def test_the_force_of_a_prescribed_motion_is_a_result():
-    led = td.simulate_diagram(
-        DEVICE, duration=0.01, motion={"L": td.sine(amplitude=1e-3, frequency=5.0)}, jit=False
-    )
-    assert "R_V" in led and led["R_V"].size

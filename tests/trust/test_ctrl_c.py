@@ -1,8 +1,4 @@
-"""Ctrl-C at any moment of a command is one line and status 130; nothing is lost or printed beside.
-
-TELEOPDESIGN_MOMENTS=0.1 interrupts three commands every 0.1 s of processor time. No test does it
-unasked: where those moments fall is chance, and libraries drop one in some hundred interrupts.
-"""
+"""Ctrl-C at any moment of a command is one line and status 130, and nothing is lost."""
 
 import os
 import signal
@@ -15,78 +11,10 @@ from trust.stopping import COMMANDS, environment, make_sources, prepare, run, vi
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="processes and signals of POSIX")
 
-#: s of processor time between two interrupts
-BETWEEN = float(os.environ.get("TELEOPDESIGN_MOMENTS", "0"))
-
-#: every so often a copy of the process is interrupted there; what becomes of it goes into a folder
-SWEEP = """
-import os, signal, sys, threading
-signal.signal(signal.SIGINT, signal.default_int_handler)  # the tests may run where it is ignored
-folder, between = sys.argv[1], float(sys.argv[2])
-del sys.argv[1:3]
-all_copies = open(os.path.join(folder, "all"), "w")
-moment, is_copy, is_begun = 0, False, False
-def interrupt_a_copy(*_):
-    global moment, is_copy
-    if threading.active_count() > 1:  # they would be missing in the copy
-        return
-    moment += 1
-    copy = os.fork()
-    if copy == 0:
-        is_copy = True
-        signal.setitimer(signal.ITIMER_PROF, 0)
-        os.dup2(os.open(os.path.join(folder, str(moment)), os.O_WRONLY | os.O_CREAT), 2)
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        signal.alarm(120)  # it waits, or goes on as if nothing had been
-        os.kill(os.getpid(), signal.SIGINT)
-        return
-    _, status = os.waitpid(copy, 0)
-    print(moment, os.waitstatus_to_exitcode(status), file=all_copies, flush=True)
-def begin(event, arguments):
-    global is_begun
-    if is_begun or event != "import" or arguments[0] != "teleopdesign.commands._command_line":
-        return
-    is_begun = True
-    signal.setitimer(signal.ITIMER_PROF, between / 20, between)
-signal.signal(signal.SIGPROF, interrupt_a_copy)
-sys.addaudithook(begin)
-from teleopdesign.cli import main
-status = main()
-signal.setitimer(signal.ITIMER_PROF, 0)
-if is_copy:
-    os._exit(status)
-sys.exit(status)
-"""
-
 
 @pytest.fixture(scope="module")
 def sources(tmp_path_factory):
     return make_sources(tmp_path_factory.mktemp("sources"))
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(not BETWEEN, reason="TELEOPDESIGN_MOMENTS says how often")
-@pytest.mark.parametrize("name", ["check", "derive", "passivity"])
-def test_an_interrupt_at_any_moment_is_one_line_and_status_130(name, sources, tmp_path):
-    command, log = COMMANDS[name], tmp_path / "log"
-    prepare(command, tmp_path / "out")
-    log.mkdir()
-    arguments = [a.replace("OUT", str(tmp_path / "out")) for a in command.arguments]
-    subprocess.run(
-        [sys.executable, "-c", SWEEP, str(log), str(BETWEEN), *arguments],
-        cwd=sources,
-        env=environment(),
-        capture_output=True,
-        timeout=stopping.PATIENCE,
-    )
-    moments = [line.split() for line in (log / "all").read_text().splitlines()]
-    assert len(moments) >= 3
-    wrong = {
-        (moment, status): text
-        for moment, status in moments
-        if (text := (log / moment).read_text()) != "teleopdesign: stopped\n" or status != "130"
-    }
-    assert wrong == {}
 
 
 @pytest.mark.slow

@@ -16,8 +16,6 @@ from teleopdesign.simulate import Sampling, simulate
 ROUNDING = 1e-9
 #: powers of two: nothing is rounded anew. m, N and s, each as so many of another unit
 LENGTH, FORCE, TIME = 2.0**10, 2.0**-3, 2.0**5
-INERTIA = FORCE * TIME**2 / LENGTH
-DAMPING, STIFFNESS, SPEED = FORCE * TIME / LENGTH, FORCE / LENGTH, LENGTH / TIME
 
 
 def interface(*, length=1.0, force=1.0, time=1.0):
@@ -101,17 +99,6 @@ def other_order(text):
     # a series stands in the order in which its laws act: it is kept
     ordered = [t for block in reversed(blocks) for t in block]
     return "\n[".join([head, *rest, *ordered])
-
-
-def test_names_change_nothing_to_the_last_bit(before, tmp_path):
-    after = run(read_back(renamed(free_text(tmp_path)), tmp_path), ("wish",))
-    for old, new in {
-        "L": "x",
-        "R_M": "a_1",
-        "R_MBC": "R_MBC",
-        "Z_M_friction": "alpha_friction",
-    }.items():
-        assert np.array_equal(after[new].values, before[old].values), old
 
 
 def test_the_order_of_blocks_and_junctions_changes_rounding_alone(before, tmp_path):

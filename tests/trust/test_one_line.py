@@ -132,18 +132,6 @@ def test_a_json_file_that_holds_no_result_is_one_line_with_its_name(option, what
     assert "own.json" in one_line(capsys, [*option, file])
 
 
-@pytest.mark.parametrize("file", ["experiment.toml", "own.toml", "own.json", "own.py"])
-def test_a_folder_in_place_of_a_file_is_one_line_with_its_name(file, tmp_path, capsys):
-    (tmp_path / file).mkdir()
-    command = {
-        "experiment.toml": ["check", tmp_path],
-        "own.toml": ["derive", tmp_path / file],
-        "own.json": ["design", ROD, "--answer", tmp_path / file],
-        "own.py": ["study", tmp_path / file],
-    }[file]
-    assert file in one_line(capsys, command)
-
-
 # what the system raises, wherever it is raised
 
 OF_SYSTEM = {

@@ -149,25 +149,6 @@ def test_a_limit_that_is_missed_is_not_called_active():
 
 
 @pytest.mark.slow
-def test_a_limit_on_a_claim_without_a_margin_says_so():
-    """Friction of which the compensator cancels a part: proved, and no margin is computed."""
-    rod = body(0.15, viscous__damping=4.0, coulomb__level=0.5)
-    law = td.controller("dahl", {"level": 0.2, "stiffness": 1e4})
-    diagram = td.haptic_interface(rod, cancellation=law)
-    levels = {"C.dahl.level": (0.1, 0.4)}
-
-    def most_level(made):
-        return -made.values["C.dahl.level"]
-
-    for least, held in ((0.0, True), (0.5, False)):
-        limits = [td.limit("passive", least=least)]
-        tuned = td.tune(diagram, levels, most_level, subject_to=limits, evaluations=4)
-        (passive,) = tuned.limits
-        assert passive.holds is held
-        if np.isnan(passive.value):
-            assert "checked numerically" not in passive.how
-
-
 def test_a_loop_with_margins_is_stable_in_its_computer():
     """Force feedback behind a low-pass: in continuous time no gain of it is too large."""
     device = td.hand(mass=0.15, damping=4.0, stiffness=0.0)

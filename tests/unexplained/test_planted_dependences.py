@@ -24,14 +24,6 @@ PLANTED = {
         "at positions above",
         4.0,
     ),
-    "friction over position": (
-        lambda a: (
-            a.signals["grip"] * np.where(position(a) > 0.005, 12.0 * (position(a) - 0.005), 0.0)
-        ),
-        "at positions above",
-        12.0,
-    ),
-    "force over speed": (lambda a: a.signals["push"] * 0.5 * a.signals["speed"], "above", 0.5),
     "friction over load": (
         lambda a: a.signals["grip"] * 0.08 * a.signals["load"],
         "command's size",

@@ -123,7 +123,7 @@ def grows(rng, at_ports, across, d, times, tries=40):
     return None
 
 
-@attacked(6, 60)
+@attacked(3, 60)
 def test_no_hands_and_no_frequency_beat_a_late_two_port_that_holds(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):

@@ -142,7 +142,7 @@ def released(terms, motions, rounds=3, steps=500):
     return out / np.maximum(turned, 1e-300)
 
 
-@attacked(2, 15)
+@attacked(1, 15)
 def test_no_closed_motion_releases_energy_of_an_effect_on_which_a_claim_rests(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):

@@ -135,7 +135,7 @@ def proved(law):
     return {one.time for one in claims if one.claim.status == "proved"}
 
 
-@attacked(2, 30)
+@attacked(0, 30)
 def test_no_force_exceeds_a_bound_on_which_a_claim_rests(seed, number):
     rng, counts = np.random.default_rng(seed), Counter()
     for _ in range(number):
