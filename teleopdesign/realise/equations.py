@@ -255,7 +255,7 @@ class _Builder:
         held = _held_at_stops(part.body, equation.level)
         friction = equation.friction.xreplace(held)
         if any(WITHIN_LEVEL in effect.always for effect in part.body.effects):
-            friction = _limit(friction, equation.level)
+            friction = _limit_each_way(friction, equation.level)
         total = equation.inertia * SIGNALS["acceleration"] + equation.force.xreplace(held)
         total += friction
         for state, rate in equation.rates.items():
@@ -265,10 +265,13 @@ class _Builder:
         return (total.xreplace(here) - acting).xreplace({_NO_COMMAND: sp.S(0)})
 
 
-def _limit(friction: sp.Expr, level: sp.Expr) -> sp.Expr:
-    """The friction within its level: a bristle that turns within one step may end far beyond."""
+def _limit_each_way(value: sp.Expr, level: sp.Expr) -> sp.Expr:
+    """The value within the level of its direction: a bristle that turns within one step may end
+    far beyond. At rest, friction that holds has the level of the motion that it prevents.
+    """
+    ahead, back = (level.xreplace({SIGNALS["direction"]: sp.Integer(way)}) for way in (1, -1))
     # not evaluated: sympy would compare the two at length, and cannot decide
-    return sp.Max(-level, sp.Min(friction, level, evaluate=False), evaluate=False)
+    return sp.Max(-back, sp.Min(value, ahead, evaluate=False), evaluate=False)
 
 
 def _held_at_stops(body: Body, level: sp.Expr) -> dict[sp.Symbol, sp.Expr]:
@@ -279,9 +282,8 @@ def _held_at_stops(body: Body, level: sp.Expr) -> dict[sp.Symbol, sp.Expr]:
     held = {}
     for effect in body.effects:
         for name, (_, stop) in effect.stops().items():
-            z, stop = effect.state_symbols()[name], stop.xreplace({SIGNALS["level"]: level})
-            # not evaluated: sympy would compare the two at length, and cannot decide
-            held[z] = sp.Max(-stop, sp.Min(z, stop, evaluate=False), evaluate=False)
+            z = effect.state_symbols()[name]
+            held[z] = _limit_each_way(z, stop.xreplace({SIGNALS["level"]: level}))
     return held
 
 

@@ -78,6 +78,7 @@ def simulated(made, **arguments):
         *((name,) for name in NAMES),
         ("load_dependent_friction", "maxwell_slip"),
         ("contact_damping", "transmission_compliance"),
+        ("coulomb_asymmetry", "spring"),  # held at rest, between the levels of both directions
     ],
     ids="-".join,
 )
@@ -106,6 +107,8 @@ def test_kernel_and_python_control_move_alike(names):
     # within a step of the kernel, 1e-4 s: half a step of the damper's first force, 2 N s/m at
     # 0.3 m/s on 0.15 kg, moves 1e-5 m of 0.015 m in the time left
     most = 5e-4 if any(EFFECTS[n].role in CONTACT_ROLES for n in names) else 1e-5
+    if names[1:] == ("spring",):  # begins to hold within a step
+        most = 1e-4
     if "maxwell_slip" in names:  # an element begins to slip within a step: late by K v h = 0.06 N
         most = 2e-3
     assert np.abs(x - kernel["L"].values).max() < most * np.abs(x).max()
