@@ -10,8 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cache, lru_cache
-from pathlib import Path
+from functools import lru_cache
 from typing import Any
 
 from ..blocks import Body, MatrixImpedance
@@ -21,6 +20,7 @@ from ._codegen import Generator
 from .compiled import PHI, WEIGHTS, compiled_module
 from .equations import Equations, Layout, build_equations
 from .laws import PrivateNames, private_names
+from .needed_loop import needed_loop
 
 
 @dataclass(frozen=True)
@@ -213,14 +213,8 @@ def loop_source(laws: str, head: Sequence[str], *, is_typed: bool, lanes: int = 
         # places by which functions are called: numba compiles a function again for each literal
         # number that it gets, and once for all numbers of a type
         laws = re.sub(r"^(\w+ = )(\d+ \* LANES)$", r"\1np.int64(\2)", laws, flags=re.MULTILINE)
+    loop = needed_loop(laws)
     # numba takes as long for a product of constants as for any other
     laws = re.sub(r"(\d+) \* LANES", lambda match: str(int(match[1]) * lanes), laws)
-    parts = [text, _HEAD, *head, f"LANES = {lanes}\n", PHI, WEIGHTS, "", laws, _integrator()]
+    parts = [text, _HEAD, *head, f"LANES = {lanes}\n", PHI, WEIGHTS, "", laws, loop]
     return "\n".join(parts)
-
-
-@cache
-def _integrator() -> str:
-    """The part of `integrator.py` below its line of "#"; above it are imports for reading it."""
-    text = Path(__file__).with_name("integrator.py").read_text(encoding="utf-8")
-    return text.split("#" * 98 + "\n", 1)[1]
