@@ -238,3 +238,21 @@ def with_what_they_need(model: Model, models: Sequence[Model], prepared: Prepare
             if value.value < PLAN.taken_away * size:
                 values[full] = size
     return [m.with_values(values) for m in models] if values else []
+
+
+def with_hidden_states_anew(model: Model) -> Model | None:
+    """The model with effects absent, too, that its new ones need and that have hidden states.
+
+    Without the new effect a fit leads such states elsewhere: the tip of a transmission stands in
+    for the friction that holds it, and no search returns from there.
+    returns: None where no new effect needs such a one
+    """
+    values: dict[str, float] = {}
+    for name, at in model.absent:
+        body = model.body(at)
+        roles = {model.known[n].role for n in body.effect(name).needs if n in model.known}
+        for needed in (e for e in body.effects if e.role in roles and e.states and e.absent):
+            absent = {f"{at}.{needed.name}.{n}": needed.default(n) for n in needed.parameters}
+            if not any(model.parameters[n].fixed for n in absent):
+                values |= absent
+    return model.with_values(values) if values else None

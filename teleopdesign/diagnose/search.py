@@ -23,6 +23,7 @@ from .linear_start import (
     Promises,
     linear_starts,
     starts_at_values_of_user,
+    with_hidden_states_anew,
     with_what_they_need,
     without_endless,
 )
@@ -104,6 +105,10 @@ def estimate_from_starts(
         models = _select_promising(model, models, coarse, base, most=most, worth=worth)
         if others:
             models += _select_promising(model, others, coarse, base, most=most, worth=worth)
+        if (freed := with_hidden_states_anew(model)) is not None:
+            # far from the base, one linear step promises nothing, and orders the starts only
+            others, kept = make_starts(freed, prepared.scales), PLAN.wide
+            models += _select_promising(freed, others, coarse, base, most=kept, worth=-math.inf)
         if not models:
             return keep_absent(model, base.fit)
     elif len(models) == 1:

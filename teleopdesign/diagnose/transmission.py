@@ -11,13 +11,11 @@ is added only beside that friction (`Effect.after`), whether the user stated it 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 
-from ..effects import Effect
-from ..model import Model
-from .candidates import Candidate, comes_too_early, make_starts
+from .candidates import Candidate, comes_too_early
 from .criteria import CRITERIA
 from .decision import is_better, is_supported, objection
 from .draws import best_draws
@@ -81,7 +79,7 @@ def _best_pair(
     pairs: list[tuple[Rung, ...]] = []
     for transmission, friction in _possible_pairs(base):
         search.progress(f"trying {transmission} with {friction.effect.name}")
-        both = _fit_both(search, base, transmission, friction, [p[-1].fit for p in pairs])
+        both = _fit_both(search, base, transmission, friction)
         pairs += _as_rungs(search, base, transmission, friction, both, alone)
     supported = [pair for pair in pairs if _is_supported(search, state, base, pair)]
     return min(supported, key=lambda pair: check_squares(pair[-1].fit), default=None)
@@ -106,52 +104,16 @@ def _possible_pairs(base: Fit) -> Iterator[tuple[Candidate, Candidate]]:
                     yield Candidate(transmission, place), Candidate(friction, place)
 
 
-def _fit_both(
-    search: LadderSearch,
-    base: Fit,
-    transmission: Candidate,
-    friction: Candidate,
-    fitted: Sequence[Fit],
-) -> Fit:
-    """A rough fit of both effects, from draws or from a transmission that this one contains.
-
-    fitted: the fits of other pairs. Draws of a gap with friction end at a light tip that follows
-        the machine whatever its friction is; from the spring behind it the gap opens
-    """
+def _fit_both(search: LadderSearch, base: Fit, transmission: Candidate, friction: Candidate) -> Fit:
+    """A rough fit of both effects, from draws."""
     coarse = base_of(base, search.prepared).coarse
     model = coarse.model
     for one in (transmission, friction):
         model = model.with_effect(one.effect, at=one.at)
-    starts = [m for fit in fitted for m in _starts_from_kin(model, transmission, fit, search)]
     # where no draw leaves less than the base, the pair stays where it is absent
-    starts = starts or best_draws(model, search.prepared.coarse, coarse) or [model]
+    starts = best_draws(model, search.prepared.coarse, coarse) or [model]
     new = (transmission.key, friction.key)
     return estimate_best_start(starts, new, search.prepared)
-
-
-def _starts_from_kin(
-    model: Model, transmission: Candidate, fit: Fit, search: LadderSearch
-) -> list[Model]:
-    """Starts at the values of a transmission that this one contains; none: the fit has no such one.
-
-    model: with the transmission;  fit: of another pair
-    """
-    effects = fit.model.body(transmission.at).effects
-    kin = next((e for e in effects if _is_part_of(e, transmission.effect)), None)
-    if kin is None:
-        return []
-    ours, theirs = (f"{transmission.at}.{e.name}." for e in (transmission.effect, kin))
-    known = fit.model.parameters
-    shared = {n: m for n in model.parameters if (m := n.replace(ours, theirs, 1)) in known}
-    values = {n: known[m].value for n, m in shared.items()}
-    each = [m.with_values(values) for m in make_starts(model, search.prepared.scales)]
-    return list({tuple(v.value for v in m.parameters.values()): m for m in each}.values())
-
-
-def _is_part_of(small: Effect, large: Effect) -> bool:
-    """Whether the large effect has all parameters of the small one, and more."""
-    ours, theirs = ({n: p.quantity for n, p in e.parameters.items()} for e in (small, large))
-    return small.role == large.role and ours.items() < theirs.items()
 
 
 def _as_rungs(

@@ -171,8 +171,10 @@ def make_rubbing_structure(structure: Effect, level: sp.Expr) -> Effect:
     level: of this friction, on parameters of the body's effects
     """
     tip = replace(structure.states["tip_velocity"], dry=lambda now, p: level / p.tip_inertia)
-    states = {**structure.states, "tip_velocity": tip}
-    return remember(replace(structure, states=states), make_rubbing_structure, structure, level)
+    position = replace(structure.states["tip_position"], correction=None)
+    states = {"tip_position": position, "tip_velocity": tip}
+    free = replace(structure, states=states, led=None)
+    return remember(free, make_rubbing_structure, structure, level)
 
 
 def _join(coupling: Coupling, now: Any, p: Any) -> sp.Expr:
