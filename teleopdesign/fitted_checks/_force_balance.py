@@ -24,6 +24,7 @@ from ..diagnose.criteria import CRITERIA
 from ..diagnose.fit import block_numbers, standard_errors
 from ..effects import EFFECTS
 from ..measurement.filtering import Array
+from ..measurement.first_guess import SURELY_LESS
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from ._force_timing import (
@@ -33,6 +34,7 @@ from ._force_timing import (
     BandTransforms,
     fit_balance,
     rows_of,
+    sum_of_forces,
     transform_in_band,
     with_shifts,
 )
@@ -137,7 +139,13 @@ def _balance_of(
     if not forces:
         return None
     measured = float(np.sqrt(np.mean((rows[0] + rows[1]) ** 2)))
-    plain = fit = fit_balance(bands, forces, [], ON_TIME, BANDS[-1:])
+    plain = fit_balance(bands, forces, [], ON_TIME, BANDS[-1:])
+    if len(forces) > 1 and not plain.size < SURELY_LESS * _left_of_law(rows):
+        # one force is computed from the other, so that the motion tells no gain: their sum counts
+        bands = {b: [sum_of_forces(p) for p in parts] for b, parts in bands.items()}
+        forces = forces[:1]
+        plain = fit_balance(bands, forces, [], ON_TIME, BANDS[-1:])
+    fit = plain
     if timed:
         fit = with_shifts(bands, forces, plain, measured)
     numbers = np.unique(_blocks(stretches, parts), return_inverse=True)[1]
@@ -157,6 +165,13 @@ def _balance_of(
         left=fit.size / measured,
         unshifted=plain.size / measured,
     )
+
+
+def _left_of_law(rows: Array) -> float:
+    """Rms that a law of the second force and its rate leaves of the first one; rows: `rows_of`."""
+    law = np.stack([rows[1], rows[3], np.ones(rows.shape[1])], axis=1)
+    left = rows[0] - law @ np.linalg.lstsq(law, rows[0], rcond=1e-9)[0]
+    return float(np.sqrt(np.mean(left**2)))
 
 
 def _brakes(body: Body, strength: str) -> bool:

@@ -9,7 +9,7 @@ of the motion is shifted instead.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,6 +75,12 @@ def transform_in_band(
     return BandTransforms(
         motion, keep, forces, s.multiply(np.vstack([rest[None], columns]), low)[:, keep]
     )
+
+
+def sum_of_forces(part: BandTransforms) -> BandTransforms:
+    """The same with both forces as one, under either name."""
+    whole = np.sum(list(part.forces.values()), axis=0)
+    return replace(part, forces=dict.fromkeys(part.forces, whole))
 
 
 def phase_of_shift(stretches: Sequence[Stretch], seconds: float) -> float:

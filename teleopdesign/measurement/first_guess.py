@@ -190,14 +190,16 @@ def balance_factor(
 
         force + factor other = m a + c sgn(v) + b v + k
 
-    Rows at and near rest are left out: friction takes any force there, up to its level.
+    Rows at and near rest are left out: friction takes any force there, up to its level. Where one
+    force follows the other as well without the motion, it is computed from the other.
 
-    returns: factor and standard error; (0, inf) where less than a second is in motion
+    returns: factor and standard error; (0, inf) where less than a second is in motion, or the
+        motion tells no factor
     """
-    stretch = stretch_of((force, other), position, sample_time)
+    stretch = stretch_of((force, other, np.gradient(other)), position, sample_time)
     if stretch is None:
         return 0.0, np.inf
-    columns, (target, beside) = stretch
+    columns, (target, beside, rate) = stretch
     speed = np.abs(columns[2])
     window = max(1, round(_REACH / sample_time))
     slow = np.convolve(speed <= SMALL * speed.max(), np.ones(window), "same")
@@ -205,7 +207,11 @@ def balance_factor(
     if np.count_nonzero(rows) * sample_time < 1.0:
         return 0.0, np.inf
     columns = np.vstack([columns, -beside])[:, rows]
-    factors, errors, _ = least_squares(columns, target[rows], sample_time)
+    factors, errors, left = least_squares(columns, target[rows], sample_time)
+    computed = np.vstack([columns[-2:], rate[rows]])
+    _, _, without_motion = least_squares(computed, target[rows], sample_time)
+    if not left < SURELY_LESS * without_motion:
+        return 0.0, np.inf
     return float(factors[-1]), float(errors[-1])
 
 

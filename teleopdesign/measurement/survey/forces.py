@@ -6,13 +6,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from ...base.units import measures, si_factor
 from ..column_names import is_wanted, likeness
 from ..encoder import Array
 from ..first_guess import SURELY_LESS, balance_factor, explain_force, is_turned
-from ..limits import SMALL
 from .content import NONE, SURE_NAME, Choices, Survey, SurveyedColumn, sample_time_of
 from .derivative import unwrap_column
 from .force_entry import (
@@ -24,11 +21,17 @@ from .force_entry import (
     state_scatter,
 )
 from .refusals import error_without_force, error_without_position, explain_ambiguity, tells_forces
-from .relations import causes_acceleration, left_in_turn, possible_forces, relations_of
+from .relations import (
+    causes_acceleration,
+    current_that_acted,
+    left_in_turn,
+    possible_forces,
+    relations_of,
+)
 from .roles import (
     AS_LIKELY,
-    LEAST_LEFT,
     as_likely,
+    evidence_of,
     is_current,
     is_named_force,
     is_nameless,
@@ -43,8 +46,6 @@ from .roles import (
 #: by chance. The limit also bounds the deviation of its factor from one: a calibration error of a
 #: quarter still passes
 BALANCES = 2.0 / 3.0
-#: most rows by which a drive may be late behind its command; it may also smooth over these rows
-LATE = 4
 
 
 def describe_forces(
@@ -62,8 +63,14 @@ def describe_forces(
     if not choices.states_all:
         survey.relations = dict(relations_of(survey, position, velocity, x))
         free = possible_forces(survey, position, velocity)
-        survey.explained = {n: 1.0 - left_in_turn(c.values, x, h)[1] for n, c in free.items()}
-        scores = score_forces(survey, position, free, choices.torque_constant is not None)
+        hand = choices.interaction_force or _named_hand(free)
+        beside = free[hand].values if hand in free else None
+        survey.explained = {
+            n: 1.0 - left_in_turn(c.values, x, h, None if n == hand else beside)[1]
+            for n, c in free.items()
+        }
+        constant = choices.torque_constant is not None
+        scores = score_forces(survey, position, free, constant, hand)
     force, measured = _find_driving_force(survey, free, scores, choices, (file, velocity))
     survey.channels["actuator_force"] = describe_force(survey, force, "actuator_force", choices)
     if measured:
@@ -84,15 +91,31 @@ def describe_forces(
     _choose_signs(survey, (signal_in_si(survey, "position"), h), force, hand)
 
 
+def _named_hand(free: Mapping[str, SurveyedColumn]) -> str | None:
+    """The column that by its name is surely the force of the hand; None: no name tells one."""
+    named = {n: evidence_of(c)["name of an interaction force"] for n, c in free.items()}
+    best = max(named, key=lambda n: named[n], default="")
+    return best if named.get(best) else None
+
+
 def score_forces(
-    survey: Survey, position: str, free: Mapping[str, SurveyedColumn], needs_constant: bool
+    survey: Survey,
+    position: str,
+    free: Mapping[str, SurveyedColumn],
+    needs_constant: bool,
+    hand: str | None = None,
 ) -> dict[str, float]:
-    """The score of each column that may be the force;  needs_constant: one is stated."""
+    """The score of each column that may be the force;  needs_constant: one is stated.
+
+    hand: the force of the hand, if one is known. The forces of motor and hand together balance the
+        motion, whichever moves the device: beside a motor's, the motion tells nothing of the hand's
+    """
+    of_motor = any(likeness(n, "actuator_force") >= SURE_NAME for n in free if n != hand)
     return {
         n: score_of(
             "actuator_force",
             c,
-            left=1.0 - survey.explained[n],
+            left=1.0 if of_motor and n == hand else 1.0 - survey.explained[n],
             its_constant_is_stated=needs_constant and (c.unit == "V" or is_current(c)),
             beside_the_position=stand_together(n, position),
             of_another_axis=of_another_axis(n, position, survey.columns),
@@ -155,7 +178,9 @@ def _choose_signs(
         f = signal_in_si(survey, "interaction_force")
         total, fit = u + f, explain_force(u + f, x, h)
         other = explain_force(u - f, x, h)
-        if other.left < SURELY_LESS * fit.left:
+        # a motor that follows the hand's force leaves less of it with the wrong sign, and of motion
+        parts = [(1.0 - one.explained) ** 0.5 for one in (fit, other)]
+        if other.left < SURELY_LESS * fit.left and parts[1] < SURELY_LESS * parts[0]:
             survey.channels["interaction_force"]["sign"] = -1
             survey.guesses["channels.interaction_force.sign"] = (
                 f"-1: with this sign, {hand!r} balances {force!r} and leaves "
@@ -242,53 +267,3 @@ def _may_balance(column: SurveyedColumn, axis: str, *, named: bool) -> bool:
     if unit is not None:
         return measures(unit, "force", axis)
     return not named or says(name, "torque") and not says(name, "motor side")
-
-
-def current_that_acted(
-    force: str, columns: Mapping[str, SurveyedColumn], scores: Mapping[str, float]
-) -> tuple[str, float] | None:
-    """A measured current that acted in place of the commanded `force`, and how far the two differ.
-
-    A model-based controller logs the force that its model demands. Friction that the model lacks
-    shows only in the measured current: with the commanded force no effect would seem to be missing.
-
-    returns: the column of the current, and the rms of the part that the command does not explain,
-        over the rms of the current; None: `force` is no command, or the drive followed it
-    """
-    if not is_wanted(force):
-        return None
-    measured = [
-        name
-        for name, column in columns.items()
-        if name != force and is_current(column) and not is_wanted(name)
-        if likeness(name, "actuator_force") >= SURE_NAME
-        # the current that a drive draws from its supply has one side
-        if not _smaller_side(column.values) < SMALL < _smaller_side(columns[force].values)
-    ]
-    if not measured:
-        return None
-    best = max(measured, key=lambda name: scores[name])
-    share = _unexplained_share(columns[force].values, columns[best].values)
-    return (best, share**0.5) if share > LEAST_LEFT else None
-
-
-def _smaller_side(x: Array) -> float:
-    """The largest value of the smaller side of zero, over that of the larger side."""
-    sides = sorted((max(float(np.max(x)), 0.0), max(-float(np.min(x)), 0.0)))
-    return sides[0] / sides[1] if sides[1] > 0.0 else 0.0
-
-
-def _unexplained_share(wanted: Array, measured: Array) -> float:
-    """Part of the variance of a measured force that the commanded force does not explain.
-
-    The residual of each row is multiplied by that of the next row, so that noise of single rows and
-    the steps of a converter average out.
-    """
-    rows = len(measured) - LATE
-    late = [wanted[LATE - k : LATE - k + rows] for k in range(LATE + 1)]
-    columns = np.column_stack([*late, np.ones(rows)])
-    target = measured[LATE:]
-    whole = float(np.mean((target - target.mean()) ** 2))
-    solution, *_ = np.linalg.lstsq(columns, target, rcond=1e-8)
-    left = target - columns @ solution
-    return float(np.mean(left[1:] * left[:-1])) / whole if whole > 0 else 0.0

@@ -9,20 +9,20 @@ would look like physics that the model lacks.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...base.units import is_unit
-from ..column_names import WANTED, likeness, words_of
+from ..column_names import WANTED, is_wanted, likeness, words_of
 from ..encoder import SURELY, Array
 from ..first_guess import least_squares, stretch_of
 from ..law_of_readings import is_copy
 from ..limits import SEVERAL, SMALL
 from .content import SURE_NAME, Survey, SurveyedColumn, columns_in_use, moves, rises, sample_time_of
 from .derivative import DERIVATIVE, derivative_factor, is_velocity, may_be_ramp
-from .roles import LEAST_LEFT, is_nameless, is_unit_of, says
+from .roles import LEAST_LEFT, is_current, is_nameless, is_unit_of, says
 
 Indices = NDArray[np.intp]
 
@@ -33,6 +33,8 @@ APART = 1.0 - DERIVATIVE**2
 #: "torque", "current", "effort". "pwm", "u" and "cmd" name pulses of a set point as well
 FORCE_NAME = 0.85
 
+#: most rows by which a drive may be late behind its command; it may also smooth over these rows
+LATE = 4
 #: correlation from which one column is the derivative of another to its digits, as of a planned
 #: path: friction of 1 % of a force lowers it below
 EXACT = 0.9999
@@ -81,30 +83,36 @@ def _relation(column: SurveyedColumn, position: str, x: Array, speed: Array | No
     return "an acceleration by its name" if says(name, "acceleration") else None
 
 
-def left_in_turn(force: Array, position: Array, sample_time: float) -> tuple[float, float]:
+def left_in_turn(
+    force: Array, position: Array, sample_time: float, beside: Array | None = None
+) -> tuple[float, float]:
     """Part of a force (n,) that its place leaves, and part of that which the motion leaves.
 
     Place: a cubic of the position, which a spring, a weight or a second reading of the position
     follows. Motion: inertia, friction and damping beside it. Where the place leaves less than a
     hundredth, friction must be certain, and brake where the place pulls back: a reading that is
     late has friction of the other sign.
+
+    beside: another force (n,), which counts as the place does, with its rate: one force may be
+        computed from the other
     """
-    stretch = stretch_of((force, position), position, sample_time)
+    others = [] if beside is None else [beside, np.gradient(beside)]
+    stretch = stretch_of((force, position, *others), position, sample_time)
     if stretch is None:
         return 1.0, 1.0
-    columns, (target, place) = stretch
+    columns, (target, place, *others) = stretch
     place = (place - place.mean()) / max(float(np.ptp(place)), np.finfo(float).tiny)
-    powers = np.stack([columns[3], place, place**2, place**3])
+    powers = np.stack([columns[3], place, place**2, place**3, *others])
     of_place = least_squares(powers, target, sample_time)
     of_all = least_squares(np.vstack([columns[:3], powers]), target, sample_time)
     whole = float(np.var(target))
     if not of_place[2] * whole > 0.0:
         return 1.0, 1.0
-    (factors, errors, left), beside = of_all, of_place[2]
+    (factors, errors, left), without = of_all, of_place[2]
     brakes = factors[1:3] * np.sign(target @ place) > SURELY * errors[1:3]
-    share = beside**2 / whole
+    share = without**2 / whole
     is_place = share < LEAST_LEFT and not brakes.any()
-    return min(share, 1.0), 1.0 if is_place else min(left / beside, 1.0) ** 2
+    return min(share, 1.0), 1.0 if is_place else min(left / without, 1.0) ** 2
 
 
 def causes_acceleration(place: Array, column: Array, sample_time: float) -> bool:
@@ -230,3 +238,53 @@ def _apart(late: Array, early: Array, delay: int) -> float:
     rows = len(late) - delay
     whole = float(np.var(late))
     return float(np.mean((late[delay:] - early[:rows]) ** 2)) / whole if whole > 0 else np.inf
+
+
+def current_that_acted(
+    force: str, columns: Mapping[str, SurveyedColumn], scores: Mapping[str, float]
+) -> tuple[str, float] | None:
+    """A measured current that acted in place of the commanded `force`, and how far the two differ.
+
+    A model-based controller logs the force that its model demands. Friction that the model lacks
+    shows only in the measured current: with the commanded force no effect would seem to be missing.
+
+    returns: the column of the current, and the rms of the part that the command does not explain,
+        over the rms of the current; None: `force` is no command, or the drive followed it
+    """
+    if not is_wanted(force):
+        return None
+    measured = [
+        name
+        for name, column in columns.items()
+        if name != force and is_current(column) and not is_wanted(name)
+        if likeness(name, "actuator_force") >= SURE_NAME
+        # the current that a drive draws from its supply has one side
+        if not _smaller_side(column.values) < SMALL < _smaller_side(columns[force].values)
+    ]
+    if not measured:
+        return None
+    best = max(measured, key=lambda name: scores[name])
+    share = _unexplained_share(columns[force].values, columns[best].values)
+    return (best, share**0.5) if share > LEAST_LEFT else None
+
+
+def _smaller_side(x: Array) -> float:
+    """The largest value of the smaller side of zero, over that of the larger side."""
+    sides = sorted((max(float(np.max(x)), 0.0), max(-float(np.min(x)), 0.0)))
+    return sides[0] / sides[1] if sides[1] > 0.0 else 0.0
+
+
+def _unexplained_share(wanted: Array, measured: Array) -> float:
+    """Part of the variance of a measured force that the commanded force does not explain.
+
+    The residual of each row is multiplied by that of the next row, so that noise of single rows and
+    the steps of a converter average out.
+    """
+    rows = len(measured) - LATE
+    late = [wanted[LATE - k : LATE - k + rows] for k in range(LATE + 1)]
+    columns = np.column_stack([*late, np.ones(rows)])
+    target = measured[LATE:]
+    whole = float(np.mean((target - target.mean()) ** 2))
+    solution, *_ = np.linalg.lstsq(columns, target, rcond=1e-8)
+    left = target - columns @ solution
+    return float(np.mean(left[1:] * left[:-1])) / whole if whole > 0 else 0.0
