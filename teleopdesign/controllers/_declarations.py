@@ -89,7 +89,7 @@ def broken_declarations(law: ControlLaw, stage: Stage | None = None) -> tuple[st
         return ()
     stage = stage or Stage(law, _any_values(law))
     broken = [_WORDS[a] for a in _SHAPES if getattr(law, a) and not has_shape(law, a, CONTINUOUS)]
-    if law.linear and not _acts_linearly(law):
+    if law.linear and not _acts_linearly(stage):
         broken.append("linear = True, but is not linear in its input, velocity and states")
     if law.transfer is not None and not _keeps_transfer(stage):
         broken.append("a transfer function, but its states have another one")
@@ -140,12 +140,18 @@ def unknown_symbols(law: ControlLaw) -> list[sp.Symbol]:
 
 
 @lru_cache(maxsize=256)
-def _acts_linearly(law: ControlLaw) -> bool:
-    made = equation_of(law, CONTINUOUS)
+def _acts_linearly(stage: Stage) -> bool:
+    """Whether a law is linear at all values, where parameters that are zero here stay zero.
+
+    One of these may be the reading from which positions count: elsewhere it adds a constant force.
+    """
+    made, symbols = equation_of(stage.law, CONTINUOUS), symbols_of(stage.law)
     if made is None:
         return False
+    zero = {symbols[n]: sp.S(0) for n, value in stage.values.items() if value == 0}
     driving = [SIGNALS[n] for n in ("input", "velocity", "travel_rate")]
-    return is_linear((made.output, *made.rates.values()), [*driving, *made.rates])
+    laws = (x.xreplace(zero) for x in (made.output, *made.rates.values()))
+    return is_linear(laws, [*driving, *made.rates])
 
 
 def _keeps_transfer(stage: Stage) -> bool:

@@ -150,3 +150,18 @@ def test_passivity_of_cancelled_friction_is_proved_as_for_the_law_of_that_name(m
     law = td.cancel({"coulomb": {"level": 0.27}, **more}, smoothing_velocity=smoothing)
     claims = td.diagram_claims(td.haptic_interface(body, cancellation=law)).claims
     assert any(c.claim.status == "proved" for c in claims if c.topic == "friction of Z_M with C")
+
+
+def test_a_spring_that_is_cancelled_in_part_is_a_softer_spring():
+    """Its linear form; readings count from the spring's neutral position."""
+    device = td.Body("prismatic", {"inertia": 0.35}).with_effect(EFFECTS["viscous"], {"damping": 2})
+    stiff = device.with_effect(EFFECTS["spring"], {"stiffness": 25.0})
+    soft = device.with_effect(EFFECTS["spring"], {"stiffness": 5.0})
+    partly = td.haptic_interface(stiff, cancellation=td.cancel({"spring": {"stiffness": 20.0}}))
+    s = 2j * np.pi * np.array([0.1, 1.0, 30.0])
+    forms = [
+        td.frequency.transfer_function(d, output="L", input="R_D")
+        for d in (partly, td.haptic_interface(soft))
+    ]
+    assert [left for _, left in forms] == [(), ()]
+    np.testing.assert_allclose(forms[0][0](s), forms[1][0](s), rtol=1e-12)
