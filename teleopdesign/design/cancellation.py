@@ -97,7 +97,7 @@ def dahl_cancellation(level: Reason, device: Device) -> ProposedController | Non
     limits = {f"a bristle length f_D/sigma_D of {longest}": acting / lengths[longest]}
     if (friction := device.friction) is not None and friction.presliding is not None:
         softest, most = friction.presliding.low, friction.highest.high
-        late, damping = device.delay, device.damping
+        late, damping = device.held_delay, device.damping
         if softest <= 0 or (late > 0 and damping <= 0) or math.isinf(most):
             return None
         passive = softest * math.sqrt(acting / most)

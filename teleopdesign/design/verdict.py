@@ -117,7 +117,8 @@ def _friction_claims(
     device: Device, chosen: ProposedController, friction: FrictionInterval
 ) -> list[Claim]:
     """Claims on friction and its cancellation alone."""
-    body, gain, late, errors = device.body, device.gain, device.delay, device.stated.errors
+    # a command is held for a sample: on average half of it late, and at most all of it
+    body, gain, late, errors = device.body, device.gain, device.held_delay, device.stated.errors
     law, numbers = chosen.controller.stages[0].law, chosen.controller.names()
     level = round_up(numbers[f"{law.name}.{law.bound}"] * gain, digits=6)
     least = round_down(friction.lowest.low, digits=4)
@@ -133,6 +134,7 @@ def _friction_claims(
         compensator_stiffness=_decimal(stiffness),
         presliding_stiffness=presliding,
     )
+    pair = replace(pair, statement=f"{pair.statement}{CONTINUOUS}")
     damped = body.parameters.get("presliding.bristle_damping", Value(0.0, fixed=True))
     bristle = value_interval(damped, errors=errors)
     viscous = damping_interval(body, device.reach, errors=errors).least
@@ -188,6 +190,8 @@ def _decimal(value: float) -> str:
     return f"{value:.12g}"
 
 
+#: end of a statement that the samples of a computer are no part of
+CONTINUOUS = " in continuous time"
 #: amplitudes and frequencies of the simulated motions, over those of the stated motion
 SIZES, FREQUENCIES = (0.1, 0.3, 1.0), (1.0, 3.0, 10.0, 30.0)
 

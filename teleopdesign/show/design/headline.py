@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from ...base.units import unit_of
+from ...design.verdict import CONTINUOUS
 from ...diagnose.criteria import CRITERIA
 from ...diagnose.noise_floor import say_floors
 
@@ -77,5 +78,6 @@ def _verdict(claims: Sequence[Claim]) -> str:
         return known
     margin = getattr(proofs[0].verdict, "margin", math.nan)
     unit = getattr(proofs[0].verdict, "unit", "")
-    words = f"proved for friction and its cancellation (margin {margin:.3g} {unit})"
+    where = CONTINUOUS if CONTINUOUS in proofs[0].statement else ""
+    words = f"proved{where} for friction and its cancellation (margin {margin:.3g} {unit})"
     return f"{words}; the whole device: {known}"
