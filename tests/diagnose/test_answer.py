@@ -10,11 +10,15 @@ import pytest
 from diagnose.contract import violations
 from diagnose.simulated_cases import FEW
 
-from teleopdesign import Model, compare, find_missing
+from teleopdesign import EFFECTS, Model, compare, find_missing
 from teleopdesign.diagnose.answer import answer, write_answer
+from teleopdesign.diagnose.candidates import Candidate
 from teleopdesign.diagnose.predictions import write_predictions
 from teleopdesign.diagnose.probability import shares
+from teleopdesign.diagnose.ranking import REFUSALS
+from teleopdesign.diagnose.statements import Alternative, NotAccepted
 from teleopdesign.show.diagnose.text import ladder_text
+from teleopdesign.show.diagnose.verdict import sentence
 
 EVERY_KEY = {
     "verdict", "missing", "ladder", "noise_floor", "candidates", "indistinguishable",
@@ -42,6 +46,29 @@ def test_what_is_less_likely_than_not_is_not_named(diagnosis):
     # the leading candidate is still shown
     assert answer(unlikely)["candidates"][0]["effect"] == "stribeck"
     assert "less likely than not" in ladder_text(unlikely)
+
+
+def test_one_of_two_look_alikes_is_called_missing_beside_an_unlikely_effect(diagnosis):
+    """A weak second step does not take away what is said of the first one."""
+    first = diagnosis.rungs[1]
+    beside = Candidate(EFFECTS["bias"], "device")
+    alike = replace(first, named=False, alternatives=(Alternative(beside),))
+    weak = replace(first, added=Candidate(EFFECTS["spring"], "device"), named=False)
+    rows = (diagnosis.rungs[0], alike, weak)
+    verdict = sentence(replace(diagnosis, verdict="undecided", rungs=rows))
+    assert "stribeck at device or bias at device is missing" in verdict
+    assert "spring at device: less likely than not" in verdict
+
+
+def test_a_verdict_says_which_refused_effect_leaves_less(diagnosis):
+    blind = Candidate(EFFECTS["actuator_dead_zone"], "device")
+    less = 0.5 * diagnosis.before.check_error
+    refused = NotAccepted("refused", blind, less, less, REFUSALS["blind"])
+    alone = replace(diagnosis, rungs=diagnosis.rungs[:1], not_accepted=(refused,))
+    alone = replace(alone, verdict="undecided")
+    assert "actuator_dead_zone" in sentence(alone)
+    hides = replace(alone, not_accepted=(replace(refused, check_error_at_command=1.0),))
+    assert "actuator_dead_zone" not in sentence(hides)
 
 
 def test_the_answer_states_the_result_of_the_diagnosis(written, diagnosis):

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 from ...base.sentences import WIDTH, with_standard_error, wrap
 from ...base.units import unit_after_number
-from .text import NAME, error_line, floor_line, name_of_error, sentence, table_of_joints
+from .text import NAME, error_line, floor_line, name_of_error, table_of_joints
+from .verdict import sentence
 
 if TYPE_CHECKING:
     from ...diagnose.diagnosis import Diagnosis

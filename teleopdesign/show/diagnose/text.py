@@ -12,9 +12,9 @@ from ...base.units import unit_after_number
 from ...blocks import Value
 from ...diagnose.criteria import CRITERIA
 from ...diagnose.evidence import records_differ
-from ...diagnose.noise_floor import say_floors
 from ...diagnose.undetermined import open_parameters_line
 from ..registry import shows
+from .verdict import sentence
 
 if TYPE_CHECKING:
     from ...diagnose.diagnosis import Diagnosis
@@ -219,88 +219,4 @@ def records_line(diagnosis: Diagnosis) -> str:
     return (
         f"{line}: the machine was not the same in both (friction, temperature, load), or moved "
         "differently"
-    )
-
-
-def sentence(diagnosis: Diagnosis) -> str:
-    """The verdict of a diagnosis in words; what is left of an arm is said of each joint."""
-    if diagnosis.joints:
-        names = ", ".join(map(str, diagnosis.missing))
-        why = f" {diagnosis.silence}" if diagnosis.silence else ""
-        return f"verdict: {diagnosis.verdict}{': ' + names if names else ''}.{why}"
-    rest = _rest(diagnosis)
-    if diagnosis.verdict == "model_adequate":
-        noise = f" The remaining error is noise ({diagnosis.left:.2f} noise floors)."
-        return f"verdict: model_adequate.{rest or noise}"
-    if diagnosis.verdict == "effects_missing":
-        return f"verdict: effects_missing: {_named_effects(diagnosis)}{rest}"
-    left, added = say_floors(diagnosis.left), [r for r in diagnosis.rungs if r.added is not None]
-    names = ", ".join(r.title for r in added)
-    if diagnosis.unlikely:
-        return (
-            f"verdict: undecided, leading candidate {names}: less likely than not, because "
-            f"{_why_unlikely(diagnosis) or f'{left} noise floors are left'}."
-        )
-    if diagnosis.groups:
-        names = "; ".join(" or ".join(map(str, g)) for g in diagnosis.groups)
-        return f"verdict: undecided, {names}: these records do not decide.{rest}"
-    if diagnosis.silence:
-        return f"verdict: undecided. {diagnosis.silence}"
-    which = "effect that may be named" if diagnosis.not_accepted else "candidate effect"
-    return (
-        f"verdict: undecided. No {which} explains the {left} noise floors that are left."
-        f"{_nearest(diagnosis)}"
-    )
-
-
-def _why_unlikely(diagnosis: Diagnosis) -> str:
-    """The free function that explains more than an accepted effect does; "": none is known."""
-    compared = [c for c in diagnosis.candidates if c.rho is not None and c.rho < 1.0]
-    if not compared:
-        return ""
-    one = min(compared, key=lambda c: c.rho or 0.0)
-    rho = one.rho or 0.0
-    times = f"{1.0 / rho:.2g} times as much as" if rho > 0.1 else "far more than"
-    return f"a free function of {one.free_function} explains {times} {one.candidate}"
-
-
-def _named_effects(diagnosis: Diagnosis) -> str:
-    """The effects that are missing, and those that are less likely than not, as a sentence."""
-    added = [r for r in diagnosis.rungs if r.added is not None]
-    names = ", ".join(_with_look_alikes(r) for r in added if r.added in diagnosis.missing)
-    either = "".join(
-        f" Also {_with_look_alikes(r)} is missing: these records do not decide which."
-        for r in diagnosis.either
-    )
-    rest = [r for r in added if r.added not in diagnosis.missing and r not in diagnosis.either]
-    less = [r.title for r in rest]
-    if not less:
-        return f"{names}.{either}"
-    describe = "this effect describes" if len(less) == 1 else "these effects describe"
-    return (
-        f"{names}.{either} {', '.join(less)}: less likely than not; the force that {describe} "
-        "counts as unexplained."
-    )
-
-
-def _with_look_alikes(row: LadderRow) -> str:
-    return " or ".join((row.title, *(str(one.candidate) for one in row.alternatives)))
-
-
-def _rest(diagnosis: Diagnosis) -> str:
-    """A sentence on what is left above noise; "": only noise is left."""
-    left = say_floors(diagnosis.left)
-    if not diagnosis.more_is_missing:
-        return ""
-    return f" The remaining error is {left} noise floors: more is missing.{_nearest(diagnosis)}"
-
-
-def _nearest(diagnosis: Diagnosis) -> str:
-    """A sentence on the candidate with the least error where none is supported; "": none helps."""
-    near = diagnosis.nearest
-    if near is None:
-        return ""
-    return (
-        f" {near.candidate} comes nearest and would leave {percent(near.check_error, '.3g')}: "
-        f"{near.reason or 'on these records this may be chance'}."
     )

@@ -15,7 +15,8 @@ from ...diagnose import Diagnosis
 from ...diagnose.ranking import REFUSALS
 from ...diagnose.statements import CandidateResult, LadderRow, StepResult
 from ...measurement.experiment import Experiment
-from ..diagnose.text import command_error_text, sentence
+from ..diagnose.text import command_error_text
+from ..diagnose.verdict import sentence
 
 #: a row of a table of the page: name of a cell -> its content
 PageRow = Mapping[str, Any]

@@ -27,7 +27,7 @@ from ...base.sentences import with_error_on_page as with_error
 from ...diagnose import Diagnosis, SimulationComparison
 from ...diagnose.answer import answer
 from ...studies.fingerprint import versions
-from ..diagnose.text import sentence
+from ..diagnose.verdict import sentence
 from ..figures.graph import thin_series
 from .candidate_table import (
     COLUMNS,
