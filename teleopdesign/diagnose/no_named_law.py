@@ -1,8 +1,9 @@
 """A force that no law of the catalogue describes: the final model with a curve in its place.
 
 Where more than noise is left, each curve of the catalogue that has no named law (`Effect.free`) is
-added to the final model. Of those that surely leave less, the best is stated with its model, so
-that work can go on with it. It is no candidate, and the verdict does not change.
+added to the final model. Of those that explain most of what is left, the best is stated with its
+model, so that work can go on with it. It is no candidate, and the verdict does not change. A curve
+that explains less bends towards any other law.
 """
 
 from __future__ import annotations
@@ -18,7 +19,9 @@ from ..measurement.friction_curve import count_speeds
 from ..measurement.prepare import Prepared
 from ..model import Model
 from .candidates import Candidate, fits_curve, tells_place_from_time
+from .criteria import CRITERIA
 from .decision import is_better
+from .evidence import explained_share
 from .fit import Fit
 from .noise_floor import NoiseFloor
 from .search import estimate_from_starts
@@ -48,7 +51,7 @@ class FreeForm(ByValue):
 
 
 def free_form(fit: Fit, floor: NoiseFloor, prepared: Prepared) -> FreeForm | None:
-    """The curve that leaves least beside the final model; None where none surely leaves less.
+    """The curve that leaves least beside the final model; None where none explains most of that.
 
     fit: of the final model, on these records. At a joint of an arm no curve is tried: the links
     would have to be estimated with it.
@@ -59,7 +62,11 @@ def free_form(fit: Fit, floor: NoiseFloor, prepared: Prepared) -> FreeForm | Non
         c: estimate_from_starts(fit.model.with_effect(c.effect, at=c.at), prepared, fit)
         for c in _curves(fit.model, prepared)
     }
-    better = {c: one for c, one in fits.items() if is_better(fit, one, floor)}
+    better = {
+        c: one
+        for c, one in fits.items()
+        if is_better(fit, one, floor) and explained_share(fit, one, floor) >= CRITERIA.mostly
+    }
     if not better:
         return None
     best = min(better, key=lambda c: better[c].check_error)
