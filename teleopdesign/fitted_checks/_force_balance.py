@@ -25,6 +25,7 @@ from ..diagnose.fit import block_numbers, standard_errors
 from ..effects import EFFECTS
 from ..measurement.filtering import Array
 from ..measurement.first_guess import SURELY_LESS
+from ..measurement.limits import HALF
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
 from ._force_timing import (
@@ -140,7 +141,8 @@ def _balance_of(
         return None
     measured = float(np.sqrt(np.mean((rows[0] + rows[1]) ** 2)))
     plain = fit_balance(bands, forces, [], ON_TIME, BANDS[-1:])
-    if len(forces) > 1 and not plain.size < SURELY_LESS * _left_of_law(rows):
+    law = _left_of_law(rows)
+    if len(forces) > 1 and law < HALF * size[forces[0]] and not plain.size < SURELY_LESS * law:
         # one force is computed from the other, so that the motion tells no gain: their sum counts
         bands = {b: [sum_of_forces(p) for p in parts] for b, parts in bands.items()}
         forces = forces[:1]

@@ -9,6 +9,7 @@ from ..base.finding import Finding
 from ..base.units import unit_of
 from ..blocks import Body
 from ..check import CheckedRecording
+from ..measurement.first_guess import is_first_guess
 from ._force_balance import ForceBalance
 
 #: a gain or an inertia that is wrong by more than this factor is in another unit; by less it may be
@@ -70,6 +71,11 @@ def check_strengths(recording: CheckedRecording, balance: ForceBalance) -> Itera
         and estimate.sure > 0
         and body.parameter(name).quantity in POWERS
     }
+    # nobody states what these records gave as a first value
+    inertia, records = body.parameters["inertia"], recording.experiment.fit_records
+    if not inertia.fixed and is_first_guess(records, balance.body, inertia.value):
+        yield from _poor_guess(body, balance, {"inertia": ratios.get("inertia", 1.0)})
+        return
     if 1 / FAR < ratios.get("inertia", 1.0) < FAR:
         yield from tuple(_force_scale(balance, ratios)) or _poor_guess(body, balance, ratios)
         return
