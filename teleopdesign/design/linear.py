@@ -88,13 +88,13 @@ def _linear(diagram: Diagram, motion: StatedMotion) -> Diagram:
         assert isinstance(block.controller, Controller)
         if all(stage.law.linear for stage in block.controller.stages):
             continue
-        if (less := _equal_force(block.controller, motion)) is not None:
+        if (less := first_harmonic(block.controller, motion)) is not None:
             damping, stiffness = damping - less.imag / motion.omega, stiffness - less.real
             diagram = diagram.without(block.name)
     return diagram.with_block("Z_M", without_friction(body, damping=damping, stiffness=stiffness))
 
 
-def _equal_force(law: Controller, motion: StatedMotion) -> complex | None:
+def first_harmonic(law: Controller, motion: StatedMotion) -> complex | None:
     """First harmonic of a law that the motion drives, N/m or N m/rad; None: it has none."""
     try:
         harmonic = describing_function(law, amplitude=motion.amplitude, frequency=motion.frequency)

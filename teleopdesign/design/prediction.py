@@ -106,7 +106,7 @@ def predict(
     """Predict the force error of the four cases along a prescribed motion.
 
     hybrid: a device with C and H (either may be absent), without a hand
-    linear: the same with the part of C that linear theory has, that of friction
+    linear: the same with the part of C of which linear theory has a first harmonic
     raises ModelError: not even the device without compensation can be simulated
     """
     by_theory, left_out = linear_error(linear, motion)

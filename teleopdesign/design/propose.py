@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from ..base.errors import ModelError
+from ..base.sentences import join_names
 from ..block_cuts import BlockDiagnosis
 from ..blocks import Body, free_space
 from ..diagnose import Diagnosis
@@ -24,8 +25,14 @@ from .cancellation import (
 from .device import Device
 from .expected import ExpectedError, expected_error, unexplained_force
 from .force_feedback import FeedbackLoop, force_feedback
-from .linear import transparency
-from .other_effects import following_cancellation, late_force_claim, not_cancelled, with_forces
+from .linear import first_harmonic, transparency
+from .other_effects import (
+    following_cancellation,
+    forces_to_cancel,
+    late_force_claim,
+    not_cancelled,
+    with_forces,
+)
 from .outcome import Design
 from .prediction import Prediction, felt_impedance, predict
 from .quasi_static import SHARES, residual_friction
@@ -149,7 +156,7 @@ def _trial(device: Device, option: ProposedController | None) -> Trial:
     h, loop = force_feedback(
         device, smoothing_velocity=0.0 if smoothing is None else names[smoothing]
     )
-    diagram, linear = (
+    diagram, of_friction = (
         haptic_interface(
             device.body,
             cancellation=one.controller if one else None,
@@ -157,7 +164,13 @@ def _trial(device: Device, option: ProposedController | None) -> Trial:
         )
         for one in (whole, option)
     )
+    has_harmonic = not whole or first_harmonic(whole.controller, device.motion) is not None
+    linear = diagram if has_harmonic else of_friction
     prediction = predict(diagram, device.motion, device.sampling, linear=linear)
+    if whole and not has_harmonic:
+        gone = f"C of {join_names(list(forces_to_cancel(device)))}"
+        left_out = ", ".join(filter(None, [prediction.left_out, gone]))
+        prediction = replace(prediction, left_out=left_out)
     return Trial(option, whole, h, loop, diagram, prediction)
 
 

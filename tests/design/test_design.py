@@ -83,6 +83,12 @@ def test_presliding_allows_a_dahl_cancellation_only_and_softer(rod):
     assert made.other is None
 
 
+def test_linear_theory_has_the_spring_that_is_cancelled(rod):
+    """With the part of C for friction alone, it stated the error of a spring that is not there."""
+    mbc = design(with_effect(rod, "spring", {"stiffness": 200.0})).prediction.cases["MBC"]
+    assert mbc.linear == pytest.approx(mbc.quasi_static, rel=0.25)
+
+
 def test_a_held_command_is_late_by_its_sample_too(rod):
     """With the computing delay alone, 2 um at 202 Hz took energy out of such a device."""
     diagnosis = with_effect(rod, "presliding", {"stiffness": 4000.0})
