@@ -31,10 +31,9 @@ def test_a_planted_effect_is_detected(diagnosis, stribeck_case):
     check_diagnosis(diagnosis, stribeck_case, "stribeck")
 
 
-@pytest.mark.parametrize("effect", ["presliding", "actuator_lag"])
-def test_a_planted_effect_of_another_kind_is_detected(effect, tmp_path):
-    folder = write_simulated(tmp_path / effect, effect)
-    check_diagnosis(diagnosed(folder, FEW), folder, effect)
+def test_a_planted_effect_of_another_kind_is_detected(tmp_path):
+    folder = write_simulated(tmp_path / "presliding", "presliding")
+    check_diagnosis(diagnosed(folder, FEW), folder, "presliding")
 
 
 def check_diagnosis(diagnosis, folder, effect):

@@ -99,7 +99,7 @@ def test_no_effect_is_accepted_for_less_force(slid):
     assert [str(r.candidate) for r in ranking.ranked if is_supported(base, r, floor)] == []
     # those that leave next to nothing are refused, and stand behind those that count
     cheats = [r for r in ranking.ranked if r.fit.check_error < 0.3 * base.check_error]
-    assert len(cheats) >= 3 and all(r.refused for r in cheats)
+    assert len(cheats) >= 2 and all(r.refused for r in cheats)
     places = {r.candidate.key: i for i, r in enumerate(ranking.ranked)}
     counting = [places[r.candidate.key] for r in ranking.ranked if r.counts]
     assert min(places[r.candidate.key] for r in cheats) > max(counting, default=-1)
