@@ -10,8 +10,11 @@ import gzip
 import os
 import shutil
 import sys
+from collections import defaultdict
+from functools import lru_cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 from devices import CANCELLATION, FEEDBACK, LOOP, LUGRE, body
 from few_effects import FEW
@@ -35,6 +38,9 @@ TIMELESS = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 settings.register_profile("ci", derandomize=True, max_examples=30, **TIMELESS)
 settings.register_profile("here", max_examples=30, **TIMELESS)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
+
+#: steps of one structure that a test simulates in plain Python
+SHORT = 10_000
 
 #: folder or file of tests -> what it shares with others and costs seconds: they stay together
 TOGETHER = {
@@ -101,6 +107,56 @@ def all_trees():
         every = learnable.TREES
         patch.setattr(learnable, "TREES", 5)
         yield every
+
+
+@pytest.fixture(scope="session")
+def plain_simulations():
+    """The first `SHORT` steps of a structure in each test run in plain Python: the same source.
+
+    To compile a structure takes 1 to 4 s, to load its machine code 0.1 s; 10 000 steps in plain
+    Python take a third of a second. Yields the steps that are left, by structure.
+    """
+    from teleopdesign.realise import program, side_by_side
+
+    compiled, left = program.loop_of, defaultdict(lambda: SHORT)
+
+    @lru_cache(maxsize=256)
+    def loop_of(laws, lanes):
+        source = program.module_source(laws, jit=False, lanes=lanes)
+        plain = program._entries(program._execute(source), lanes)
+
+        def run(steps, function, *arguments):
+            left[laws] -= steps * lanes
+            loop = plain if left[laws] >= 0 else compiled(laws, lanes)
+            with np.errstate(all="ignore"):  # plain Python warns where compiled code returns inf
+                getattr(loop, function)(*arguments)
+
+        return program.CompiledLoop(
+            lanes,
+            lambda samples, inner, *rest: run(samples * inner, "run", samples, inner, *rest),
+            lambda *arguments: run(len(arguments[-1]), "follow", *arguments),
+            lambda *arguments: run(0, "differentiate_at_rest", *arguments),
+        )
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(program, "loop_of", loop_of)
+        patch.setattr(side_by_side, "loop_of", loop_of)
+        yield left
+
+
+@pytest.fixture
+def compiled_simulations(plain_simulations, monkeypatch):
+    """No step of a simulation runs in plain Python."""
+    monkeypatch.setattr(plain_simulations, "default_factory", lambda: -1)
+    plain_simulations.clear()
+    yield
+    plain_simulations.clear()
+
+
+@pytest.fixture(autouse=True)
+def short_simulations(plain_simulations):
+    """Each test has separate steps; those of `realise` have none (see there)."""
+    plain_simulations.clear()
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -36,17 +36,6 @@ def test_every_file_that_an_example_reads_has_its_place_on_the_page(page):
     assert not missing
 
 
-def test_the_robustness_study_is_written_in_at_most_thirty_lines():
-    """Diagram, both studies, claim and both figures, as a reader types them."""
-    page = (DOCS / "robustness_study.md").read_text(encoding="utf-8")
-    blocks = re.findall(r"^```\{session\}\n(.*?)^```", page, flags=re.MULTILINE | re.DOTALL)
-    diagram = (DOCS / "examples" / "swing.toml").read_text(encoding="utf-8")
-    lines = [*diagram.splitlines(), *"".join(blocks).splitlines()]
-    typed = [line for line in lines if line.strip() and not line.startswith((":", "#"))]
-    assert 20 < len(typed) <= 30
-    assert max(map(len, typed)) <= 104
-
-
 def test_the_picture_of_the_house_has_every_room_in_its_place():
     """`python docs/make_house.py` was forgotten when a layer was added."""
     drawing = (DOCS / "_static" / "house.svg").read_text(encoding="utf-8")

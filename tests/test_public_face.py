@@ -68,20 +68,6 @@ def test_a_folder_is_there_without_a_separate_import():
     assert run.stdout.split() == [f"teleopdesign.{folder}" for folder in folders]
 
 
-@pytest.mark.slow
-def test_functions_and_folders_keep_apart_in_any_order():
-    code = (
-        "import teleopdesign as td\n"
-        "td.simulate_diagram, td.derive_transfers, td.design_compensation\n"
-        "from teleopdesign.simulate import simulate\n"
-        "from teleopdesign.design import design\n"
-        "assert td.simulate_diagram is simulate is td.simulate.simulate\n"
-        "assert td.design_compensation is design is td.design.design\n"
-        "assert callable(td.teleoperator) and callable(td.passivity.teleoperator_two_port)\n"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True)
-
-
 def test_few_names_are_shown_and_every_other_public_name_stays_within_reach():
     further = [name for names in td.FURTHER.values() for name in names]
     assert len(td.__all__) <= 40 and not set(further) & set(td.__all__)

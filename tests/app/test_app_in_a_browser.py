@@ -4,12 +4,11 @@ import shutil
 import urllib.error
 import urllib.request
 
-import numpy as np
 import pytest
 from app.browser import CHROMIUM, WHY, opened, picture, press
 from few_effects import FEW
 
-from teleopdesign import example, load_experiment
+from teleopdesign import example
 
 #: presses *Add* and counts the seconds until the page holds the new rung
 SECONDS_TO_THE_NEW_RUNG = """() => new Promise(done => {
@@ -40,52 +39,6 @@ def test_the_page_is_for_this_machine_and_for_whoever_has_the_token(served):
     assert code in (401, 403) or "login" in url  # a page that asks for the token, and no more
     code, url = status(address.partition("?")[0] + "?access_token=wrong")
     assert code in (401, 403) or "login" in url
-
-
-def fill_in(page, label, text):
-    """Type into a field by keyboard alone; Enter takes what stands there."""
-    field = page.get_by_label(label, exact=True)
-    field.focus()
-    page.keyboard.press("Control+A")
-    page.keyboard.type(text)
-    page.keyboard.press("Enter")
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(CHROMIUM is None, reason=WHY)
-def test_units_that_no_name_says_are_typed_by_keyboard(served, tmp_path):
-    address, folder = served
-    t = np.arange(6000) / 500
-    q = 25.0 * np.sin(2 * t)
-    rows = np.column_stack([1000 * t, q, 800 * np.sign(np.cos(2 * t)) + 30 * q])
-    log = tmp_path / "bare.csv"
-    np.savetxt(log, rows, delimiter=",", header="tick,joint,drive", comments="", fmt="%.9g")
-    with opened(address) as page:
-        page.locator("input[type=file]").set_input_files(log)
-        page.get_by_text("No column name states the unit of").wait_for()
-        fill_in(page, "position unit", "furlong")
-        page.get_by_text("unit of 'joint': found 'furlong', expected a unit such as").wait_for()
-        fill_in(page, "position unit", "deg")
-        page.get_by_role("cell", name="deg", exact=True).wait_for()
-        # Tab leads from a column to its unit
-        page.get_by_label("actuator force", exact=True).focus()
-        page.keyboard.press("Tab")
-        page.keyboard.type("mA")
-        page.keyboard.press("Enter")
-        page.get_by_role("cell", name="mA", exact=True).wait_for()
-        fill_in(page, "time unit", "ms")
-        fill_in(page, "torque constant", "0.05 N*m/A")
-        page.get_by_text("placeholder for the motor's constant").wait_for(state="detached")
-        page.get_by_text("No column name states the unit of").wait_for(state="detached")
-        picture(page, folder, "units", settle=3000, full_page=True)  # the log is drawn anew
-        press(page, "Make the experiment")
-        page.get_by_text("bare_experiment is created").wait_for()
-    channels = load_experiment(folder / "bare_experiment").channels.values()
-    assert {c.quantity: c.unit for c in channels} == {
-        "time": "ms",
-        "position": "deg",
-        "actuator_force": "mA",
-    }
 
 
 @pytest.mark.slow

@@ -95,14 +95,3 @@ def test_a_page_is_not_served_for_an_unknown_effect(tmp_path, capsys):
     pytest.importorskip("marimo", reason="needs the extra app")
     assert main(["app", str(tmp_path), "--no-browser", "--only", "stribek"]) == 2
     assert 'did you mean "stribeck"' in capsys.readouterr().err
-
-
-def test_no_unit_of_the_page_is_read_as_emphasis(bench):
-    """Markdown takes what stands between two asterisks for emphasis: `kg*m^2 ... kg*m^2`."""
-    better = bench.add("stribeck", "device")
-    free = [name for name, value in better.model.parameters.items() if value.value]
-    texts = [
-        pages.compare_rungs(better, 0, 1),
-        *(pages.move_parameter(better, name, 1.1) for name in free),
-    ]
-    assert not [text for text in texts if "*" in text]

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from check.made_channels import ask, channel, strange_velocity
-from clock import takes_less_than
 from shared_data import shared_folder
 
 from teleopdesign import example, load_experiment
@@ -207,13 +206,6 @@ def test_fine_steps_and_a_relay_are_no_coarse_steps(rod):
         assert warnings(experiment, "force steps") == []
 
 
-def test_fine_steps_of_a_smooth_force_are_no_coarse_steps(rod):
-    """Every level is passed through, and still nothing is lost."""
-    smooth = np.round(np.sin(2 * np.pi * 0.5 * T), 2)
-    experiment = spoilt(rod, "interaction_force", lambda x: np.resize(smooth, len(x)))
-    assert warnings(experiment, "force steps") == []
-
-
 def with_channel(experiment, quantity, **changes):
     key = f"device.{quantity}"
     channel = replace(experiment.channels[key], **changes)
@@ -288,18 +280,6 @@ def test_segments_and_what_is_too_short_to_be_compared_are_counted(rod):
     assert finding.numbers["too_short"] == 1
     assert finding.numbers["left_out"] == pytest.approx(0.3)
     assert finding.concern == "note"  # a fortieth of the record
-
-
-@pytest.mark.slow
-def test_an_hour_at_a_kilohertz_is_checked_in_bounded_time(rod):
-    n = 3_600_000
-    first = rod.records[0]
-    signals = {k: np.resize(np.concatenate([v, v[::-1]]), n) for k, v in first.signals.items()}
-    record = replace(
-        first, file="long", time=np.arange(n) / RATE, segments=(slice(0, n),), signals=signals
-    )
-    with takes_less_than(60.0):  # s; about 6 on a free core
-        check_signals(replace(rod, records=(record,)))
 
 
 @pytest.mark.slow

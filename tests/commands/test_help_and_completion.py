@@ -99,13 +99,3 @@ def test_bash_completes_commands_options_effects_and_files(words, expected, bash
 def test_an_unknown_shell_is_one_line(refused):
     assert 'no shell "bsh"' in refused("completion", "bsh")
     assert 'did you mean "bash"' in refused("completion", "bsh")
-
-
-def test_the_package_is_the_command():
-    import subprocess
-    import sys
-
-    done = subprocess.run(
-        [sys.executable, "-m", "teleopdesign", "--version"], capture_output=True, text=True
-    )
-    assert done.returncode == 0 and done.stdout.startswith("teleopdesign 0.")

@@ -5,7 +5,7 @@ import pytest
 
 import teleopdesign as td
 
-T = np.arange(0.0, 14.0, 1e-3)
+T = np.arange(0.0, 14.0, 2e-3)
 #: axis -> what would stand for the two
 STAND_INS = {"revolute": "gravity", "prismatic": "stops"}
 

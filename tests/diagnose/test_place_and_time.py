@@ -117,18 +117,14 @@ def write_sweep(folder, law):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "law",
-    [
-        lambda v: np.tanh(v / 0.2),
-        lambda v: np.arcsinh(20.0 * v) / np.arcsinh(20.0),
-    ],
-    ids=["tanh", "asinh"],
-)
-def test_friction_that_begins_with_speed_is_called_no_pattern_of_the_place(tmp_path, law):
+def test_friction_that_begins_with_speed_is_called_no_pattern_of_the_place(tmp_path):
     """A short period was named with a probability of 0.95: it was slow near turning points only."""
     names = ("coulomb", "viscous", "cogging", "torque_ripple", "position_dependent_friction")
     few = {n: EFFECTS[n] for n in (*names, "friction_drift", "shear_thinning", "bias")}
+
+    def law(v):
+        return np.arcsinh(20.0 * v) / np.arcsinh(20.0)
+
     experiment = load_experiment(write_sweep(tmp_path / "case", law))
     diagnosis = find_missing(experiment, Model.from_experiment(experiment, few))
     assert {c.effect.name for c in diagnosis.missing} <= {"shear_thinning"}

@@ -36,9 +36,9 @@ def rod():
 
 
 @pytest.mark.parametrize(
-    # a tip behind a gap is a tip too: the one without a gap is for the slow run
+    # a tip behind a gap is a tip too
     "effect",
-    [pytest.param("transmission_compliance", marks=pytest.mark.slow), "backlash", "actuator_lag"],
+    ["transmission_compliance", pytest.param("backlash", marks=pytest.mark.slow), "actuator_lag"],
 )
 def test_bodies_with_hidden_states_start_with_the_record(rod, effect):
     fit, prepared = rod
@@ -107,7 +107,8 @@ def test_what_reading_moves_to_another_magnitude_is_not_corrected(rod, monkeypat
     assert refused.model.parameters["device.coulomb.level"].value == level.value
 
 
-@pytest.mark.parametrize("effects", [(), ("tip_friction",)])
+# with friction of the tip another loop is compiled
+@pytest.mark.parametrize("effects", [(), pytest.param(("tip_friction",), marks=pytest.mark.slow)])
 def test_what_is_simulated_is_what_the_residual_knows(rod, effects):
     """Dry friction of a tip held by a bristle of 10 um was a spring beside the transmission."""
     rod_fit, prepared = rod

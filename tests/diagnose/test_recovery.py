@@ -1,7 +1,5 @@
 """Plant an effect, diagnose, find it. Plant none, find none. Plant a look-alike, hear so."""
 
-import math
-
 import numpy as np
 import pytest
 from cases import make_case, write_case
@@ -33,10 +31,9 @@ def test_a_planted_effect_is_detected(diagnosis, stribeck_case):
     check_diagnosis(diagnosis, stribeck_case, "stribeck")
 
 
-@pytest.mark.parametrize("effect", ["presliding", "actuator_lag"])
-def test_a_planted_effect_of_another_kind_is_detected(effect, tmp_path):
-    folder = write_simulated(tmp_path / effect, effect)
-    check_diagnosis(diagnosed(folder, FEW), folder, effect)
+def test_a_planted_effect_of_another_kind_is_detected(tmp_path):
+    folder = write_simulated(tmp_path / "presliding", "presliding")
+    check_diagnosis(diagnosed(folder, FEW), folder, "presliding")
 
 
 def check_diagnosis(diagnosis, folder, effect):
@@ -92,13 +89,12 @@ def test_a_parameter_led_astray_does_not_make_what_is_missing_pass_for_noise(tmp
 # the fit does not lean on the user's numbers
 
 
-@pytest.mark.parametrize("factor", [0.8, pytest.param(1.2, marks=pytest.mark.slow)])
-def test_starting_values_off_by_a_fifth_lead_to_the_same_fit(factor, experiment, diagnosis):
+def test_starting_values_off_by_a_fifth_lead_to_the_same_fit(experiment, diagnosis):
     from teleopdesign import fit
 
     model = Model.from_experiment(experiment)
     off = fit(
-        model.with_values({n: factor * v.value for n, v in model.parameters.items()}), experiment
+        model.with_values({n: 0.8 * v.value for n, v in model.parameters.items()}), experiment
     )
     for name, value in diagnosis.before.model.parameters.items():
         # a tenth of what the record tells the parameter to
@@ -116,18 +112,3 @@ def test_a_fit_alone_gives_what_a_diagnosis_that_adds_nothing_gives(experiment):
     # value and standard error of each, to the last digit: the same steps on the same draws
     assert alone.parameters == diagnosed.model.parameters
     assert alone.parameters != diagnosed.estimated.parameters
-
-
-def test_parameters_carry_standard_errors_that_fit_their_distance_to_the_truth(
-    diagnosis, stribeck_case
-):
-    truth = truth_of(stribeck_case)
-    values = dict(truth["model_parameters"])
-    values |= {
-        f"device.stribeck.{n}": v["value"] for n, v in truth["effects"][0]["parameters"].items()
-    }
-    for name, true in values.items():
-        parameter = diagnosis.model.parameters[name]
-        assert math.isfinite(parameter.stderr) and parameter.stderr > 0
-        # the stated error is that of noise; the method's own bias is within 3 % here
-        assert abs(parameter.value - true) < 5 * parameter.stderr + 0.03 * abs(true)

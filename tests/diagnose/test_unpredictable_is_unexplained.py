@@ -59,13 +59,9 @@ SWEEPS = {
     "position_dependent_gain": ("fall", (0.1, 1.0, 10.0, 100.0, 1e4), {"centre": 0.0}),
     "torque_ripple": ("amplitude", (0.1, 0.5, 1.0), {"period": 0.3, "phase": 0.0}),
     "load_dependent_friction": ("coefficient", (0.1, 0.5, 0.9, 0.999), {}),
-    "fades_when_large": ("part", (0.01, 0.3, 1.0, 30.0, 1e3), {}),
-    "next_to_nothing": ("part", (0.1, 0.9, 1.0), {}),
     "soft_limit": ("limit", (0.01, 0.5, 1.0, 2.0), {}),
-    "very_slow": ("time_constant", (0.1, 1.0, 30.0, 1e3), {}),
     "forgets_what_lasts": ("part", (0.3, 0.9, 1.0), {"time_constant": 3.0}),
     "takes_up_what_acts": ("part", (0.1, 0.5, 0.9, 1.0), {}),
-    "feeds_back": ("part", (0.1, 0.5, 0.9, 1.0), {}),
     "feeds_back_late": ("part", (0.3, 0.9, 1.0), {"time_constant": 0.1}),
 }
 
@@ -88,7 +84,7 @@ def test_the_figure_that_counts_does_not_fall_by_a_force_that_is_thrown_away(nam
         lower = gain_at_command(base, error) > 2 * CRITERIA.relative_improvement
         assert refusal(base, error) == "blind" or not lower, (value, error.at_command)
         assert not is_better(base, error, floor)
-    if name in ("actuator_saturation", "soft_limit", "feeds_back", "takes_up_what_acts"):
+    if name in ("actuator_saturation", "soft_limit", "takes_up_what_acts"):
         assert min(plain) < 0.5 * base.check_error, "the plain error could be cheated"
 
 
@@ -103,7 +99,7 @@ def test_no_effect_is_accepted_for_less_force(slid):
     assert [str(r.candidate) for r in ranking.ranked if is_supported(base, r, floor)] == []
     # those that leave next to nothing are refused, and stand behind those that count
     cheats = [r for r in ranking.ranked if r.fit.check_error < 0.3 * base.check_error]
-    assert len(cheats) >= 3 and all(r.refused for r in cheats)
+    assert len(cheats) >= 2 and all(r.refused for r in cheats)
     places = {r.candidate.key: i for i, r in enumerate(ranking.ranked)}
     counting = [places[r.candidate.key] for r in ranking.ranked if r.counts]
     assert min(places[r.candidate.key] for r in cheats) > max(counting, default=-1)

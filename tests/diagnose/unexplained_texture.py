@@ -98,23 +98,9 @@ CHEATS = {
     effect.name: effect
     for effect in (
         _named_effect(
-            "fades_when_large", "actuation",
-            lambda now, p: now.command / (1 + p.part * now.command**2),
-            {"part": Parameter("dimensionless", "k", search=FitSearch(starts=(0.3, 3.0, 1e3)))},
-            {"part": 0.0},
-        ),
-        _named_effect(
-            "next_to_nothing", "actuation", lambda now, p: (1 - 0.99 * p.part) * now.command,
-            PART, {"part": 0.0},
-        ),
-        _named_effect(
             "soft_limit", "actuation", lambda now, p: p.limit * sp.tanh(now.command / p.limit),
             {"limit": Parameter("force", "l", search=FitSearch(starts=(0.3, 1.0)))},
             {"limit": float("inf")},
-        ),
-        _named_effect(
-            "very_slow", "actuation", lambda now, p: now.slow, SLOW, {"time_constant": 0.0},
-            states={"slow": State("force", _lagging)},
         ),
         _named_effect(
             "forgets_what_lasts", "actuation", lambda now, p: now.command - p.part * now.slow,
@@ -123,9 +109,6 @@ CHEATS = {
         _named_effect(
             "takes_up_what_acts", "friction_level", lambda now, p: p.part * abs(now.acting_force),
             PART, {"part": 0.0},
-        ),
-        _named_effect(
-            "feeds_back", "force", lambda now, p: p.part * now.acting_force, PART, {"part": 0.0},
         ),
         _named_effect(
             "feeds_back_late", "force", lambda now, p: p.part * now.slow, {**PART, **SLOW},

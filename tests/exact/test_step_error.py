@@ -9,7 +9,7 @@ from exact.simulated import draw, pair
 
 from teleopdesign.simulate import simulate
 
-CASES = int(os.environ.get("TELEOPDESIGN_MACHINES", "90"))
+CASES = int(os.environ.get("TELEOPDESIGN_MACHINES", "48"))
 TIMES = 1e-3 * np.arange(201)
 #: of the largest size: below it stands the rounding of the exact motions themselves
 ROUNDING = 1e-9

@@ -85,20 +85,21 @@ def test_a_law_of_other_signals_has_none_and_says_so(name):
         describing_function(body_of(*with_needs(name)), amplitude=1e-3, frequency=1.0)
 
 
-def against_simulation(name):
-    made = body_of(*with_needs(name))
+#: the catalogue, four effects on a body: to compile its loop takes most of the time
+TOGETHER = [n for n in NAMES if n not in WITHOUT]
+TOGETHER = [TOGETHER[i::8] for i in range(8)]
+
+
+@pytest.mark.slow  # Coulomb friction is in test_measured_impedance.py
+@pytest.mark.parametrize("names", TOGETHER, ids=" ".join)
+def test_describing_function_and_simulation_agree_for_the_catalogue(names):
+    made = body_of(*dict.fromkeys(n for name in names for n in with_needs(name)))
     simulated = measured_impedance(
         haptic_interface(made), amplitude=5e-3, frequency=4.0, computer="continuous"
     )
     response = describing_function(made, amplitude=5e-3, frequency=4.0)
     # the simulated contact gives by 1e-5 of the amplitude, which turns friction by 0.4 %
     assert simulated.data["impedance"].item() == pytest.approx(response, rel=5e-3)
-
-
-@pytest.mark.slow  # Coulomb friction is in test_measured_impedance.py
-@pytest.mark.parametrize("name", [n for n in NAMES if n not in WITHOUT])
-def test_describing_function_and_simulation_agree_for_the_catalogue(name):
-    against_simulation(name)
 
 
 def test_a_scheduled_gain_depends_on_the_phase_of_what_drives_it():

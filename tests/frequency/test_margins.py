@@ -61,13 +61,9 @@ D = control.tf("s")
 STARTS = {
     "a mass": (1 / D**2, -180.0),
     "a damped mass": (1 / (D**2 + 100 * D), -90.0),
-    "a damped mass above its corner": (1 / (D**2 + 1e-3 * D), -180.0),
-    "the inertia of a mass": (0.2 * D**2, 180.0),
     "a damper": (3 * D, 90.0),
-    "a spring": (400 / (D + 400), 0.0),
     "a gain below 0": (-4 / (D + 1000), 180.0),
     "an integrator with a gain below 0": (-4 / D, 90.0),
-    "a damper with a sign": (-3 * D, -90.0),
     "a third power": (1 / D**3, -270.0),
     "a double integrator with a lag": (1 / (D**2 * (1 + D)), -180.0),
     "the rising side of a resonance": (1 / (D**2 + 1e-4 * D + 2 * 0.0628**2), 0.0),
@@ -92,10 +88,3 @@ def test_rounding_does_not_turn_a_phase_round(power, start, noise):
     values = (1j * f) ** power * (1 + 1j * noise)
     phase = phase_of(values[None], f)
     np.testing.assert_allclose(phase, start)
-
-
-@pytest.mark.parametrize("f", [[1.0], [0.0, 1.0], [0.0], [2.0, 2.0, 3.0]])
-@pytest.mark.parametrize("size", [0.0, 1.0, np.inf])
-def test_any_frequencies_and_sizes_are_taken(f, size):
-    phase = phase_of(np.full((1, len(f)), size + 0j), np.array(f))
-    np.testing.assert_allclose(phase[0], 0.0)

@@ -139,15 +139,6 @@ def test_names_that_are_not_there_are_answered_with_the_nearest():
         made([1], inertia=1.0)
 
 
-def test_a_force_beside_an_angle_asks_for_its_lever_arm():
-    data = {"t": T, "q": X, "F (N)": FORCE}
-    with pytest.raises(ExperimentError, match="lever_arm"):
-        made(data, "revolute", position="q", actuator_force="F (N)", inertia=1.0)
-    arm = {"column": "F (N)", "lever_arm": {"value": 20, "unit": "cm"}}
-    record = made(data, "revolute", position="q", actuator_force=arm, inertia=1.0).records[0]
-    assert record.signals["device.actuator_force"] == pytest.approx(0.2 * FORCE)
-
-
 def test_the_index_of_a_table_is_a_column_where_it_is_a_time_or_has_a_name():
     pandas = pytest.importorskip("pandas")
     frame = pandas.DataFrame({"x": X, "u": FORCE})
@@ -206,15 +197,3 @@ def test_units_that_nothing_states_are_guesses_also_in_a_saved_folder(tmp_path):
     assert loaded.guesses == experiment.guesses
     stated = td.experiment(data, axis="prismatic", inertia=1.0, units={"t": "s", "x": "m"}, **names)
     assert not stated.guesses
-
-
-def test_a_force_in_kg_is_answered_with_the_unit_of_a_weight():
-    data, names = {"t": T, "x": X, "load (kg)": FORCE}, {"position": "x"}
-    with pytest.raises(ExperimentError, match="kgf"):
-        td.experiment(data, axis="prismatic", actuator_force="load (kg)", inertia=1.0, **names)
-    units = {"load (kg)": "kgf"}
-    experiment = td.experiment(
-        data, axis="prismatic", actuator_force="load (kg)", units=units, inertia=1.0, **names
-    )
-    force = experiment.records[0].signals["device.actuator_force"]
-    assert force == pytest.approx(9.80665 * FORCE)

@@ -107,22 +107,6 @@ def test_joints_have_their_names_and_a_joint_that_comes_and_goes_is_empty_betwee
     assert not any("velocity" in n for n in columns)  # none was sent
 
 
-@pytest.mark.parametrize(("count", "there"), [(200, True), (201, False)])
-def test_an_array_of_over_200_numbers_is_no_signal(bag, count, there):
-    def array(k):
-        layout = bag.types["std_msgs/msg/MultiArrayLayout"]([], 0)
-        return layout, np.full(count, 1.0 * k)
-
-    topics = {
-        "/few": ("std_msgs/msg/Float64", lambda k: (1.0,)),
-        "/many": ("std_msgs/msg/Float64MultiArray", array),
-    }
-    _, columns = columns_of(bag(topics, recorded))
-    assert ("/many.data[0]" in columns) == there
-    if there:
-        assert columns["/many.data[150]"].tolist() == list(range(ROWS))
-
-
 def test_a_message_of_more_numbers_than_become_columns_keeps_its_time(bag):
     """Seventy joints with position, velocity and effort are 210 numbers."""
     names = [f"j{n}" for n in range(70)]

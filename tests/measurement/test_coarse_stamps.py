@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 
-from teleopdesign.measurement.doors._log import Log
 from teleopdesign.measurement.record_clock import clock_of
 from teleopdesign.measurement.stamps import unit_of_steps
-from teleopdesign.measurement.survey import Choices, survey_log
 
 
 def stamps_of(seconds, rate, step, start=0.37, scale=1.0):
@@ -24,21 +22,6 @@ def test_the_rate_of_the_rows_does_not_depend_on_the_cut_of_a_log(rate, step, st
     clock = clock_of(stamps, (rows,), "log")
     assert 1 / clock.sample_time == pytest.approx(rate, rel=2e-3)
     assert np.ptp(clock.time) == pytest.approx((len(stamps) - 1) / rate, rel=2e-3)
-
-
-@pytest.mark.parametrize("name", ["timestamp", "Date Time", "t", "Zeit [s]", "sec"])
-@pytest.mark.parametrize("start", [0.37, 1.7e9])
-def test_a_time_in_whole_seconds_tells_the_rate(name, start):
-    """Not 1000 Hz, which no line of the log says."""
-    stamps = stamps_of(20, 200, 1.0, start)
-    t = np.arange(len(stamps)) / 200
-    q = np.sin(2 * np.pi * 0.7 * t) + 0.2 * np.sin(2 * np.pi * 2.1 * t)
-    columns = {name: stamps, "angle (deg)": q, "torque (Nm)": np.gradient(q)}
-    log = Log(tuple(columns), lambda wanted: {n: columns[n] for n in wanted})
-    survey = survey_log(log, "log", Choices())
-    assert survey.channels["time"] == {"column": name, "unit": "s"}
-    assert survey.duration == pytest.approx(20, abs=1)
-    assert not [key for key in survey.guesses if "time" in key or "rate" in key]
 
 
 @pytest.mark.parametrize(("step", "scale", "unit"), [(1.0, 1.0, "s"), (0.1, 1e3, "ms")])

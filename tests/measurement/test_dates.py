@@ -64,18 +64,6 @@ def test_a_time_of_day_is_the_seconds_from_midnight(clock, moved):
     assert stamps_of(cells) == pytest.approx(expected, abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("cell", "hours"),
-    [
-        ("12:00 AM", 0.0), ("12:30 am", 0.5), ("1:00 a.m.", 1.0), ("11:59 AM", 11 + 59 / 60),
-        ("12:00 PM", 12.0), ("12:30 p.m.", 12.5), ("1:00 P.M", 13.0), ("11:00PM", 23.0),
-        ("0:15", 0.25), ("23:45", 23.75),
-    ],
-)  # fmt: skip
-def test_noon_and_midnight_on_a_dial_of_twelve_hours(cell, hours):
-    assert stamps_of([cell]) == pytest.approx([3600 * hours])
-
-
 @pytest.mark.parametrize("clock", ["%H:%M:%S.%f", "%I:%M:%S %p"])
 @settings(max_examples=12)
 @given(

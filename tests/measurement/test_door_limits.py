@@ -2,7 +2,6 @@
 
 import gzip
 import pickle
-import tracemalloc
 
 import h5py
 import numpy as np
@@ -13,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 from teleopdesign.base.errors import ExperimentError
-from teleopdesign.measurement.doors import _stray_lines, text
+from teleopdesign.measurement.doors import text
 from teleopdesign.measurement.doors._cells import is_number
 from teleopdesign.measurement.doors.text import open_text
 from teleopdesign.measurement.tables import open_log, read_columns
@@ -136,23 +135,6 @@ def test_a_cell_that_is_no_number_is_named_by_its_row_in_the_whole_table(tmp_pat
     monkeypatch.setattr(text, "_ROWS", 7)
     with pytest.raises(ExperimentError, match='column "u", row 31: found "two"'):
         read_columns(path, "r.csv", {"u": "channels.position"})
-
-
-@pytest.mark.slow
-def test_cells_one_by_one_take_no_ten_times_the_memory_of_their_numbers(tmp_path, monkeypatch):
-    path = tmp_path / "r.csv"
-    rows, width = 20_000, 3
-    path.write_text("t,u,x\n1,,2\n" + "".join(f"{k}.125,{k}.25,{k}.5\n" for k in range(rows)))
-    monkeypatch.setattr(text, "_ROWS", 500)
-    monkeypatch.setattr(_stray_lines, "_BLOCK", 500)
-    tracemalloc.start()
-    try:
-        columns_of(path)
-        _, most = tracemalloc.get_traced_memory()
-    finally:
-        tracemalloc.stop()
-    # 8 bytes a number, twice while a column is put together, and half a megabyte beside
-    assert most < 2 * 8 * rows * width + 5e5
 
 
 @pytest.mark.parametrize(

@@ -1,15 +1,12 @@
 """The same table through every door gives the same numbers."""
 
 import numpy as np
-import openpyxl
 import pandas
 import polars
 import pytest
 import xarray
 
 import teleopdesign as td
-from teleopdesign.base.errors import ExperimentError
-from teleopdesign.measurement.tables import open_log
 
 COLUMNS = ("time (s)", "Pos (deg)", "torque (N*m)")
 
@@ -44,22 +41,3 @@ def test_frames_and_datasets_are_read_like_a_dict_of_arrays(table):
         assert np.array_equal(other.time, plain.time)
         for name, values in plain.signals.items():
             assert np.array_equal(other.signals[name], values)
-
-
-def test_a_workbook_with_a_title_and_a_row_of_units_is_read(tmp_path, table):
-    book = openpyxl.Workbook()
-    book.active.append(["swing of Monday"])
-    book.active.append(["time", "Pos", "torque"])
-    book.active.append(["s", "deg", "N*m"])
-    for row in zip(*table.values(), strict=True):
-        book.active.append([float(x) for x in row])
-    book.save(tmp_path / "log.xlsx")
-    log = open_log(tmp_path / "log.xlsx", "log.xlsx")
-    assert list(log.names) == ["time", "Pos", "torque"]
-    assert log.units == {"time": "s", "Pos": "deg", "torque": "N*m"}
-
-
-def test_a_damaged_workbook_is_one_line(tmp_path):
-    (tmp_path / "log.xlsx").write_bytes(b"PK\x03\x04 not a workbook")
-    with pytest.raises(ExperimentError, match=r"^log.xlsx: not a readable workbook"):
-        open_log(tmp_path / "log.xlsx", "log.xlsx")

@@ -102,22 +102,3 @@ def test_a_slow_motor_with_much_friction_gets_a_start_of_its_inertia():
         made = td.experiment(table, axis="revolute", **names)
         starts.append(made.bodies["device"].inertia.value)
     assert min(starts) > 0.0 and max(starts) < 1.0
-
-
-def stroke(way):
-    """Position of a body that rests, moves one way, rests and moves the same way again; 6 s."""
-    t = H * np.arange(1200)
-    parts = [np.clip((t - begin) / length, 0.0, 1.0) for begin, length in ((1.5, 1.2), (4.0, 1.0))]
-    first, second = (x**3 * (10.0 - 15.0 * x + 6.0 * x**2) for x in parts)
-    return way * (0.3 - 0.5 * first - 0.3 * second)
-
-
-@pytest.mark.parametrize("way", [1.0, -1.0])
-@pytest.mark.parametrize("rigid", [0.0, 0.002])
-def test_a_motor_that_lets_down_a_weight_is_not_turned(way, rigid):
-    """Its force falls with the speed, as friction with the wrong sign does: one way tells none."""
-    q = stroke(way)
-    noise = 0.01 * np.random.default_rng(2).standard_normal(len(q))
-    force = 0.9 * way - 1.2 * rate_of(q) + rigid * rate_of(q, 2) + noise
-    assert not is_turned(force, q, H)
-    assert not is_turned(force[::-1], q[::-1], H)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-import teleopdesign as td
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.cli import main
 from teleopdesign.measurement.tables import open_log
@@ -29,37 +28,6 @@ def run(tmp_path):
     return tmp_path / "run"
 
 
-@pytest.mark.slow
-def test_a_drive_and_a_sensor_with_separate_clocks_are_one_log(run, tmp_path, capsys):
-    assert main(["new", str(run), "--yes", "--output", str(tmp_path / "arm")]) == 0
-    assert "2 tables, each with its own clock" in capsys.readouterr().out
-    record = td.load_experiment(tmp_path / "arm").records[0]
-    assert record.signals["device.position"] == pytest.approx(Q[: len(record.time)], abs=1e-6)
-    hand = record.signals["device.interaction_force"]
-    # the line between two readings 4 ms apart errs by h^2/8 times the largest second derivative
-    error = 0.004**2 / 8 * 0.2 * (2 * np.pi * 0.9) ** 2
-    within = slice(5, None)  # the sensor begins 10 ms later
-    assert hand[within] == pytest.approx(HAND[: len(hand)][within], abs=1.1 * error + 1e-8)
-
-
-def test_a_clock_of_another_day_is_refused(run):
-    table(run / "sensor.csv", ["t_ms", "hand_Nm"], 1e3 * (T + 90.0), HAND)
-    with pytest.raises(ExperimentError, match="do not run at the same time .drive from 3 to"):
-        open_log(run, "run")
-
-
-def test_tables_of_the_same_columns_are_runs_and_not_parts_of_one(run):
-    table(run / "sensor.csv", ["t_s", "q_rad", "tau_Nm"], T, Q, U)
-    with pytest.raises(ExperimentError, match="for several runs: teleopdesign new .*drive.csv"):
-        open_log(run, "run")
-
-
-def test_a_table_without_a_time_is_refused(run):
-    table(run / "sensor.csv", ["hand_Nm", "gauge_V"], HAND, HAND)
-    with pytest.raises(ExperimentError, match="run/sensor: found no column that is called time"):
-        open_log(run, "run")
-
-
 def test_a_link_that_leads_out_of_the_folder_is_not_followed(run, tmp_path):
     table(tmp_path / "else" / "other.csv", ["t_s", "secret"], T, Q)
     (run / "other.csv").symlink_to(tmp_path / "else" / "other.csv")
@@ -70,11 +38,6 @@ def test_two_logs_that_are_parts_of_one_run_are_refused_with_what_to_do(run, tmp
     logs = [str(run / "drive.csv"), str(run / "sensor.csv")]
     assert main(["new", *logs, "--yes", "--output", str(tmp_path / "arm")]) == 2
     assert "put them into a folder and give the folder" in capsys.readouterr().err
-
-
-def test_an_experiment_is_no_log(rod, capsys):
-    assert main(["new", str(rod)]) == 2
-    assert "is an experiment already; next: teleopdesign diagnose" in capsys.readouterr().err
 
 
 NS = 1_700_000_000_000_000_000 + 2_000_000 * np.arange(4000)

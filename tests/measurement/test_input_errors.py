@@ -21,11 +21,8 @@ IN_THE_TOML = {
     "key given twice": (FORCE, FORCE + "\n" + FORCE, "not valid TOML: .*line 13"),
     "unknown table": ("[comparison]", "[comparsion]", 'unknown key "comparsion".*"comparison"'),
     "unknown key of a body": ("axis =", "axes =", 'model.device: unknown key "axes".*"axis"'),
-    "unknown key of a record": ("position_zero", "zero", r'records\[2\]: unknown key "zero"'),
     "unknown key of a channel": ("noise =", "nois =", 'interaction_force: unknown key "nois"'),
-    "unknown key of the comparison": ("bandwidth =", "width =", 'comparison: unknown key "width"'),
     "unknown key of a value": ("fixed =", "fix =", 'inertia: unknown key "fix".*"fixed"'),
-    "unknown quantity": ("position =", "possition =", 'no quantity "possition".*"position"?'),
     "quantity of a body not there": ("position =", '"slave.position" =', 'no "?quantity "slave'),
     "unknown axis": ('"prismatic"', '"prismatc"', 'axis: found "prismatc".*mean "prismatic"'),
     "no axis": ('axis = "prismatic"\n', "", 'model.device: no key "axis"'),
@@ -33,16 +30,11 @@ IN_THE_TOML = {
     "only a master": ("model.device]", "model.master]", "expected .*device"),
     "text for a number": ("value = 0.15", 'value = "0.15"', 'value: found "0.15", expected a num'),
     "table for a number": (LEVEL, "coulomb = { level = { value = {}", "found a table"),
-    "true for a number": ("value = 0.15", "value = true", "found true, expected a number"),
     "nan": ("value = 0.15", "value = nan", "inertia.value: found nan, expected a finite number"),
-    "infinite": ("resolution = 5e-3", "resolution = inf", "found inf, expected a finite number"),
     "number of 400 digits": ("value = 0.15", "value = 1" + "0" * 400, "expected a finite number"),
     "negative inertia": ("value = 0.15", "value = -0.15", "found -0.15, expected .* above 0"),
     "resolution of zero": ("resolution = 5e-3", "resolution = 0", "expected .* above 0"),
-    "number for a text": ('title = "Vert', 'title = 3 # "', "title: found a whole number"),
-    "text for true": ("fixed = false", 'fixed = "no"', 'fixed: found "no", expected true'),
     "text for a table": ("viscous = {}", 'viscous = "yes"', 'viscous: found "yes", expected a tab'),
-    "date for a number": ("value = 0.15", "value = 2020-01-01", "found a date, expected a number"),
     "empty column": ('column = "t"', 'column = ""', 'time.column: found "", expected a text'),
     "no unit": (FORCE, 'actuator_force = { column = "u" }', 'actuator_force: no key "unit"'),
     "no column": (FORCE, 'actuator_force = { unit = "N" }', 'actuator_force: no key "column"'),
@@ -53,12 +45,10 @@ IN_THE_TOML = {
     ),
     "unit of the other axis": ('"prismatic"', '"revolute"', 'found "kg", expected a moment of in'),
     "unknown unit": ('unit = "mm"', 'unit = "mmm"', 'found "mmm".*; did you mean "mm"?'),
-    "unit of inertia": ('"kg"', '"kgg"', 'inertia.unit: found "kgg".*a mass.*mean "kg"?'),
     "no position": (POSITION, "", 'channels: no "position", found time, actuator_force'),
     "no command": (FORCE, "", 'channels: no "actuator_force", found time, position'),
     "no time": (TIME, "", 'channels: no "time", expected .*sample_rate'),
     "time and rate": (TIME, TIME + "\n" + RATE, "sample_rate: found beside channels.time"),
-    "rate and time": (MODEL, RATE + "\n" + MODEL, "sample_rate: found beside channels.time"),
     "negative rate": (TIME, RATE.replace("100", "-100"), "found -100, expected .* above 0"),
     "rate in seconds": (TIME, RATE.replace("Hz", "s"), 'found "s", expected a frequency'),
     "column used twice": ('column = "u"', 'column = "x"', 'found column "x", which'),
@@ -72,7 +62,6 @@ IN_THE_TOML = {
     "no file": ('file = "check.csv"', 'file = "chek.csv"', 'no file "chek.csv".*mean "check.csv"?'),
     "file listed twice": ('file = "check.csv"', FIT, '"fit.csv" is listed twice'),
     "file outside": (FIT, 'file = "../fit.csv"', "expected a file inside rod/"),
-    "file from the root": (FIT, 'file = "/etc/hostname"', "expected a file inside rod/"),
     "a folder as file": (FIT, 'file = "."', 'no file "."'),
     "null character in a file": (FIT, 'file = "a\\u0000b"', "cannot be read"),
     "name of 5000 characters": (FIT, f'file = "{"a" * 5000}"', r"cannot be read|no file"),
@@ -80,7 +69,6 @@ IN_THE_TOML = {
     "no such column": ('column = "x"', 'column = "x_pos"', 'channels.position: no column'),
     "bandwidth above the samples'": (BANDWIDTH, "bandwidth = { value = 60", "less than 50 Hz"),
     "bandwidth in seconds": ('unit = "Hz"', 'unit = "ms"', "bandwidth.unit: .*a frequency such as"),
-    "bandwidth as a number": ('{ value = 20, unit = "Hz" }', "20", "found a whole number"),
     "line break in a key": ("viscous = {}", '"a\\nb" = 3', r"effects.a\\nb: found a whole number"),
 }  # fmt: skip
 
@@ -131,13 +119,3 @@ def test_a_folder_without_experiment_lists_what_it_holds(rod):
 def test_a_record_file_stands_for_its_folder(rod):
     assert load_experiment(rod / "fit.csv") == load_experiment(rod)
     assert_says(error_of(rod / "fat.csv"), 'fat.csv: no such folder; did you mean "fit.csv"')
-
-
-def test_a_toml_that_is_not_text_is_named(rod):
-    (rod / "experiment.toml").write_bytes(b'title = "\xff\xfe"')
-    assert_says(error_of(rod), r"experiment.toml: not UTF-8 text \(byte 9\)")
-
-
-def test_deep_brackets_in_the_toml_are_named(rod):
-    (rod / "experiment.toml").write_text("a = " + "[" * 5000)
-    assert_says(error_of(rod), "experiment.toml: ")

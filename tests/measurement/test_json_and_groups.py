@@ -1,16 +1,14 @@
 """Files of nested parts: JSON, groups of HDF5, arrays of structs; endings that say nothing."""
 
 import json
-import shutil
 
 import h5py
 import numpy as np
 import pytest
-from scipy.io import savemat
 
 from teleopdesign.base.errors import ExperimentError
 from teleopdesign.measurement.doors._cells import numbers_of
-from teleopdesign.measurement.tables import open_log, read_columns
+from teleopdesign.measurement.tables import open_log
 
 T = 0.01 * np.arange(90)
 Q = np.sin(T)
@@ -18,24 +16,6 @@ Q = np.sin(T)
 
 def column(path, name):
     return numbers_of(open_log(path, path.name).read({name: ""})[name], name, path.name)
-
-
-def record(t, q):
-    return {"t": t, "joint": {"name": ["elbow"], "q": [q]}, "F": [q, 1.0, 2.0], "ok": True}
-
-
-@pytest.mark.parametrize("form", ["lines", "list", "list in a record"])
-def test_records_of_json(tmp_path, form):
-    records = [record(t, q) for t, q in zip(T.tolist(), Q.tolist(), strict=True)]
-    text = "\n".join(map(json.dumps, records)) + '\n{"t": 0.9, "jo'
-    if form != "lines":
-        text = json.dumps(records if form == "list" else {"run": 3, "rows": records})
-    path = tmp_path / "log.jsonl"
-    path.write_text(text)
-    log = open_log(path, "log.jsonl")
-    assert log.names == ("t", "joint.elbow.q", "F(1)", "F(2)", "F(3)", "ok")
-    assert log.notes == (("a line that is no record: left out",) if form == "lines" else ())
-    assert np.array_equal(column(path, "joint.elbow.q"), Q)
 
 
 def test_lists_of_json_and_records_without_a_key(tmp_path):
@@ -58,55 +38,6 @@ def as_matlab(path):
     """A file of HDF5 with the head that MATLAB writes."""
     raw = path.read_bytes()
     path.write_bytes(b"MATLAB 7.3 MAT-file".ljust(128) + raw[128:])
-
-
-def test_groups_of_hdf5_say_units_and_matlab_turns_matrices(tmp_path):
-    path = tmp_path / "log.mat"
-    with h5py.File(path, "w", userblock_size=512) as content:
-        angle = content.create_dataset("joint/angle", data=Q)
-        angle.attrs["Units"] = "degrees"
-        content["data"] = np.stack([T, Q])
-    as_matlab(path)
-    log = open_log(path, "log.mat")
-    assert log.units == {"joint/angle": "deg"}
-    assert {"data(:,1)", "data(:,2)"} <= set(log.names)
-    assert np.array_equal(column(path, "data(:,2)"), Q)
-
-
-def test_an_array_of_structs_of_matlab_is_numbered(tmp_path):
-    axes = np.zeros((1, 2), dtype=[("name", object), ("meas", object)])
-    for k in range(2):
-        axes[0, k] = (f"axis{k}", {"q": (k + 1) * Q[:, None]})
-    savemat(tmp_path / "log.mat", {"exp": {"t": T, "axis": axes}})
-    path = tmp_path / "log.mat"
-    assert open_log(path, "log.mat").names == ("exp.t", "exp.axis(1).meas.q", "exp.axis(2).meas.q")
-    assert np.array_equal(column(path, "exp.axis(2).meas.q"), 2 * Q)
-
-
-@pytest.mark.parametrize("ending", ["", ".data", ".out"])
-def test_a_file_whose_ending_says_nothing_is_known_by_its_beginning(tmp_path, ending):
-    text = tmp_path / "log.csv"
-    text.write_text("t,q\n" + "".join(f"{t},{q}\n" for t, q in zip(T, Q, strict=True)))
-    with h5py.File(tmp_path / "log.h5", "w") as content:
-        content["q"] = Q
-    lines = tmp_path / "log.json"
-    lines.write_text("".join(json.dumps({"q": q}) + "\n" for q in Q.tolist()))
-    for source in (text, tmp_path / "log.h5", lines):
-        named = shutil.copy(source, tmp_path / f"run{ending}")
-        assert np.array_equal(read_columns(named, "run", {"q": ""}).values["q"], Q)
-    (tmp_path / f"raw{ending}").write_bytes(bytes(range(256)))
-    with pytest.raises(ExperimentError, match="found a file of kind"):
-        open_log(tmp_path / f"raw{ending}", "raw")
-
-
-@pytest.mark.parametrize(("count", "fits"), [(200, True), (201, False)])
-def test_a_list_in_a_record_has_two_hundred_numbers_at_most(tmp_path, count, fits):
-    records = [{"t": 0.01 * k, "q": [float(k + n) for n in range(count)]} for k in range(80)]
-    (tmp_path / "log.json").write_text(json.dumps(records))
-    names = open_log(tmp_path / "log.json", "log.json").names
-    assert len(names) == (1 + count if fits else 1)
-    if fits:
-        assert column(tmp_path / "log.json", "q(200)").tolist() == [199.0 + k for k in range(80)]
 
 
 @pytest.mark.parametrize("turned", [False, True])

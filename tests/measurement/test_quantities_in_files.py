@@ -30,14 +30,6 @@ def arm(tmp_path):
     return folder
 
 
-def test_one_file_for_each_quantity_of_all_joints_is_one_log(arm, tmp_path, capsys):
-    assert main(["new", str(arm), "--yes", "--output", str(tmp_path / "experiment")]) == 0
-    printed = capsys.readouterr().out
-    assert 'position           "arm_joint_1.positions" in rad' in printed
-    assert 'actuator_force     "arm_joint_1.efforts" in N*m' in printed
-    assert "'arm_joint_1.velocities' is the derivative of 'arm_joint_1.positions'" in printed
-
-
 def test_the_position_chooses_the_joint_of_the_force(arm, tmp_path, capsys):
     options = ["--position", "arm_joint_0.positions", "--output", str(tmp_path / "experiment")]
     assert main(["new", str(arm), "--yes", *options]) == 0
@@ -51,12 +43,6 @@ def test_values_and_clocks_are_those_of_the_files(arm):
     assert np.asarray(read["arm_joint_2.efforts"]) == pytest.approx(TAU[:, 1], abs=1e-6)
     assert np.asarray(read["efforts.time"]) == pytest.approx(T, abs=1e-6)
     assert log.clocks["arm_joint_2.efforts"] == "efforts.time"
-
-
-def test_files_of_one_quantity_each_are_no_fit_and_check_record(arm, tmp_path, capsys):
-    logs = [str(arm / f"states_{name}.csv") for name in ("positions", "efforts")]
-    assert main(["new", *logs, "--yes", "--output", str(tmp_path / "experiment")]) == 2
-    assert "put them into a folder and give it" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("names", [("position_loop", "torque_loop"), ("run_1", "run_2")])

@@ -28,12 +28,6 @@ def test_samples_of_different_segments_are_not_consecutive(rod):
     np.testing.assert_allclose(record.time, stamps, atol=1e-12)
 
 
-def test_time_may_start_anew_in_each_segment(rod):
-    stamps = np.tile(np.arange(75) / 100, 2)
-    record = with_segments(rod, np.repeat([0, 1], 75), stamps)
-    np.testing.assert_allclose(record.time, stamps, atol=1e-12)
-
-
 def test_a_pause_within_a_segment_parts_it(rod):
     stamps = np.arange(150) / 100
     stamps[30:] += 0.3

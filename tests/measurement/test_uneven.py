@@ -103,14 +103,6 @@ def test_a_few_rows_that_came_very_late_do_not_take_the_even_clock_away(seed, wo
     assert np.array_equal(record.signals["device.position"], motion(t))
 
 
-def test_a_pause_parts_the_record_and_dates_count_from_the_first_row():
-    t = np.r_[np.arange(800), np.arange(1300, 2100)] / RATE
-    record = record_of(1.7e9 + t, motion(t), command(t))
-    assert record.segments == (slice(0, 800), slice(800, 1600))
-    assert record.time[0] == pytest.approx(0.0, abs=1e-3)
-    assert record.time[800] == pytest.approx(1300 / RATE, abs=1e-3)
-
-
 def test_rows_out_of_order_and_twice_are_put_right():
     t = np.arange(1000) / RATE
     order = np.arange(1000)
@@ -122,12 +114,3 @@ def test_rows_out_of_order_and_twice_are_put_right():
         "1 row with the stamp of another",
         "2 rows out of order",
     }
-
-
-def test_a_wrapped_angle_a_gear_and_a_sign_are_undone():
-    t = np.arange(2000) / RATE
-    turns = -50.0 * motion(t)
-    channel = {"column": "q", "unit": "deg", "unwrap": True, "gear_ratio": 50, "sign": -1}
-    record = record_of(t, np.rad2deg(turns) % 360.0, command(t), position=channel)
-    left = record.signals["device.position"] - motion(t)
-    assert np.ptp(left) < 1e-9

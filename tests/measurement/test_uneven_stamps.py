@@ -51,19 +51,6 @@ def test_a_clock_that_was_set_anew_begins_a_stretch_and_time_goes_on():
     assert clock.time == pytest.approx(stamps)
 
 
-@pytest.mark.parametrize(("share", "counted"), [(0.019, False), (0.021, True)])
-def test_stamps_that_many_rows_share_are_counted(share, counted):
-    h, n = 0.01, 1000
-    twice = round(share * n)
-    again = np.linspace(10, n - twice - 10, twice).astype(int)
-    stamps = np.sort(np.r_[h * np.arange(n - twice), h * again])
-    clock = clock_by(stamps)
-    assert clock.counted == counted
-    if counted:
-        assert clock.sample_time == pytest.approx(h * (n - twice - 1) / (n - 1), rel=1e-3)
-        assert clock.time == pytest.approx(np.linspace(stamps[0], stamps[-1], n), abs=h)
-
-
 def test_stamps_of_no_clock_get_a_grid_of_as_many_samples():
     rng = np.random.default_rng(0)
     stamps = np.sort(rng.uniform(0.0, 8.0, 800))

@@ -41,22 +41,6 @@ def test_inches_pounds_and_points_are_converted(unit, quantity, axis, si):
     assert to_si(1.0, unit, quantity=quantity, axis=axis) == pytest.approx(si, rel=1e-12)
 
 
-def test_a_log_in_inches_and_pounds_is_read_in_metres_and_newtons():
-    survey = look({"t [s]": T, "x [in]": Q / INCH, "F [lbf]": U / POUND})
-    assert {k: entry.get("unit") for k, entry in survey.channels.items()} == {
-        "time": "s", "position": "in", "actuator_force": "lbf"
-    }  # fmt: skip
-    assert not [key for key in survey.guesses if key.endswith(".unit")]
-
-
-def test_a_guessed_unit_says_what_stands_in_its_place():
-    survey = look({"t": T, "angle [deg]": np.rad2deg(Q), "u [foo]": U})
-    assert (
-        "'foo', of 'u [foo]', is no unit that is known"
-        in (survey.guesses["channels.actuator_force.unit"])
-    )
-
-
 def test_arrays_with_a_unit_that_does_not_fit_are_refused():
     """They were silently read in SI: inches as metres."""
     data = {"t": T, "q": Q, "u": U, "Hand [N]": U}
@@ -68,14 +52,6 @@ def test_arrays_with_a_unit_that_does_not_fit_are_refused():
     lever = {"column": "Hand [N]", "unit": "N*m", "scale": 0.07}
     scaled = td.experiment(data, interaction_force=lever, **words)
     assert scaled.records[0].signals["device.interaction_force"] == pytest.approx(0.07 * U)
-
-
-def test_a_unit_of_arrays_may_be_written_as_motors_sheets_do():
-    data = {"t": T, "q": Q, "u": U / (POUND * INCH / 16)}
-    made = td.experiment(
-        data, axis="revolute", position="q", actuator_force="u", units={"u": "oz-in"}, inertia=0.02
-    )
-    assert made.records[0].signals["device.actuator_force"] == pytest.approx(U)
 
 
 @pytest.mark.parametrize(
@@ -99,18 +75,6 @@ def test_a_torque_constant_turns_the_axis_in_whatever_unit(text, axis):
 def test_what_is_no_torque_constant_is_refused(text):
     with pytest.raises(ExperimentError, match="such as"):
         motor_constant(text, where="--torque-constant")
-
-
-def test_forces_in_a_torques_unit_turn_the_axis():
-    assert look({"t": T, "x": Q, "u [mNm]": 1e3 * U}).axis == "revolute"
-    assert look({"t": T, "x": Q, "u [lbf]": U}).axis == "prismatic"
-
-
-def test_a_unit_that_is_typed_is_read_as_one_in_a_name():
-    survey = look({"t": T, "angle_rad": Q, "u": U}, units={"u": "oz-in"})
-    assert survey.channels["actuator_force"]["unit"] == "ozf*in"
-    with pytest.raises(ExperimentError, match="found 'oz-inn', expected a unit"):
-        look({"t": T, "angle_rad": Q, "u": U}, units={"u": "oz-inn"})
 
 
 @pytest.mark.parametrize(
@@ -142,24 +106,3 @@ def test_several_times_a_unit_of_time_is_no_unit_of_a_position_or_of_a_column_by
     with pytest.raises(ExperimentError, match="expected one of a position"):
         look({"t": T, "angle_rad": Q, "u [Nm]": U}, units={"angle_rad": "125 us"})
     assert not is_unit("10 ms"), "a name may say that there is a row every 10 ms"
-
-
-def test_a_speed_in_hertz_counts_turns():
-    """A position without a unit beside it is in turns; it was read in rad."""
-    turns = Q / (2 * np.pi)
-    speed = np.gradient(turns, T)
-    survey = look({"t": T, "pos": turns, "velocity [Hz]": speed, "u [Nm]": U}, axis="revolute")
-    assert survey.channels["position"]["unit"] == "turns"
-    assert survey.channels["velocity"] == {"column": "velocity [Hz]", "unit": "Hz"}
-    table = {"t": T, "pos [turns]": turns, "velocity [Hz]": speed, "u [Nm]": U}
-    experiment = td.experiment(
-        table,
-        axis="revolute",
-        time="t",
-        position="pos [turns]",
-        velocity="velocity [Hz]",
-        actuator_force="u [Nm]",
-    )
-    signals = experiment.records[0].signals
-    measured, expected = signals["device.velocity"], np.gradient(signals["device.position"], T)
-    assert np.max(np.abs(measured - expected)) < 0.02 * np.max(np.abs(expected))

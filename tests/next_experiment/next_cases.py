@@ -166,13 +166,6 @@ POOR = {
         shuttle(10.0, speed=0.1, reach=0.045),
         KNOWN_COULOMB,
     ),
-    "slow": Poor(
-        ("actuation_delay", "actuator_lag"),
-        (dict(delay=0.0025), dict(lag=0.0025)),
-        swing(10.0, amplitude=0.03, frequency=1.0),
-        swing(8.0, amplitude=0.025, frequency=1.2),
-        wider=4.0,
-    ),
     "one place": Poor(
         ("spring", "bias"),
         (dict(spring=10.0), dict(bias=0.4)),

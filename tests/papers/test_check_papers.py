@@ -227,20 +227,6 @@ def test_the_command_shows_every_step_of_the_chosen_statements(capsys, tmp_path)
     assert all(r["as_stated"] for r in answer)
 
 
-def test_the_command_prints_a_row_for_every_statement(capsys, monkeypatch):
-    """The table's form; results are those of the claims, which take no time."""
-    from teleopdesign import papers
-
-    few = {n: s for n, s in STATEMENTS.items() if s.number <= 8}
-    monkeypatch.setattr(papers, "STATEMENTS", few)
-    monkeypatch.setenv("COLUMNS", "80")
-    assert main(["check-papers"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [w.split()[0] for w in lines if w.startswith("P")] == list(few)
-    assert max(map(len, lines)) <= 80
-    assert lines[-1].startswith("8 statements in") and lines[-1].endswith("8 proved.")
-
-
 def test_a_failing_statement_is_reported_and_gives_status_1(capsys, monkeypatch):
     from teleopdesign import papers
 

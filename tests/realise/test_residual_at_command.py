@@ -25,13 +25,9 @@ PASSING = {
     "torque_ripple": {"amplitude": 0.5, "period": 0.7, "phase": 0.3},
     "actuator_saturation": {"limit": 3.2},
     "load_dependent_friction": {"coefficient": 0.4},
-    "fades_when_large": {"part": 0.03},
-    "next_to_nothing": {"part": 0.9},
     "soft_limit": {"limit": 3.0},
-    "very_slow": {"time_constant": 2.0},
     "forgets_what_lasts": {"part": 0.7, "time_constant": 0.5},
     "takes_up_what_acts": {"part": 0.6},
-    "feeds_back": {"part": 0.8},
     "feeds_back_late": {"part": 0.6, "time_constant": 0.3},
 }
 

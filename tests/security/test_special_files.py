@@ -11,7 +11,6 @@ import sys
 import pytest
 from clock import in_time
 from measurement.rod_example import ROD, write_rod
-from security.diagram_file import diagram_file
 
 from teleopdesign.base.files import read_whole
 from teleopdesign.cli import main
@@ -125,13 +124,3 @@ def test_a_file_is_read_up_to_its_limit(tmp_path):
     assert len(read_whole(path)) == 3_000_000 == len(read_whole(path, largest=3_000_000))
     with pytest.raises(OSError, match="more than"):
         read_whole(path, largest=2_999_999)
-
-
-def test_a_diagram_comes_through_a_pipe_of_a_shell_too(tmp_path, monkeypatch):
-    from teleopdesign.diagrams import read_diagram
-
-    read, write = os.pipe()
-    os.write(write, diagram_file().encode())
-    os.close(write)
-    assert read_diagram(f"/dev/fd/{read}").name == "one body"
-    os.close(read)

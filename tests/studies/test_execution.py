@@ -129,10 +129,8 @@ def damaged_journal(tmp_path, damage):
     ("damage", "kept"),
     [
         (lambda data: data, 6),
-        (lambda data: data[:-1], 5),  # the last line has no end
         (lambda data: data[:-9], 5),
         (lambda data: data[:-3] + b"9" + data[-2:], 5),  # a digit of the last line is another
-        (lambda data: data + b"0000", 6),
         (lambda data: data + b"\0" * 4096, 6),  # a system that crashed leaves zeros
         (lambda data: b"", 0),
     ],

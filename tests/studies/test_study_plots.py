@@ -60,25 +60,6 @@ def test_indices_are_refused_where_points_failed_or_nothing_varies():
         same.sensitivity()
 
 
-def test_bars_stand_for_the_indices_with_the_largest_total_on_top(drawn):
-    axis = drawn.plot().axes[0]
-    names = [t.get_text() for t in axis.get_yticklabels()]
-    assert names == ["z", "y", "x"]
-    widths = [bar.get_width() for bar in axis.patches]
-    indices = drawn.sensitivity().sel(parameter=names)
-    np.testing.assert_allclose(widths[:3], indices["total"].values)
-    np.testing.assert_allclose(widths[3:], indices["first"].values)
-
-
-def test_curves_show_one_line_for_each_value_of_the_second_axis(gridded):
-    axis = gridded.plot.curves(over="x", at={"z": 1.0}).axes[0]
-    lines = axis.get_lines()
-    assert len(lines) == 4
-    np.testing.assert_allclose(lines[2].get_ydata(), gridded["value"].sel(z=1.0, y=2.0).values)
-    assert axis.get_xscale() == "log"
-    assert axis.get_xlabel() == "x (s)" and axis.get_ylabel() == "value (N)"
-
-
 def test_a_map_shows_the_measure_with_proved_region_and_onset(gridded):
     figure = gridded.plot.map(at={"z": 0.0}, x="x", y="y", proved=lambda x: 0.5 * x, onset=0.0)
     mesh = figure.axes[0].collections[0]

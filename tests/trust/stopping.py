@@ -1,4 +1,4 @@
-"""Every command that writes, started in a process of its own, stopped, and held against its rules.
+"""Commands that write, started in a process of its own, stopped, and held against its rules.
 
 A command hears its signal after its first import: what comes before belongs to Python.
 """
@@ -8,7 +8,6 @@ import gzip
 import json
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -85,37 +84,9 @@ class WritingCommand:
 
 COMMANDS = {
     "check": WritingCommand(("check", "rod", "--json=OUT/a.json"), ("a.json",)),
-    "demo": WritingCommand(
-        ("demo", "--output=OUT"),
-        ("answer.json", "predictions.csv.gz", "ladder.png", "report.html"),
-        progress="^step ",
-    ),
     "derive": WritingCommand(
         ("derive", "haptic-interface", "--json=OUT/a.json", "--figure=OUT/a.svg"),
         ("a.json", "a.svg"),
-    ),
-    "describe": WritingCommand(
-        ("describe", "answer.json", "--json=OUT/a.json", "--figure=OUT/a.pdf"),
-        ("a.json", "a.pdf"),
-    ),
-    "design": WritingCommand(
-        ("design", "answer.json", "--json=OUT/a.json", "--output=OUT/more"),
-        ("a.json", "more/device_design.json", "more/device_interface.toml"),
-        old=False,
-    ),
-    "diagnose": WritingCommand(
-        (
-            *("diagnose", "rod", *FEW, "--json=OUT/a.json", "--predictions=OUT/a.csv.gz"),
-            *("--figure=OUT/a.png", "--report=OUT/a.html"),
-        ),
-        ("a.json", "a.csv.gz", "a.png", "a.html"),
-    ),
-    "folders": WritingCommand(
-        ("diagnose", "rod", "twin", *FEW, "--output=OUT", "--workers=2"),
-        ("rod.json", "twin.json", "table.csv"),
-        old=False,
-        goes_on=True,
-        progress="of 2 folders|goes on after",
     ),
     "export": WritingCommand(
         ("export", "answer.json", "--to=urdf", "--output=OUT/a.urdf"), ("a.urdf",)
@@ -124,9 +95,6 @@ COMMANDS = {
         ("new", "log.csv", "--yes", "--output=OUT/made"),
         ("made/log.csv", "made/experiment.toml", "made/understood.png"),
         old=False,
-    ),
-    "next": WritingCommand(
-        ("next", "answer.json", "--json=OUT/a.json", "--output=OUT/a.csv"), ("a.json",)
     ),
     "passivity": WritingCommand(("passivity", "answer.json", "--json=OUT/a.json"), ("a.json",)),
     "report": WritingCommand(("report", "answer.json", "--output=OUT/a.html"), ("a.html",)),
@@ -143,7 +111,6 @@ COMMANDS = {
 def make_sources(folder):
     """What the commands read."""
     written(as_recorded(), folder / "rod")
-    shutil.copytree(folder / "rod", folder / "twin")
     packed = (folder / "rod" / "fit.csv.gz").read_bytes()
     (folder / "log.csv").write_bytes(gzip.decompress(packed))
     (folder / "d.toml").write_text(diagram_file())
@@ -264,7 +231,6 @@ def goes_on(command, sources, out):
     is_done = (out / command.files[0]).exists()
     before = [p for p in out.rglob(".*")]
     kept = sum(map(_whole_points, out.glob("*.part")))
-    kept += sum(len(json.loads(path.read_text())) for path in out.glob("*/finished.json"))
     ended = run(command, sources, out)
     wrong = violations(command, ended, out, signal.SIGINT, before)
     if ended.status != 0:
@@ -294,9 +260,6 @@ def is_whole(path):
         ".png": b"IEND\xaeB`\x82",
         ".html": b"</html>",
         ".svg": b"</svg>",
-        ".pdf": b"%%EOF",
-        ".csv": b"\n",
-        ".py": b"\n",
     }
     if path.suffix == ".json":
         return isinstance(json.loads(content), dict)
@@ -306,12 +269,10 @@ def is_whole(path):
         return bool(tomllib.loads(content.decode())) and content.endswith(b"\n")
     if path.suffix in (".urdf", ".xml"):
         return ElementTree.fromstring(content) is not None
-    if path.suffix == ".gz":
-        return gzip.decompress(content).endswith(b"\n")
     if path.suffix == ".csv":
         rows = [*csv.reader(content.decode().splitlines())]
         return content.endswith(b"\n") and len({len(r) for r in rows}) == 1
-    return content.rstrip(b"\n" if path.suffix != ".py" else b"").endswith(ends[path.suffix])
+    return content.rstrip(b"\n").endswith(ends[path.suffix])
 
 
 def _opens(path):

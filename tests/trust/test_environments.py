@@ -2,7 +2,6 @@
 
 import json
 import os
-import shutil
 import stat
 import subprocess
 import sys
@@ -134,19 +133,6 @@ def test_laws_are_compiled_wherever_nothing_can_be_written(place, run_kernel, tm
     assert (out.split()[:2], errors) == (["42", "1.0"], "")
 
 
-@posix
-@pytest.mark.slow
-def test_laws_are_compiled_from_a_package_that_cannot_be_written(tmp_path):
-    copy = tmp_path / "install" / "teleopdesign"
-    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__", "examples"))
-    for folder in (copy, *(p for p in copy.rglob("*") if p.is_dir())):
-        (folder / "__pycache__").write_text("")  # a file: then nothing is kept, for root too
-    place = {"PYTHONPATH": str(copy.parent), "HOME": NOWHERE, "XDG_CACHE_HOME": NOWHERE}
-    check = f"import teleopdesign; assert teleopdesign.__file__.startswith({str(tmp_path)!r})\n"
-    done = python(check + KERNEL, env=place | {"TELEOPDESIGN_CACHE": NOWHERE}, cwd=tmp_path)
-    assert (done.stdout, done.stderr) == ("42 1.0 0\n", "")
-
-
 @pytest.mark.slow
 @posix
 def test_machine_code_is_kept_for_the_user_alone_and_used_again(tmp_path):
@@ -158,7 +144,7 @@ def test_machine_code_is_kept_for_the_user_alone_and_used_again(tmp_path):
 
 @pytest.mark.slow
 @posix
-@pytest.mark.parametrize("damage", ["another source", "short code", "a short index", "a folder"])
+@pytest.mark.parametrize("damage", ["another source", "short code"])
 def test_what_is_kept_is_not_run_where_it_is_not_what_was_kept(damage, run_kernel, tmp_path):
     run_kernel(XDG_CACHE_HOME=str(tmp_path))
     folder = tmp_path / "teleopdesign" / "machine_code"
@@ -166,19 +152,15 @@ def test_what_is_kept_is_not_run_where_it_is_not_what_was_kept(damage, run_kerne
     text = source.read_text()
     if damage == "another source":
         source.write_text("print('it ran')\n" + text)
-    elif damage == "a folder":
-        source.unlink()
-        source.mkdir()
     else:
-        ending = "nbi" if damage == "a short index" else "nbc"
-        (file,) = (folder / "__pycache__").glob(f"*.{ending}")
+        (file,) = (folder / "__pycache__").glob("*.nbc")
         file.write_bytes(file.read_bytes()[:20])
     for _ in range(2):
         out, errors = run_kernel(XDG_CACHE_HOME=str(tmp_path))
         assert (out.split()[:2], errors) == (["42", "1.0"], "")
     if damage == "another source":
         assert source.read_text() == text
-    if damage.startswith("short"):
+    else:
         assert out.split()[-1] == "1", "what was damaged was made anew"
 
 
@@ -202,15 +184,8 @@ def test_a_cache_folder_that_others_may_write_to_is_not_used(whose, run_kernel, 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "terminal",
-    [
-        {"PYTHONIOENCODING": "ascii"},
-        {"LANG": "C", "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
-    ],
-    ids=["ascii", "C"],
-)
-def test_a_terminal_that_knows_ascii_alone_is_given_ascii(terminal, tmp_path):
+def test_a_terminal_that_knows_ascii_alone_is_given_ascii(tmp_path):
+    terminal = {"LANG": "C", "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
     file = tmp_path / "drag_\u00b5.py"
     file.write_text('"""\u00b5 \u2248 0.1"""\n')
     done = command("effects", "--effect", file, env=terminal, stdout=subprocess.PIPE)
