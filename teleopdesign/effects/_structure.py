@@ -32,6 +32,10 @@ Coupling = Callable[[Any, Any], Any]
 #: a fitted resonance may be a hum if its frequency is within BESIDE (relative) of the mains and its
 #: damping ratio is below TONE. Higher limits would doubt true transmissions
 BESIDE, TONE = 0.05, 0.1
+#: unexplained force over the friction of a tip, up to which this friction keeps it in step. With
+#: 1 a gear with a play of 3 mm was taken for slipping springs; without a bound, a trace of friction
+#: would change the whole motion of a tip
+HOLDS = 10.0
 #: a gap counts if K g/2 is at least this part of the largest measured force: this is the largest
 #: difference between the coupling and a spring without a gap. Half a percent is less than models of
 #: real machines leave. A lower limit names other differences from a spring a gap; a higher one
@@ -171,10 +175,26 @@ def make_rubbing_structure(structure: Effect, level: sp.Expr) -> Effect:
     level: of this friction, on parameters of the body's effects
     """
     tip = replace(structure.states["tip_velocity"], dry=lambda now, p: level / p.tip_inertia)
-    position = replace(structure.states["tip_position"], correction=None)
+    position = structure.states["tip_position"]
+    if position.correction is not None:
+        position = replace(position, correction=_against_friction(position.correction, level))
     states = {"tip_position": position, "tip_velocity": tip}
-    free = replace(structure, states=states, led=None)
-    return remember(free, make_rubbing_structure, structure, level)
+    return remember(replace(structure, states=states), make_rubbing_structure, structure, level)
+
+
+def _against_friction(correction: Coupling, level: sp.Expr) -> Coupling:
+    """The correction by what exceeds a multiple of a friction level of the unexplained force.
+
+    Dry friction stops a tip between its meetings, so that it stays in step by itself. And it holds
+    a tip without a force for the correction: a light one would follow any machine.
+    """
+
+    def beyond(now: Any, p: Any) -> sp.Expr:
+        left, held = now.unexplained, HOLDS * level
+        more = sp.Piecewise((left - held, left > held), (left + held, left < -held), (0, True))
+        return correction(SimpleNamespace(**{**vars(now), "unexplained": more}), p)
+
+    return beyond
 
 
 def _join(coupling: Coupling, now: Any, p: Any) -> sp.Expr:
