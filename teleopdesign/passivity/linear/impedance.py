@@ -67,15 +67,12 @@ class Impedance:
 
     def __reduce__(self) -> Any:
         # sympy pickles a polynomial without the domain of its coefficients
-        pairs = ((poly.as_expr(), str(poly.domain)) for poly in (self.p, self.q))
-        return _impedance_of_domains, (*pairs, self.unseen)
+        return _restore, (self.p.as_expr(), self.q.as_expr(), self.unseen)
 
 
-def _impedance_of_domains(
-    p: tuple[sp.Expr, str], q: tuple[sp.Expr, str], unseen: tuple[complex, ...]
-) -> Impedance:
-    above, below = (sp.Poly(e, S, domain=domain) for e, domain in (p, q))
-    return Impedance(above, below, unseen)
+def _restore(above: sp.Expr, below: sp.Expr, unseen: tuple[complex, ...]) -> Impedance:
+    p, q = (sp.Poly(e, S, domain="QQ") for e in (above, below))
+    return Impedance(p, q, unseen)
 
 
 def decimal(number: sp.Expr) -> str:

@@ -17,6 +17,7 @@ import sympy as sp
 from ...base.errors import ModelError
 from ...derive.effort import TooMuchEffort, bounded_effort
 from ...derive.polynomials import X, as_poly, element, where_negative
+from ...realise.lti import S
 from ..claims.certificate import matrix_certificate
 from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown, Verdict
 from ..growing_mode import far_termination, growing_mode
@@ -263,7 +264,7 @@ def _terminated_waves(
     for s, second, turned in candidates(family, points):
         far = far_termination(s, second)
         z11, z12, z21, z22 = reversed(list(family.z)) if turned else family.z
-        at_port = z11 if far.clamped else z11 - z12 * z21 / (z22 + far.expression)
+        at_port = z11 if far.clamped else z11 - z12 * z21 / (z22 + far.at(S, sp.Rational))
         wave = wave_of(sp.ImmutableMatrix([[at_port]]), *round_point(s))
         if wave is not None and wave.energy > 0:
             yield wave, f"moved, port 1 {far}" if turned else f"{far}"
