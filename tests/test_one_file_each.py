@@ -85,7 +85,6 @@ from ..claims.claim import Claim, Unknown
 from ._theorem import Theorem, TopicClaim
 
 THEOREM = Theorem(
-    mathematics=(),
     claims=lambda question: [TopicClaim("throw-away", Claim("nothing", Unknown("a test")))],
     order=1000,
 )

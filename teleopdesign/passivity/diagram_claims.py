@@ -34,7 +34,7 @@ from .ports import (
 )
 from .search.by_simulation import Computer
 from .theorems import Question, TopicClaim, settle
-from .theorems.wave_channel import wave_claim
+from .theorems.channels import wave_claim
 
 #: last words of the topic of a claim that a search decides
 SEARCHED = "search by simulation"

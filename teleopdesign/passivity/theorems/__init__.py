@@ -1,8 +1,8 @@
 """Theorems about the passivity of friction, of its cancellation and of sampled controllers.
 
-Every file whose name does not begin with `_` states one theorem as `THEOREM`: functions of numbers
-with their hypotheses, and the questions about devices that the theorem answers. `settle` asks all
-theorems. A further theorem is a further file.
+Every file whose name does not begin with `_` states a theorem, or some of one kind: functions of
+numbers with their hypotheses, and as `THEOREM` the questions about devices that they answer, if
+any. `settle` asks all theorems. A further theorem is a further file.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ __all__ = ["THEOREMS", "Question", "Theorem", "TopicClaim", "Wall", "settle"]
 
 
 _NAMES = sorted(p.stem for p in Path(__file__).parent.glob("*.py") if p.stem[0] != "_")
-_STATED = {name: importlib.import_module(f"{__name__}.{name}").THEOREM for name in _NAMES}
+_FILES = {name: importlib.import_module(f"{__name__}.{name}") for name in _NAMES}
+_STATED = {name: file.THEOREM for name, file in _FILES.items() if hasattr(file, "THEOREM")}
 THEOREMS: Mapping[str, Theorem] = Catalogue(
     dict(sorted(_STATED.items(), key=lambda item: item[1].order)), "theorem"
 )

@@ -1,7 +1,7 @@
 """Types of a theorem, of a question about a device, and of the claims that answer the question.
 
 A file of this folder states the mathematics of one theorem as functions of numbers, each with its
-hypotheses. Its `THEOREM` says which questions about a device or a diagram the theorem answers.
+hypotheses. Its `THEOREM`, if any, says which questions about a device or a diagram it answers.
 """
 
 from __future__ import annotations
@@ -28,7 +28,6 @@ from ..rate_independent import Coulomb, Cycle, Dahl
 from ..search.by_simulation import SimulatedMotion, confirmed_motion, search_counterexample
 from ..search.growing_wave import wave_of
 from ..search.stroke_motion import Strokes
-from ._hypotheses import hypotheses_of
 
 Time = Literal["continuous", "sampled", "any"]
 
@@ -146,26 +145,22 @@ class TopicClaim(ByValue):
 
 @dataclass(frozen=True)
 class Theorem:
-    """A theorem: its functions of numbers, and the questions about devices that it answers.
+    """The questions about devices that a theorem answers.
 
-    mathematics: functions of numbers with their hypotheses (`require_hypotheses`). All claims come
-        from these functions, so no claim is made outside of the hypotheses
+    All claims come from functions of numbers with their hypotheses (`require_hypotheses`), so no
+    claim is made outside of the hypotheses.
+
     order: place among all theorems: continuous time before computers, friction before walls
     claims: the claims that answer a question, about friction, walls and computers alone; none where
-        the theorem says nothing about it. Default: the theorem is about numbers alone
+        the theorem says nothing about it
     covers: names of further effects of the device that the theorem covers
     simulate: the motion of a refutation in the compiled simulation; None where not confirmed
     """
 
-    mathematics: tuple[Callable[..., Claim], ...]
     order: int
-    claims: Callable[[Question], Sequence[TopicClaim]] = lambda question: ()
+    claims: Callable[[Question], Sequence[TopicClaim]]
     covers: Callable[[Question], Sequence[str]] = lambda question: ()
     simulate: Callable[[Counterexample], SimulatedMotion | None] = lambda motion: None
-
-    def __post_init__(self) -> None:
-        for function in self.mathematics:
-            hypotheses_of(function)
 
 
 def decide(

@@ -108,10 +108,4 @@ def _covers(question: Question) -> Sequence[str]:
     return device.actuation if is_known else ()
 
 
-THEOREM = Theorem(
-    mathematics=(bounded_compensation,),
-    claims=_claims,
-    order=10,
-    covers=_covers,
-    simulate=simulate_cycle,
-)
+THEOREM = Theorem(claims=_claims, order=10, covers=_covers, simulate=simulate_cycle)

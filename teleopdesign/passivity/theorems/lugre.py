@@ -206,7 +206,6 @@ def _claims(question: Question) -> list[TopicClaim]:
 
 
 THEOREM = Theorem(
-    mathematics=(lugre_passivity,),
     claims=_claims,
     order=50,
     covers=lambda question: question.device.actuation,  # what acts on commands is no part of it

@@ -140,4 +140,4 @@ def _claims(question: Question) -> list[TopicClaim]:
     return [TopicClaim("virtual wall, encoder steps", claim, time="sampled")]
 
 
-THEOREM = Theorem(mathematics=(quantised_spring,), claims=_claims, order=60)
+THEOREM = Theorem(claims=_claims, order=60)

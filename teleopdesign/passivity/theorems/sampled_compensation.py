@@ -203,9 +203,4 @@ def _claims(question: Question) -> list[TopicClaim]:
     return [TopicClaim("any motion, sampled", claim, time="sampled")]
 
 
-THEOREM = Theorem(
-    mathematics=(sampled_compensation,),
-    claims=_claims,
-    order=40,
-    simulate=simulate_cycle,
-)
+THEOREM = Theorem(claims=_claims, order=40, simulate=simulate_cycle)

@@ -208,4 +208,4 @@ def _claims(question: Question) -> list[TopicClaim]:
     ]
 
 
-THEOREM = Theorem(mathematics=(sampled_passivity, sampled_coupling), claims=_claims, order=30)
+THEOREM = Theorem(claims=_claims, order=30)

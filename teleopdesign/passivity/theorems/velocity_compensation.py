@@ -25,12 +25,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from types import SimpleNamespace
-from typing import Any
 
 import sympy as sp
 
-from ...controllers import laws_that_declare
+from ...controllers import SIGNALS, equation_of, laws_that_declare, symbols_of
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, Coulomb, Dahl
@@ -44,19 +42,15 @@ from ._hypotheses import (
 )
 from ._theorem import Question, Theorem, Time, TopicClaim, decide, leave_open
 
-_SYMBOLS = sp.symbols("velocity level smoothing", real=True)
-
-
-def _law() -> Any:
-    """Force of the catalogue's smoothed law: a function of velocity, level, smoothing velocity."""
-    v, level, smoothing = _SYMBOLS
-    made = laws_that_declare("smoothing")[0]
-    now = SimpleNamespace(velocity=v, speed=sp.Abs(v))
-    values = SimpleNamespace(**{made.bound: level, made.smoothing: smoothing})
-    return sp.lambdify(_SYMBOLS, made.law(now, values), "math")
-
-
-_COMMAND = _law()
+_LAW = laws_that_declare("smoothing")[0]
+_EQUATION, _VELOCITY = equation_of(_LAW, sp.S(0)), SIGNALS["velocity"]
+assert _EQUATION is not None
+#: force (N) of the catalogue's smoothed law, a function of velocity, level and smoothing velocity
+_COMMAND = sp.lambdify(
+    [_VELOCITY, *(symbols_of(_LAW)[n] for n in (_LAW.bound, _LAW.smoothing))],
+    _EQUATION.output.subs(SIGNALS["speed"], sp.Abs(_VELOCITY)),
+    "math",
+)
 
 
 @dataclass(frozen=True)
@@ -239,4 +233,4 @@ def _claims(question: Question) -> list[TopicClaim]:
     return [TopicClaim(topic, claim, spends_damping=True, time=time)]
 
 
-THEOREM = Theorem(mathematics=(velocity_compensation,), claims=_claims, order=15)
+THEOREM = Theorem(claims=_claims, order=15)

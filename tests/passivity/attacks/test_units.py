@@ -15,10 +15,9 @@ from passivity.attacks.budget import attacked
 from passivity.attacks.rational import KINDS, random_ratio
 from passivity.test_hypotheses import inside
 
+from teleopdesign import passivity
 from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import absolutely_stable, passive, positive_real, two_port
-from teleopdesign.passivity.theorems import THEOREMS
-from teleopdesign.passivity.theorems._hypotheses import hypotheses_of
 from teleopdesign.realise.lti import S
 
 #: powers of the units of force, length and time in each number of a theorem, by a word of its name
@@ -43,9 +42,9 @@ DIMENSIONS = {
 PLAIN = {"late", "order", "scale", "paths", "rng", "delay_growth"}
 FUNCTIONS = [
     function
-    for theorem in THEOREMS.values()
-    for function in theorem.mathematics
-    if function.__name__ not in ("wave_teleoperator", "free_motion", "energy_tank")
+    for function in map(passivity.__getattr__, passivity.__all__)
+    if hasattr(function, "hypotheses")
+    and function.__name__ not in ("wave_teleoperator", "free_motion", "energy_tank")
 ]
 
 
@@ -82,7 +81,7 @@ def test_numbers_in_other_units_have_the_same_claim(function, seed, number):
     rng, counts = random.Random(seed), Counter()
     for _ in range(number):
         numbers = inside(function, rng)
-        for name, needs in hypotheses_of(function).items():
+        for name, needs in function.hypotheses.items():
             if needs.text.endswith("or None") and rng.random() < 0.5:
                 numbers[name] = None
         factors = units(rng)
