@@ -19,10 +19,9 @@ from ...base.arguments import describe_value
 from ...base.errors import ModelError
 from ...controllers import resolvent
 from ...derive.linear_rows import read_late_ratios
-from ...derive.polynomials import as_poly, element, fraction
+from ...derive.polynomials import as_poly, element, fraction, is_hurwitz, roots_of
 from ...realise.lti import S
 from .matrices import parts_of, value_at
-from .unseen import not_decaying
 
 MotionKind = Literal["velocity", "position"]
 _LONGEST = 9  # most characters of a fraction that a text contains as a fraction
@@ -33,6 +32,8 @@ _SMALLEST = sp.Rational(1, 10**300)  # smallest size of a number that is also wr
 _HIGHEST = 40
 #: highest degree of an expression as it is written, of which factors may cancel
 _UNCANCELLED = 10 * _HIGHEST
+#: share of its size by which a root may lie on the left by rounding alone
+_NEAR = 1e-9
 
 
 @dataclass(frozen=True)
@@ -247,3 +248,12 @@ def from_state_space(a: Any, b: Any, c: Any, d: Any) -> Impedance:
 def _with_unseen(above: Any, below: Any) -> Impedance:
     """The impedance above/below of a system; the roots that cancel are modes that it hides."""
     return replace(impedance_of(above, below), unseen=not_decaying(as_poly(above.gcd(below), S)))
+
+
+def not_decaying(p: sp.Poly) -> tuple[complex, ...]:
+    """Roots that are not in the open left half plane, one of each pair; none, decided exactly."""
+    if is_hurwitz(p):
+        return ()
+    s = roots_of(element(p.sqf_part()))
+    near = s[(s.real >= -_NEAR * np.abs(s)) & (s.imag >= 0)]
+    return tuple(map(complex, near if len(near) else s[[s.real.argmax()]]))

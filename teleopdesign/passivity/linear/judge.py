@@ -30,7 +30,6 @@ from .impedance import Impedance, MotionKind, impedance, readable
 from .matrices import parts_of, round_point, value
 from .signs import Signs
 from .sweep import fails_in_a_limit, holds_at, least_over, margin_of, resonances, zeros_and_poles
-from .unseen import explain_unseen
 
 _METHODS = {
     "passive": "the positive-real test of the matrix",
@@ -133,7 +132,7 @@ def _judge(family: Family, claim: str, statement: str) -> Claim:
     except TooMuchEffort as problem:
         return Claim(statement, Unknown(str(problem)))
     if verdict.holds and (modes := family.unseen or (family.hides and family.undecayed)):
-        return Claim(statement, Unknown(explain_unseen(modes)))
+        return Claim(statement, Unknown(_explain_unseen(modes)))
     return Claim(statement, verdict)
 
 
@@ -268,3 +267,13 @@ def _terminated_waves(
         wave = wave_of(sp.ImmutableMatrix([[at_port]]), *round_point(s))
         if wave is not None and wave.energy > 0:
             yield wave, f"moved, port 1 {far}" if turned else f"{far}"
+
+
+def _explain_unseen(modes: Sequence[complex]) -> str:
+    """The reason of an unknown claim beside modes that no port shows and that do not decay, 1/s."""
+    start = "from rest its impedance is that of a passive port, but"
+    if any(np.isnan(m) for m in modes):
+        return f"{start} with its dead times a mode that no port shows is not shown to decay"
+    shown = ", ".join(f"{m.real:.4g}{f' +- {m.imag:.4g}j' * bool(m.imag)}" for m in modes)
+    number = "a mode that no port shows does" if len(modes) == 1 else "modes that no port shows do"
+    return f"{start} {number} not decay, at s = {shown} 1/s"

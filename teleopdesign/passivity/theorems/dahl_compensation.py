@@ -160,21 +160,6 @@ def onset_amplitude(
     return float(u) * f_d / stiffness
 
 
-def self_motion_speed(*, coulomb_level: float, compensator_level: float, damping: float) -> float:
-    """Steady speed of a motion that over-compensation drives, m/s: (f_D - f_C)/B, or 0.
-
-    Viscous damping B bounds the speed, but the pair of friction and compensator is still not
-    passive.
-
-    coulomb_level: f_C, N;  compensator_level: f_D, N;  damping: B, N s/m
-    returns: inf with over-compensation and without damping
-    """
-    excess = max(compensator_level - coulomb_level, 0.0)
-    if damping <= 0:
-        return math.inf if excess else 0.0
-    return excess / damping
-
-
 def _pair_proof(
     f_c: sp.Expr, top: sp.Expr, f_d: sp.Expr, stiffness: sp.Expr, presliding: sp.Expr
 ) -> Proof:
@@ -250,9 +235,4 @@ def _claims(question: Question) -> list[TopicClaim]:
     return [TopicClaim(f"estimate{when}", estimate, time=time), certain]
 
 
-THEOREM = Theorem(
-    mathematics=(dahl_compensation,),
-    claims=_claims,
-    order=20,
-    simulate=simulate_cycle,
-)
+THEOREM = Theorem(claims=_claims, order=20, simulate=simulate_cycle)
