@@ -9,13 +9,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ...derive.polynomials import (
-    X,
-    even_part,
-    has_positive_root,
-    positive_roots,
-    value,
-)
+from ...derive.polynomials import X, even_part, has_positive_root, positive_roots, value
 from .conditions import is_shown
 from .family import family_of_impedance
 from .impedance import Impedance, MotionKind, exact, impedance
