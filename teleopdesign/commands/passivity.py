@@ -224,9 +224,7 @@ def _make_sampling(options: argparse.Namespace) -> Sampling | None:
 def _describe_device(
     device: IdentifiedDevice, claims: Sequence[TopicClaim], limits: Sequence[Margin]
 ) -> str:
-    from ..base.units import unit_of
-
-    force, stiff = device.force_unit, device.stiffness_unit
+    force, stiff, damped = map(device.unit, ("force", "stiffness", "damping"))
     lines = [
         f"friction level: lowest {device.lowest} {force}, highest {device.highest} {force}, "
         f"over {device.over}"
@@ -237,10 +235,9 @@ def _describe_device(
         )
     else:
         lines.append(f"presliding stiffness {device.presliding} {stiff}")
-    unit = unit_of("damping", device.body.axis)
-    lines.append(f"damping at every speed {device.damping} {unit}")
+    lines.append(f"damping at every speed {device.damping} {damped}")
     if device.bristle_damping.high > 0:
-        lines.append(f"damping of the bristle {device.bristle_damping} {unit}")
+        lines.append(f"damping of the bristle {device.bristle_damping} {damped}")
     if device.set_aside:
         lines.append(
             f"may supply energy, or no theorem covers the effect: {', '.join(device.set_aside)}"
@@ -252,7 +249,6 @@ def _describe_device(
 
 def _describe_z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
     from ..base.sentences import round_down
-    from ..base.units import unit_of
     from ..passivity import z_width
 
     width = z_width(
@@ -263,7 +259,7 @@ def _describe_z_width(device: IdentifiedDevice, period: float, delay: float) -> 
     )
     k, b = width.stiffest
     checked = "exact test agrees at each limit" if width.verified else "evidence"
-    stiff, damped = (unit_of(q, device.body.axis) for q in ("stiffness", "damping"))
+    stiff, damped = map(device.unit, ("stiffness", "damping"))
     k, b = (round_down(x, digits=4) for x in (k, b))
     return (
         f"Z-width at {period:g} s: stiffest passive wall {k:.4g} {stiff} with "

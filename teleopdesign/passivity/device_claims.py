@@ -114,7 +114,7 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     """
     if device.basis is not None and device.basis.is_open:
         return []  # friction may be less than any model of the records says
-    force, stiff = device.force_unit, device.stiffness_unit
+    force, stiff = map(device.unit, ("force", "stiffness"))
     lowest, presliding = device.lowest, device.presliding
     # what the actuation makes of a command is bounded, and beside ideal friction that is enough
     acts = presliding is None and math.isfinite(device.acting_force(lowest.low))

@@ -125,19 +125,17 @@ def _write_out(family: Family) -> str:
 
 
 def _judge(family: Family, claim: str, statement: str) -> Claim:
-    judge = _judge_late if family.times else _judge_exactly
     try:
         with bounded_effort():
-            verdict = judge(family, claim, statement)
+            if family.times:
+                verdict = _judge_late(family, claim)
+            else:
+                verdict = prove(family, claim, statement) or _refute(family, claim)
     except TooMuchEffort as problem:
         return Claim(statement, Unknown(str(problem)))
     if verdict.holds and (modes := family.unseen or (family.hides and family.undecayed)):
         return Claim(statement, Unknown(_explain_unseen(modes)))
     return Claim(statement, verdict)
-
-
-def _judge_exactly(family: Family, claim: str, statement: str) -> Verdict:
-    return prove(family, claim, statement) or _refute(family, claim)
 
 
 def prove(family: Family, claim: str, title: str) -> Proof | Evidence | None:
@@ -206,7 +204,7 @@ def _describe_failure(family: Family) -> str:
     return "a mode does not decay between dampers"
 
 
-def _judge_late(family: Family, claim: str, statement: str) -> Verdict:
+def _judge_late(family: Family, claim: str) -> Verdict:
     """With dead times: evidence, a motion, or unknown."""
     margin = margin_of(claim)
     swept = _sweep(family)

@@ -88,7 +88,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     claims = [TopicClaim("any law within the level", claim, time=time, of_any_law=True)]
     if not question.estimates or math.isinf(acting):
         return claims
-    least, unit = device.least_resistance.low, device.force_unit.replace("*", " ")
+    least, unit = device.least_resistance.low, device.unit("force").replace("*", " ")
     statement = (
         f"ideal friction of the device and its viscous damping resist with more than "
         f"{decimal(exact(acting))} {unit} at every speed, so that no law within it drives a motion"
