@@ -203,11 +203,6 @@ def refute_by_wave(
     return refute(statement, wave, how or "", "the condition fails, but no wave was found")
 
 
-def leave_open(topic: str, statement: str, why: str, **more: Any) -> TopicClaim:
-    """A claim that no theorem answers."""
-    return TopicClaim(topic, Claim(statement, Unknown(why)), **more)
-
-
 def simulate_cycle(cycle: Counterexample) -> SimulatedMotion | None:
     """Simulate a refuting cycle of one friction element with a Dahl compensator.
 

@@ -40,7 +40,7 @@ from ._hypotheses import (
     certificate,
     require_hypotheses,
 )
-from ._theorem import Question, Theorem, Time, TopicClaim, decide, leave_open
+from ._theorem import Question, Theorem, Time, TopicClaim, decide
 
 _LAW = laws_that_declare("smoothing")[0]
 _EQUATION, _VELOCITY = equation_of(_LAW, sp.S(0)), SIGNALS["velocity"]
@@ -215,11 +215,8 @@ def _claims(question: Question) -> list[TopicClaim]:
         return []
     if computer is not None and (computer.encoder_step or not computer.takes_differences):
         return []
-    topic = "law of velocity, with damping"
     if device.bristle_damping.high > 0:
-        why = "no theorem covers bristle damping beside a law of velocity"
-        statement = "the device's friction beside its compensator of velocity is passive"
-        return [leave_open(topic, statement, why, spends_damping=True)]
+        return []  # no theorem covers it beside a law of velocity
     claim = velocity_compensation(
         coulomb_level=device.lowest.low,
         compensator_level=law.bound,
@@ -230,7 +227,7 @@ def _claims(question: Question) -> list[TopicClaim]:
         late=question.late,
     )
     time: Time = "sampled" if computer else "continuous"
-    return [TopicClaim(topic, claim, spends_damping=True, time=time)]
+    return [TopicClaim("law of velocity, with damping", claim, spends_damping=True, time=time)]
 
 
 THEOREM = Theorem(claims=_claims, order=15)
