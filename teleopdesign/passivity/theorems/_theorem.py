@@ -1,8 +1,4 @@
-"""Types of a theorem, of a question about a device, and of the claims that answer the question.
-
-A file of this folder states the mathematics of one theorem as functions of numbers, each with its
-hypotheses. Its `THEOREM`, if any, says which questions about a device or a diagram it answers.
-"""
+"""A question about a device, the claims that answer it, and how a theorem makes a claim."""
 
 from __future__ import annotations
 
@@ -104,6 +100,7 @@ class TopicClaim(ByValue):
     time: of the controllers: "sampled", "continuous", or "any" where the claim holds for both
     of_any_law: whether it is about any law within a bound: another law than that of the question
         may then be the one that refutes it
+    covers: names of further effects of the device that its theorem covers
     """
 
     topic: str
@@ -113,6 +110,7 @@ class TopicClaim(ByValue):
     spends_damping: bool = False
     time: Time = "continuous"
     of_any_law: bool = False
+    covers: Sequence[str] = ()
 
     @property
     def refutes(self) -> bool:
@@ -141,26 +139,6 @@ class TopicClaim(ByValue):
         """Status of the claim in words; a proof for continuous time alone says so."""
         limited = self.claim.status == "proved" and self.time == "continuous"
         return f"{self.claim.heading}{' (in continuous time)' * limited}"
-
-
-@dataclass(frozen=True)
-class Theorem:
-    """The questions about devices that a theorem answers.
-
-    All claims come from functions of numbers with their hypotheses (`require_hypotheses`), so no
-    claim is made outside of the hypotheses.
-
-    order: place among all theorems: continuous time before computers, friction before walls
-    claims: the claims that answer a question, about friction, walls and computers alone; none where
-        the theorem says nothing about it
-    covers: names of further effects of the device that the theorem covers
-    simulate: the motion of a refutation in the compiled simulation; None where not confirmed
-    """
-
-    order: int
-    claims: Callable[[Question], Sequence[TopicClaim]]
-    covers: Callable[[Question], Sequence[str]] = lambda question: ()
-    simulate: Callable[[Counterexample], SimulatedMotion | None] = lambda motion: None
 
 
 def decide(

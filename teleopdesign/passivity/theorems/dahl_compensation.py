@@ -19,9 +19,11 @@ from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal
 from ..rate_independent import Cycle, Dahl, dahl_loss, lost_share, symmetric_cycle
 from ._hypotheses import Positive, PositiveOrNone, certificate, require_hypotheses
-from ._theorem import Question, Theorem, Time, TopicClaim, decide, simulate_cycle
+from ._theorem import Question, Time, TopicClaim, decide
 from .bounded_compensation import cycle_beyond_onset, proof_of_level
 from .lugre import add_bristle_damping
+
+ORDER = 20
 
 
 @require_hypotheses
@@ -219,7 +221,7 @@ def dahl_claim(
     )
 
 
-def _claims(question: Question) -> list[TopicClaim]:
+def claims(question: Question) -> list[TopicClaim]:
     """Claims at the estimates, and for all values within the intervals; in continuous time."""
     if question.bristle is None:
         return []
@@ -233,6 +235,3 @@ def _claims(question: Question) -> list[TopicClaim]:
         return [certain]
     estimate = dahl_claim(device, level, stiffness, certain=False)
     return [TopicClaim(f"estimate{when}", estimate, time=time), certain]
-
-
-THEOREM = Theorem(claims=_claims, order=20, simulate=simulate_cycle)

@@ -40,7 +40,9 @@ from ._hypotheses import (
     certificate,
     require_hypotheses,
 )
-from ._theorem import Question, Theorem, Time, TopicClaim, decide
+from ._theorem import Question, Time, TopicClaim, decide
+
+ORDER = 15
 
 _LAW = laws_that_declare("smoothing")[0]
 _EQUATION, _VELOCITY = equation_of(_LAW, sp.S(0)), SIGNALS["velocity"]
@@ -205,7 +207,7 @@ def _fastest_gain(f_d: float, a: float, least: float, b: float) -> float:
     return (f_d - least) / (2 * b) if b else 0.01
 
 
-def _claims(question: Question) -> list[TopicClaim]:
+def claims(question: Question) -> list[TopicClaim]:
     """The claim for all values within the intervals, with the damping present at every speed.
 
     In a computer the velocity must be the plain difference of readings without steps.
@@ -228,6 +230,3 @@ def _claims(question: Question) -> list[TopicClaim]:
     )
     time: Time = "sampled" if computer else "continuous"
     return [TopicClaim("law of velocity, with damping", claim, spends_damping=True, time=time)]
-
-
-THEOREM = Theorem(claims=_claims, order=15)
