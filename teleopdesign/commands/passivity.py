@@ -26,7 +26,8 @@ from ._options import (
 )
 
 if TYPE_CHECKING:
-    from ..passivity.device_claims import Compensator, Margin
+    from ..controllers import Stage
+    from ..passivity.device_claims import Margin
     from ..passivity.identified import IdentifiedDevice
     from ..passivity.theorems import TopicClaim
     from ..simulate import Sampling
@@ -184,17 +185,19 @@ def _check_options(options: argparse.Namespace) -> None:
         raise ExperimentError("--wall, --delay, --encoder-step: they need --period")
 
 
-def _choose_compensator(options: argparse.Namespace) -> Compensator | None:
-    from ..passivity.device_claims import Compensator
+def _choose_compensator(options: argparse.Namespace) -> Stage | None:
+    from ..controllers import CONTROLLERS, Stage
 
-    for law in ("dahl", "smoothed_coulomb"):
-        if (values := getattr(options, law)) is not None:
-            return Compensator(law, *values)
+    for name in ("dahl", "smoothed_coulomb"):
+        if (values := getattr(options, name)) is not None:
+            law = CONTROLLERS[name]
+            names = law.bound, law.bristle_stiffness or law.smoothing
+            return Stage(law, dict(zip(names, values, strict=True)))
     return None
 
 
 def _settle_claims(
-    options: argparse.Namespace, device: IdentifiedDevice, compensator: Compensator | None
+    options: argparse.Namespace, device: IdentifiedDevice, compensator: Stage | None
 ) -> list[TopicClaim]:
     import numpy as np
 
@@ -208,7 +211,7 @@ def _settle_claims(
         claims += compensation_claims(device, compensator, computer=computer, rng=rng)
     if options.wall is not None and computer is not None:
         stiffness, damping = options.wall
-        wall = Wall(stiffness, damping, compensator.level if compensator else 0.0)
+        wall = Wall(stiffness, damping, (compensator and compensator.value_of("bound")) or 0.0)
         claims += settle(Question(device, wall=wall, computer=computer))
     return claims
 

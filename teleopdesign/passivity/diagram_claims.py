@@ -204,7 +204,7 @@ def _search_claim(
             "the axis: a proof asks for all of them and for the right half plane, a search for time"
         )
         return TopicClaim(topic, Claim(statement, Unknown(why)))
-    lengths = [x for pair in friction_pairs(free) for x in pair.lengths]
+    lengths = [x for pair in friction_pairs(free) for x in pair.question.lengths]
     shortest = min([search.stroke / 1000, *lengths])
     return TopicClaim.from_search(
         topic,

@@ -49,16 +49,6 @@ class FrictionPair:
         parameters = set(self.body.body.symbols().values())
         return not self.body.body.level().free_symbols - parameters
 
-    @property
-    def lengths(self) -> list[float]:
-        """Travels over which friction, and the cancelling force, build up, m or rad."""
-        lengths = []
-        if self.device.presliding is not None:
-            lengths.append(self.device.lowest.estimate / self.device.presliding.estimate)
-        if (bristle := self.question.bristle) is not None:
-            lengths.append(bristle[0] / bristle[1])
-        return lengths
-
 
 def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
     """A pair for each body with friction whose cancellation, if any, acts on it alone.

@@ -77,6 +77,16 @@ class Question:
         return None if level is None or stiffness is None else (level, stiffness)
 
     @property
+    def lengths(self) -> list[float]:
+        """Travels over which friction, and the cancelling force, build up, m or rad."""
+        lengths = []
+        if self.device.presliding is not None:
+            lengths.append(self.device.lowest.estimate / self.device.presliding.estimate)
+        if self.bristle is not None:
+            lengths.append(self.bristle[0] / self.bristle[1])
+        return lengths
+
+    @property
     def late(self) -> int | None:
         """Delay of the computer in whole samples; None where it is not a whole number of samples.
 
