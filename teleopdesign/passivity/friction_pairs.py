@@ -11,7 +11,7 @@ from ..controllers import Controller, Stage
 from ..diagrams import Control, Diagram, Moving
 from .claims.claim import Claim, Proof, Unknown
 from .identified import IdentifiedDevice, identify_device, restate_for_device
-from .ports import drives_alone, nonlinear_parts, ports, without_friction
+from .ports import drives_alone, nonlinear_parts, ports
 from .theorems import Question, TopicClaim, settle
 
 
@@ -84,8 +84,13 @@ def _acts_alone(control: Control, part: Moving, diagram: Diagram) -> bool:
 
 def without_pair(diagram: Diagram, pair: FrictionPair) -> Diagram:
     """The diagram without the friction of a pair and its cancellation."""
+    body = pair.body.body
+    assert isinstance(body, Body)
+    for effect in reversed(body.effects):
+        if effect.role.startswith("friction"):
+            body = body.without_effect(effect.name)
     gone = [pair.cancellation.name] if pair.cancellation else []
-    return without_friction(diagram, pair.body.motion, *gone)
+    return diagram.without(*gone).with_block(pair.body.name, body)
 
 
 def pair_claims(pair: FrictionPair, *, simulated: bool = True) -> list[TopicClaim]:
