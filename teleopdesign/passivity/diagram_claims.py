@@ -140,15 +140,12 @@ def composed_claim(
     """
     rest, proofs = diagram, []
     for pair in pairs:
-        claims = pair_claims(pair, simulated=False)
-        proof = proof_of(claims)
-        if pair.device.set_aside or not pair.is_constant:
+        proof = proof_of(pair_claims(pair, simulated=False))
+        # no theorem about friction alone is called here
+        is_open = proof is None if pair.cancellation else pair.device.presliding is not None
+        if is_open or pair.device.set_aside or not pair.is_constant:
             return None
         if not is_spanned(pair.body.motion, all_ports):
-            return None
-        if pair.cancellation is None and pair.device.presliding is not None:
-            return None  # no theorem about friction alone is called here
-        if proof is None and (claims or pair.cancellation is not None):
             return None
         proofs += [proof.claim] if proof else []
         rest = without_pair(rest, pair)
