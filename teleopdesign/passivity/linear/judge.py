@@ -22,7 +22,7 @@ from ..claims.certificate import matrix_certificate
 from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown, Verdict
 from ..growing_mode import far_termination, growing_mode
 from ..search.growing_wave import GrowingWave, wave_of
-from ..search.points import candidates, near_axis, near_poles, wave_out_of
+from ..search.points import candidates, near_axis, near_poles, waves_out_of
 from .conditions import KINDS, axis_conditions, is_shown, stability_certificate
 from .excess import damping_excess, describe_equality
 from .family import Family, family_of_impedance
@@ -171,10 +171,7 @@ def prove(family: Family, claim: str, title: str) -> Proof | Evidence | None:
 
 def _refute(family: Family, claim: str) -> Verdict:
     if claim == "passive":
-        wave = wave_out_of(family)
-        if wave is None:
-            return Unknown(NO_WAVE)
-        return Refutation(_describe_wave(wave), wave)
+        return _refute_by_wave(family, (), NO_WAVE)
     why = _describe_failure(family)
     mode = growing_mode(family)
     if mode is None:
@@ -184,6 +181,12 @@ def _refute(family: Family, claim: str) -> Verdict:
     if mode.frequency:
         method += f" and swings at {float(mode.frequency):.4g} rad/s"
     return Refutation(method, mode)
+
+
+def _refute_by_wave(family: Family, frequencies: Sequence[float], why: str) -> Verdict:
+    """The first wave that takes energy out; why: what an unknown claim says."""
+    wave = next(waves_out_of(family, frequencies), None)
+    return Refutation(_describe_wave(wave), wave) if wave else Unknown(why)
 
 
 def _describe_wave(wave: GrowingWave) -> str:
@@ -228,10 +231,8 @@ def _judge_late(family: Family, claim: str) -> Verdict:
     if not why:
         return Evidence(True, _SWEPT.format(len(swept), swept[0], swept[-1]), least, unit)
     if claim == "passive":
-        wave = wave_out_of(family, frequencies)
-        if wave is not None:
-            return Refutation(_describe_wave(wave), wave)
-        return Unknown(f"{why}; no wave that takes energy out was found")
+        why = f"{why}; no wave that takes energy out was found"
+        return _refute_by_wave(family, frequencies, why)
     held = dict(islice(_terminated_waves(family, frequencies), 3))
     if held:
         wave = max(held, key=lambda w: w.rate / (w.frequency or w.rate))  # the plainest
