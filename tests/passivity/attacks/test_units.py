@@ -13,9 +13,8 @@ import pytest
 import sympy as sp
 from passivity.attacks.budget import attacked
 from passivity.attacks.rational import KINDS, random_ratio
-from passivity.test_hypotheses import inside
+from passivity.test_hypotheses import FUNCTIONS, inside
 
-from teleopdesign import passivity
 from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import absolutely_stable, passive, positive_real, two_port
 from teleopdesign.realise.lti import S
@@ -40,11 +39,10 @@ DIMENSIONS = {
 }
 #: numbers without a unit, and what is no number
 PLAIN = {"late", "order", "scale", "paths", "rng", "delay_growth"}
-FUNCTIONS = [
+WITH_UNITS = [
     function
-    for function in map(passivity.__getattr__, passivity.__all__)
-    if hasattr(function, "hypotheses")
-    and function.__name__ not in ("wave_teleoperator", "free_motion", "energy_tank")
+    for function in FUNCTIONS
+    if function.__name__ not in ("wave_teleoperator", "free_motion", "energy_tank")
 ]
 
 
@@ -75,7 +73,7 @@ def agree(first, second):
     return first == second or {first, second} == {"refuted", "unknown"}
 
 
-@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda f: f.__name__)
+@pytest.mark.parametrize("function", WITH_UNITS, ids=lambda f: f.__name__)
 @attacked(1, 10)
 def test_numbers_in_other_units_have_the_same_claim(function, seed, number):
     rng, counts = random.Random(seed), Counter()
