@@ -80,7 +80,7 @@ def _infimum(real: sp.Poly, size: sp.Poly) -> tuple[float, float]:
 def _verify_bounds(z: Impedance, lowest: float) -> tuple[Fraction | float, Fraction | float]:
     """Bounds c- and c+ near `lowest`, by the exact test: Z - c- is passive, Z - c+ is not.
 
-    Both are -inf where no such bounds are close to `lowest`.
+    Both are -inf where no such bounds are close to `lowest`; c+ is inf where it alone is not.
     """
     if not np.isfinite(lowest):
         return float("-inf"), float("-inf")
@@ -91,7 +91,7 @@ def _verify_bounds(z: Impedance, lowest: float) -> tuple[Fraction | float, Fract
         other = middle + step if is_below else middle - step
         if is_passive(z, other) != is_below:
             return min(middle, other), max(middle, other)
-    return float("-inf"), float("-inf")
+    return (middle, float("inf")) if is_below else (float("-inf"), float("-inf"))
 
 
 def is_passive(z: Impedance, less: Fraction = Fraction(0)) -> bool:
