@@ -82,13 +82,14 @@ def run(options):
 THEOREM = '''"""Throw-away: nothing is settled about any device."""
 
 from ..claims.claim import Claim, Unknown
-from ._theorem import Theorem, TopicClaim
+from ._theorem import TopicClaim
 
-THEOREM = Theorem(
-    mathematics=(),
-    claims=lambda question: [TopicClaim("throw-away", Claim("nothing", Unknown("a test")))],
-    order=1000,
-)
+ORDER = 1000
+
+
+def claims(question):
+    """Nothing."""
+    return [TopicClaim("throw-away", Claim("nothing", Unknown("a test")))]
 '''
 
 CHECK = '''"""Throw-away: every recording is remarkable."""

@@ -26,7 +26,8 @@ from ._options import (
 )
 
 if TYPE_CHECKING:
-    from ..passivity.device_claims import Compensator, Margin
+    from ..controllers import Stage
+    from ..passivity.device_claims import Margin
     from ..passivity.identified import IdentifiedDevice
     from ..passivity.theorems import TopicClaim
     from ..simulate import Sampling
@@ -184,17 +185,19 @@ def _check_options(options: argparse.Namespace) -> None:
         raise ExperimentError("--wall, --delay, --encoder-step: they need --period")
 
 
-def _choose_compensator(options: argparse.Namespace) -> Compensator | None:
-    from ..passivity.device_claims import Compensator
+def _choose_compensator(options: argparse.Namespace) -> Stage | None:
+    from ..controllers import CONTROLLERS, Stage
 
-    for law in ("dahl", "smoothed_coulomb"):
-        if (values := getattr(options, law)) is not None:
-            return Compensator(law, *values)
+    for name in ("dahl", "smoothed_coulomb"):
+        if (values := getattr(options, name)) is not None:
+            law = CONTROLLERS[name]
+            names = law.bound, law.bristle_stiffness or law.smoothing
+            return Stage(law, dict(zip(names, values, strict=True)))
     return None
 
 
 def _settle_claims(
-    options: argparse.Namespace, device: IdentifiedDevice, compensator: Compensator | None
+    options: argparse.Namespace, device: IdentifiedDevice, compensator: Stage | None
 ) -> list[TopicClaim]:
     import numpy as np
 
@@ -208,7 +211,7 @@ def _settle_claims(
         claims += compensation_claims(device, compensator, computer=computer, rng=rng)
     if options.wall is not None and computer is not None:
         stiffness, damping = options.wall
-        wall = Wall(stiffness, damping, compensator.level if compensator else 0.0)
+        wall = Wall(stiffness, damping, (compensator and compensator.value_of("bound")) or 0.0)
         claims += settle(Question(device, wall=wall, computer=computer))
     return claims
 
@@ -224,9 +227,7 @@ def _make_sampling(options: argparse.Namespace) -> Sampling | None:
 def _describe_device(
     device: IdentifiedDevice, claims: Sequence[TopicClaim], limits: Sequence[Margin]
 ) -> str:
-    from ..base.units import unit_of
-
-    force, stiff = device.force_unit, device.stiffness_unit
+    force, stiff, damped = map(device.unit, ("force", "stiffness", "damping"))
     lines = [
         f"friction level: lowest {device.lowest} {force}, highest {device.highest} {force}, "
         f"over {device.over}"
@@ -237,10 +238,9 @@ def _describe_device(
         )
     else:
         lines.append(f"presliding stiffness {device.presliding} {stiff}")
-    unit = unit_of("damping", device.body.axis)
-    lines.append(f"damping at every speed {device.damping} {unit}")
+    lines.append(f"damping at every speed {device.damping} {damped}")
     if device.bristle_damping.high > 0:
-        lines.append(f"damping of the bristle {device.bristle_damping} {unit}")
+        lines.append(f"damping of the bristle {device.bristle_damping} {damped}")
     if device.set_aside:
         lines.append(
             f"may supply energy, or no theorem covers the effect: {', '.join(device.set_aside)}"
@@ -252,7 +252,6 @@ def _describe_device(
 
 def _describe_z_width(device: IdentifiedDevice, period: float, delay: float) -> str:
     from ..base.sentences import round_down
-    from ..base.units import unit_of
     from ..passivity import z_width
 
     width = z_width(
@@ -263,7 +262,7 @@ def _describe_z_width(device: IdentifiedDevice, period: float, delay: float) -> 
     )
     k, b = width.stiffest
     checked = "exact test agrees at each limit" if width.verified else "evidence"
-    stiff, damped = (unit_of(q, device.body.axis) for q in ("stiffness", "damping"))
+    stiff, damped = map(device.unit, ("stiffness", "damping"))
     k, b = (round_down(x, digits=4) for x in (k, b))
     return (
         f"Z-width at {period:g} s: stiffest passive wall {k:.4g} {stiff} with "

@@ -106,7 +106,7 @@ def dahl_cancellation(level: Reason, device: Device) -> ProposedController | Non
         why += f"the whole interval, sigma_p >= {softest:.4g} {stiff}, f_C <= {most:.4g} {force} "
         why += "(P43, P44)"
         limits = {why: STIFFNESS_FRACTION * passive}
-        from ..passivity.theorems.delayed_compensation import SINC_LEAST
+        from ..passivity.theorems.delays import SINC_LEAST
 
         if late > 0:
             needed = damping / (float(SINC_LEAST) * late)

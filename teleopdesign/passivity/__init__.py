@@ -61,6 +61,10 @@ if TYPE_CHECKING:
     from .search.by_simulation import search_counterexample as search_counterexample
     from .search.stroke_motion import Strokes as Strokes
     from .theorems.bounded_compensation import bounded_compensation as bounded_compensation
+    from .theorems.channels import energy_tank as energy_tank
+    from .theorems.channels import wave_channel as wave_channel
+    from .theorems.channels import wave_claim as wave_claim
+    from .theorems.channels import wave_teleoperator as wave_teleoperator
     from .theorems.compliant_transmission import any_environment as any_environment
     from .theorems.compliant_transmission import free_motion as free_motion
     from .theorems.compliant_transmission import free_motion_margin as free_motion_margin
@@ -69,14 +73,11 @@ if TYPE_CHECKING:
     from .theorems.dahl_compensation import largest_passive_level as largest_passive_level
     from .theorems.dahl_compensation import largest_ratio as largest_ratio
     from .theorems.dahl_compensation import onset_amplitude as onset_amplitude
-    from .theorems.dahl_compensation import self_motion_speed as self_motion_speed
-    from .theorems.delayed_compensation import delayed_small_motion as delayed_small_motion
-    from .theorems.delayed_compensation import inertia_given_out as inertia_given_out
-    from .theorems.delayed_coupling import delayed_spring as delayed_spring
-    from .theorems.delayed_inertia import cancelled_inertia as cancelled_inertia
-    from .theorems.delayed_inertia import damping_given_out as damping_given_out
-    from .theorems.delayed_inertia import largest_passive_inertia as largest_passive_inertia
-    from .theorems.energy_tank import energy_tank as energy_tank
+    from .theorems.delays import cancelled_inertia as cancelled_inertia
+    from .theorems.delays import damping_given_out as damping_given_out
+    from .theorems.delays import delayed_small_motion as delayed_small_motion
+    from .theorems.delays import delayed_spring as delayed_spring
+    from .theorems.delays import largest_passive_inertia as largest_passive_inertia
     from .theorems.lugre import lugre_passivity as lugre_passivity
     from .theorems.quantised_spring import quantised_spring as quantised_spring
     from .theorems.quantised_spring import stiffest_spring as stiffest_spring
@@ -87,18 +88,11 @@ if TYPE_CHECKING:
     from .theorems.sampled_data import sampled_passivity as sampled_passivity
     from .theorems.velocity_compensation import SteadyStrokes as SteadyStrokes
     from .theorems.velocity_compensation import velocity_compensation as velocity_compensation
-    from .theorems.wave_channel import wave_channel as wave_channel
-    from .theorems.wave_channel import wave_claim as wave_claim
-    from .theorems.wave_channel import wave_teleoperator as wave_teleoperator
-    from .two_port import FrequencyMargins as FrequencyMargins
     from .two_port import TwoPort as TwoPort
     from .two_port import absolutely_stable as absolutely_stable
     from .two_port import passive as passive
-    from .two_port import sweep_margins as sweep_margins
     from .two_port import teleoperator_two_port as teleoperator_two_port
     from .two_port import two_port as two_port
-    from .z_width import WALL_DAMPING as WALL_DAMPING
-    from .z_width import WALL_STIFFNESS as WALL_STIFFNESS
     from .z_width import ZWidth as ZWidth
     from .z_width import z_width as z_width
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.sentences import round_down, round_near, round_up
-from ..controllers import CONTROLLERS, Controller, Stage, controller
+from ..controllers import Controller, Stage
 from ..diagrams import haptic_interface
 from ..simulate import Sampling
 from .identified import DIGITS, IdentifiedDevice
@@ -17,31 +17,6 @@ from .theorems import Question, TopicClaim, settle
 
 #: N/m: a stiffness that gives ideal friction a length, for the strokes of a search
 _RIGID = 1e5
-
-
-@dataclass(frozen=True)
-class Compensator:
-    """A control law that cancels friction, from the catalogue.
-
-    law: name in the catalogue;  level: bound of its force, N
-    second: stiffness of its bristle, N/m, or its smoothing velocity, m/s
-    """
-
-    law: str
-    level: float
-    second: float
-
-    @property
-    def controller(self) -> Controller:
-        """The control law with these values."""
-        law = CONTROLLERS[self.law]
-        second = law.bristle_stiffness or law.smoothing
-        return controller(self.law, {law.bound: self.level, second: self.second})
-
-    @property
-    def stage(self) -> Stage:
-        """The single stage of the controller."""
-        return self.controller.stages[0]
 
 
 @dataclass(frozen=True)
@@ -62,7 +37,7 @@ class Margin:
 
 def compensation_claims(
     device: IdentifiedDevice,
-    compensator: Compensator,
+    law: Stage,
     *,
     computer: Sampling | None = None,
     rng: np.random.Generator | int = 0,
@@ -70,21 +45,21 @@ def compensation_claims(
 ) -> list[TopicClaim]:
     """Claims about friction compensation, for all friction levels in the 95 % interval at once.
 
-    computer: period, delay (whole periods) and encoder of the compensator; None: continuous time
+    law: a law of the catalogue that cancels friction, with its values
+    computer: period, delay (whole periods) and encoder of the law; None: continuous time
     rng: draws the motions of a search in simulation, or the seed of the generator that does
     tries: number of these motions
     returns: claims by theorems, then one claim by the search
     """
-    lengths = [device.lowest.estimate / _RIGID]
-    if device.presliding is not None:
-        lengths = [device.lowest.estimate / device.presliding.estimate]
-    if compensator.stage.value_of("bristle_stiffness") is not None:
-        lengths.append(compensator.level / compensator.second)
+    question = Question(device, law, computer=computer)
+    lengths = question.lengths
+    if device.presliding is None:
+        lengths.append(device.lowest.estimate / _RIGID)
     stroke = round_near(100 * max(lengths), digits=3)
     by_search = TopicClaim.from_search(
         "search by simulation",
         "the device as simulated is passive",
-        haptic_interface(device.body, cancellation=compensator.controller),
+        haptic_interface(device.body, cancellation=Controller((law,))),
         stroke=stroke,
         # a stroke takes a third of a second, or up to a hundred times that
         speed=round_near(10 * stroke, digits=3),
@@ -93,7 +68,7 @@ def compensation_claims(
         give=min(lengths) / 100,
         tries=tries,
     )
-    return [*settle(Question(device, compensator.stage, computer=computer)), by_search]
+    return [*settle(question), by_search]
 
 
 def _largest_command(device: IdentifiedDevice, force: float) -> float:
@@ -106,7 +81,7 @@ def _largest_command(device: IdentifiedDevice, force: float) -> float:
     return 0.0
 
 
-def margins(device: IdentifiedDevice, compensator: Compensator | None = None) -> Sequence[Margin]:
+def margins(device: IdentifiedDevice, law: Stage | None = None) -> Sequence[Margin]:
     """Limits of design values within which the pair is passive.
 
     They hold for all values in the 95 % intervals, and the first one at the estimates. Empty or
@@ -114,7 +89,7 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     """
     if device.basis is not None and device.basis.is_open:
         return []  # friction may be less than any model of the records says
-    force, stiff = device.force_unit, device.stiffness_unit
+    force, stiff = map(device.unit, ("force", "stiffness"))
     lowest, presliding = device.lowest, device.presliding
     # what the actuation makes of a command is bounded, and beside ideal friction that is enough
     acts = presliding is None and math.isfinite(device.acting_force(lowest.low))
@@ -140,15 +115,16 @@ def margins(device: IdentifiedDevice, compensator: Compensator | None = None) ->
     recoil = device.bristle_damping.high * (device.highest.high - lowest.low)
     if device.damping.low * lowest.low < recoil:
         return []  # no limit is known where the bristle's damping may release energy
-    if compensator is not None and compensator.stage.value_of("bristle_stiffness") is None:
+    bristle = Question(device, law).bristle
+    if law is not None and bristle is None:
         return []  # no limit is known for such a law on a contact that deflects
-    f_d = min(compensator.level if compensator else math.inf, lowest.low)
+    f_d = min(bristle[0] if bristle else math.inf, lowest.low)
     softest = round_down(presliding.low * math.sqrt(f_d / device.highest.high), digits=DIGITS)
     limits.append(Margin(f"largest sigma_D at f_D = {f_d:.4g} {force}{alone}", softest, stiff))
-    if compensator is not None:
-        least = device.highest.high * (compensator.second / presliding.low) ** 2
+    if bristle is not None:
+        least = device.highest.high * (bristle[1] / presliding.low) ** 2
         least = round_up(least, digits=DIGITS)
         limits.append(
-            Margin(f"least f_D at sigma_D = {compensator.second:.4g} {stiff}{alone}", least, force)
+            Margin(f"least f_D at sigma_D = {bristle[1]:.4g} {stiff}{alone}", least, force)
         )
     return limits

@@ -34,7 +34,7 @@ from .ports import (
 )
 from .search.by_simulation import Computer
 from .theorems import Question, TopicClaim, settle
-from .theorems.wave_channel import wave_claim
+from .theorems.channels import wave_claim
 
 #: last words of the topic of a claim that a search decides
 SEARCHED = "search by simulation"
@@ -140,15 +140,12 @@ def composed_claim(
     """
     rest, proofs = diagram, []
     for pair in pairs:
-        claims = pair_claims(pair, simulated=False)
-        proof = proof_of(claims)
-        if pair.device.set_aside or not pair.is_constant:
+        proof = proof_of(pair_claims(pair, simulated=False))
+        # no theorem about friction alone is called here
+        is_open = proof is None if pair.cancellation else pair.device.presliding is not None
+        if is_open or pair.device.set_aside or not pair.is_constant:
             return None
         if not is_spanned(pair.body.motion, all_ports):
-            return None
-        if pair.cancellation is None and pair.device.presliding is not None:
-            return None  # no theorem about friction alone is called here
-        if proof is None and (claims or pair.cancellation is not None):
             return None
         proofs += [proof.claim] if proof else []
         rest = without_pair(rest, pair)
@@ -204,7 +201,7 @@ def _search_claim(
             "the axis: a proof asks for all of them and for the right half plane, a search for time"
         )
         return TopicClaim(topic, Claim(statement, Unknown(why)))
-    lengths = [x for pair in friction_pairs(free) for x in pair.lengths]
+    lengths = [x for pair in friction_pairs(free) for x in pair.question.lengths]
     shortest = min([search.stroke / 1000, *lengths])
     return TopicClaim.from_search(
         topic,

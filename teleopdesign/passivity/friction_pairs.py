@@ -11,7 +11,7 @@ from ..controllers import Controller, Stage
 from ..diagrams import Control, Diagram, Moving
 from .claims.claim import Claim, Proof, Unknown
 from .identified import IdentifiedDevice, identify_device, restate_for_device
-from .ports import drives_alone, nonlinear_parts, ports, without_friction
+from .ports import drives_alone, nonlinear_parts, ports
 from .theorems import Question, TopicClaim, settle
 
 
@@ -49,16 +49,6 @@ class FrictionPair:
         parameters = set(self.body.body.symbols().values())
         return not self.body.body.level().free_symbols - parameters
 
-    @property
-    def lengths(self) -> list[float]:
-        """Travels over which friction, and the cancelling force, build up, m or rad."""
-        lengths = []
-        if self.device.presliding is not None:
-            lengths.append(self.device.lowest.estimate / self.device.presliding.estimate)
-        if (bristle := self.question.bristle) is not None:
-            lengths.append(bristle[0] / bristle[1])
-        return lengths
-
 
 def friction_pairs(diagram: Diagram) -> list[FrictionPair]:
     """A pair for each body with friction whose cancellation, if any, acts on it alone.
@@ -94,8 +84,13 @@ def _acts_alone(control: Control, part: Moving, diagram: Diagram) -> bool:
 
 def without_pair(diagram: Diagram, pair: FrictionPair) -> Diagram:
     """The diagram without the friction of a pair and its cancellation."""
+    body = pair.body.body
+    assert isinstance(body, Body)
+    for effect in reversed(body.effects):
+        if effect.role.startswith("friction"):
+            body = body.without_effect(effect.name)
     gone = [pair.cancellation.name] if pair.cancellation else []
-    return without_friction(diagram, pair.body.motion, *gone)
+    return diagram.without(*gone).with_block(pair.body.name, body)
 
 
 def pair_claims(pair: FrictionPair, *, simulated: bool = True) -> list[TopicClaim]:

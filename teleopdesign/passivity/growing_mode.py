@@ -13,8 +13,10 @@ inverse has a pole at s, unless the sum is singular everywhere.
 from __future__ import annotations
 
 import cmath
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -29,6 +31,7 @@ from .linear.matrices import (
     exact_complex,
     inverse_denominator,
     parts_of,
+    rational,
     round_point,
     short,
     value_at,
@@ -55,18 +58,10 @@ class Termination:
         if min(self.damping, self.inertia, self.stiffness) < 0:
             raise ValueError(f"Termination: a negative part is not passive: {self}")
 
-    @property
-    def expression(self) -> sp.Expr:
-        """Impedance R + m s + k/s (N s/m) as an expression in `realise.lti.S`."""
-        r, m, k = (
-            sp.Rational(x.numerator, x.denominator)
-            for x in (self.damping, self.inertia, self.stiffness)
-        )
-        return r + m * S + k / S
-
-    def at(self, s: complex) -> complex:
-        """Impedance at s, N s/m, in floating point."""
-        return float(self.damping) + float(self.inertia) * s + float(self.stiffness) / s
+    def at(self, s: Any, number: Callable[[Fraction], Any] = float) -> Any:
+        """Impedance R + m s + k/s at s, N s/m; number: what computes with s, such as a rational."""
+        r, m, k = map(number, (self.damping, self.inertia, self.stiffness))
+        return r + m * s + k / s
 
     @property
     def as_plain(self) -> object:
@@ -96,9 +91,9 @@ def far_termination(s: complex, value: complex) -> Termination:
     """
     if cmath.isinf(value):
         return CLAMPED
-    real, *rest = _parts((Fraction(value.real), Fraction(value.imag)), round_point(s))
-    real, inertia, stiffness = (short(x, 7) for x in (max(real, Fraction(0)), *rest))
-    return Termination(real, inertia, stiffness)
+    parts = _parts((Fraction(value.real), Fraction(value.imag)), round_point(s))
+    damping, inertia, stiffness = (short(max(x, Fraction(0)), 7) for x in parts)
+    return Termination(damping, inertia, stiffness)
 
 
 def with_resonance(held: Termination, at: Gaussian) -> Termination:
@@ -154,13 +149,6 @@ def _parts(wanted: Gaussian, at: Gaussian) -> tuple[Fraction, Fraction, Fraction
         return real - inertia * rate, inertia, none
     stiffness = -imaginary * (rate**2 + frequency**2) / frequency
     return real + imaginary * rate / frequency, none, stiffness
-
-
-def exact_value(held: Termination, at: Gaussian) -> Gaussian:
-    """Impedance R + m s + k/s of a termination at s, exactly."""
-    size = at[0] ** 2 + at[1] ** 2
-    m, k = held.inertia, held.stiffness
-    return held.damping + m * at[0] + k * at[0] / size, m * at[1] - k * at[1] / size
 
 
 @dataclass(frozen=True)
@@ -219,7 +207,7 @@ class GrowingMode(AbstractRecord):
         for row, k in zip(range(len(free)), free, strict=True):
             held = self.terminations[k]  # R + m s + k/s, times s
             parts = enumerate((held.stiffness, held.damping, held.inertia))
-            times_s = {(power,): sp.QQ(x.numerator, x.denominator) for power, x in parts if x}
+            times_s = {(power,): rational(x) for power, x in parts if x}
             rows[row][row] += d * d.ring(times_s)
         q = inverse_denominator(rows, d * s)
         return bool(q) and not is_free_of_growth(as_poly(q, S))
@@ -251,8 +239,7 @@ def _search_between_dampers(family: Family) -> GrowingMode | None:
     """A mode that grows between dampers, also one that moves one port only."""
     for size in (1, 100, Fraction(1, 100)):
         held = Termination(Fraction(size))
-        c = sp.QQ(*Fraction(size).as_integer_ratio())
-        q = close(family.n, family.d, [c, c])
+        q = close(family.n, family.d, [rational(held.damping)] * 2)
         growing = [r for r in roots_of(q) if r.real > 0 and r.imag >= 0] if q else []
         if not growing or is_free_of_growth(as_poly(q, S)):
             continue
@@ -280,7 +267,7 @@ def _mode_at(family: Family, at: Gaussian, far: Termination, turned: bool) -> Gr
     z11, z12, z21, z22 = values
     at_port, ratio = z11, 0j
     if not far.clamped:
-        below = z22 + exact_complex(exact_value(far, at))
+        below = z22 + far.at(exact_complex(at), rational)
         if not below:
             return None
         at_port = z11 - z12 * z21 / below

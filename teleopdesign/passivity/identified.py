@@ -129,15 +129,9 @@ class IdentifiedDevice:
         """
         return largest_acting_force(self.body, command, self.reach, errors=NINETY_FIVE)
 
-    @property
-    def force_unit(self) -> str:
-        """Unit of friction levels on the axis of the device."""
-        return unit_of("force", self.body.axis)
-
-    @property
-    def stiffness_unit(self) -> str:
-        """Unit of stiffnesses on the axis of the device."""
-        return unit_of("stiffness", self.body.axis)
+    def unit(self, quantity: str) -> str:
+        """Unit of a quantity on the axis of the device."""
+        return unit_of(quantity, self.body.axis)
 
 
 def identify_device(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from itertools import product
 
 import sympy as sp
@@ -43,19 +43,14 @@ def is_never_negative(law: sp.Expr, ranges: Ranges) -> bool:
 
 def least_bound(law: sp.Expr, ranges: Ranges) -> float:
     """A number that the law is never below; -inf where none is known."""
-    best = -math.inf
-    for one, ends in _on_ranges_that_end(law, ranges):
-        try:
-            best = max(best, least_value(one, ends).bound)
-        except ModelError:  # a function without a known bound
-            return -math.inf
-        if best >= 0:
-            break
-    return best
+    try:
+        return least_value(*_on_ranges_that_end(law, ranges)).bound
+    except ModelError:  # a function without a known bound
+        return -math.inf
 
 
-def _on_ranges_that_end(law: sp.Expr, ranges: Ranges) -> Iterator[tuple[sp.Expr, Ranges]]:
-    """The law with each positive number as share/(1 - share), as it is written and cancelled."""
+def _on_ranges_that_end(law: sp.Expr, ranges: Ranges) -> tuple[sp.Expr, Ranges]:
+    """The law with each positive number as share/(1 - share), cancelled where it can be."""
     shares: dict[sp.Symbol, sp.Expr] = {}
     ends = dict(ranges)
     for symbol in law.free_symbols:
@@ -64,12 +59,9 @@ def _on_ranges_that_end(law: sp.Expr, ranges: Ranges) -> Iterator[tuple[sp.Expr,
             shares[symbol], ends[share] = share / (1 - share), (0.0, 1.0)
     law = law.subs(shares)
     try:
-        cancelled = sp.cancel(law)
-        yield cancelled, ends
+        return sp.cancel(law), ends
     except (sp.PolynomialError, NotImplementedError):
-        cancelled = None
-    if law != cancelled:
-        yield law, ends
+        return law, ends
 
 
 def _is_above_zero(law: sp.Expr, symbol: sp.Symbol) -> bool:
@@ -162,14 +154,12 @@ def range_of(part: sp.Expr, ranges: Ranges) -> tuple[sp.Expr, sp.Expr]:
             most = sp.sqrt(square[1])
             most = most if most.is_Rational else sp.Rational(math.nextafter(float(most), math.inf))
             return (sp.S(0) if part.is_nonnegative else -most), most
-    low, high = ANY
-    for one, known in _on_ranges_that_end(part, ranges):
-        symbols = sorted(one.free_symbols, key=str)
-        try:
-            a, b = enclosure_of(one, symbols)([known[s] for s in symbols])
-        except (ModelError, KeyError):
-            return -sp.oo, sp.oo
-        low, high = max(low, a), min(high, b)
+    one, known = _on_ranges_that_end(part, ranges)
+    symbols = sorted(one.free_symbols, key=str)
+    try:
+        low, high = enclosure_of(one, symbols)([known[s] for s in symbols])
+    except (ModelError, KeyError):
+        return -sp.oo, sp.oo
     return sp.Rational(low) if math.isfinite(low) else -sp.oo, (
         sp.Rational(high) if math.isfinite(high) else sp.oo
     )

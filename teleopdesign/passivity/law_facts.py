@@ -178,16 +178,13 @@ def _size(z: sp.Symbol, cases: set[sp.Expr], bound: float, *, steps: bool) -> sp
 
     def keeps(case: sp.Expr, size: sp.Expr) -> bool:
         """Whether the next value is within a size, or the rate leads inward at both its ends."""
-        if steps and size != 0:
-            return _stays_within_one(_scale(case.subs(z, size * share), 1 / size))
         if steps:
-            after = case.subs(z, 0)
-            return all(is_never_negative(way * after, _ranges(after)) for way in (1, -1))
+            return _stays_within_one(_scale(case.subs(z, size * share), 1 / size))
         ends = (-way * case.subs(z, way * size) for way in (1, -1))
         return all(is_never_negative(end, _ranges(end)) for end in ends)
 
     for size in sorted({largest, exact_decimal(bound)}):
-        if size.is_finite and all(keeps(case, size) for case in cases):
+        if 0 < size < sp.oo and all(keeps(case, size) for case in cases):
             return size
     return None
 

@@ -9,20 +9,17 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-import sympy as sp
-
 from ..base.errors import ModelError
-from ..derive import symbol_values, transfer
 from ..derive.all_states import all_states
 from ..derive.effort import bounded_effort
 from ..diagrams import Diagram
 from ..realise.lti import linear_blocks
-from ..realise.tips import led_motion, linear_tips
+from ..realise.tips import linear_tips
 from .claims.claim import Claim, Unknown, use_units_of
 from .declarations import falsely_linear
 from .growing_mode import GrowingMode
 from .linear.family import Family, family_at, family_of_states
-from .linear.impedance import Impedance, impedance
+from .linear.impedance import Impedance
 from .linear.judge import NEARBY, passive_claim, stable_claim
 from .ports import Port, nonlinear_parts, ports, without_holders
 from .search.growing_wave import GrowingWave, wave_of
@@ -123,12 +120,10 @@ def hand_port(diagram: Diagram, *, speed: float = 0.0) -> tuple[Impedance, tuple
         is then about this linear system only
     raises ModelError: a block without values, or with a dead time
     """
-    apart, motion = linear_tips(diagram), led_motion(diagram, "L")
-    motion = motion if motion in apart.signals else "L"
-    linear = linear_blocks(apart, speed=speed)
-    form = transfer(apart.open_at("K"), "E", (motion,), given=motion)[motion]
-    z = impedance(sp.sympify(form).subs(symbol_values(linear)), motion="position")
     alone = without_holders(diagram)
     family = family_of_states(all_states(alone, speed=speed), ports(alone))
-    z = replace(z, unseen=family.undecayed if family.hides else ())
-    return z, (*linear.left_out, *falsely_linear(apart))
+    if family.size > 1 or family.times:
+        raise ModelError(f"{diagram.name}: expected one port without dead times")
+    z = replace(family.impedance, unseen=family.undecayed if family.hides else ())
+    apart = linear_tips(diagram)
+    return z, (*linear_blocks(apart, speed=speed).left_out, *falsely_linear(apart))

@@ -45,11 +45,6 @@ class Port:
     weights: Mapping[str, float | sp.Expr]
 
     @property
-    def is_fixed(self) -> bool:
-        """Whether no weight changes with position."""
-        return not any(isinstance(w, sp.Expr) for w in self.weights.values())
-
-    @property
     def motion(self) -> str | None:
         """Motion of the body if the port has one body with weight 1; else None.
 
@@ -135,29 +130,13 @@ def is_spanned(motion: str, standing: Sequence[Port]) -> bool:
 
     False also where a lever arm of a port changes with position.
     """
-    if not all(port.is_fixed for port in standing):
+    if any(isinstance(w, sp.Expr) for port in standing for w in port.weights.values()):
         return False
     known = sorted({motion, *(m for port in standing for m in port.weights)})
     weights = np.array([[port.weights.get(m, 0.0) for m in known] for port in standing])
     row = np.array([float(m == motion) for m in known])
     rank = np.linalg.matrix_rank
     return bool(rank(np.vstack([weights, row])) == rank(weights))
-
-
-def without_friction(diagram: Diagram, motion: str, *controllers: str) -> Diagram:
-    """The diagram without these controllers, and with no friction on the body of that motion.
-
-    raises ModelError: no body has that motion
-    """
-    diagram = diagram.without(*controllers)
-    for part in diagram.moving:
-        if part.motion == motion and isinstance(part.body, Body):
-            body = part.body
-            for effect in reversed(body.effects):
-                if effect.role.startswith("friction"):
-                    body = body.without_effect(effect.name)
-            return diagram.with_block(part.name, body)
-    raise ModelError(f'{diagram.name}: no body moves by "{motion}"')
 
 
 Shares = Mapping[str, sp.Expr]

@@ -14,7 +14,6 @@ Llewellyn, Proc. IRE 40 (1952) 271. His inequality on the axis is one of several
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -24,17 +23,13 @@ import sympy as sp
 
 from ..base.arguments import describe_value
 from ..base.errors import ModelError
-from ..base.finding import Graph, Series
-from ..base.frozen import ByValue
 from ..controllers import unseen_factor
 from ..diagrams.control_parts import entry_of
 from ..realise.lti import S
 from .claims.claim import Claim
 from .linear.family import Family, family_of_matrix
-from .linear.impedance import Impedance, exact, impedance, read_expression
+from .linear.impedance import Impedance, exact, impedance, not_decaying, read_expression
 from .linear.judge import passive_claim, stable_claim
-from .linear.sweep import passive_margin, stable_margin
-from .linear.unseen import not_decaying
 
 
 @dataclass(frozen=True)
@@ -125,50 +120,6 @@ def teleoperator_two_port(
     z1, z2 = (side.expression + link for side in sides)
     made = two_port([[z1, -link * late], [-link * late, z2]])
     return replace(made, unseen=(*sides[0].unseen, *sides[1].unseen))
-
-
-@dataclass(frozen=True, eq=False)
-class FrequencyMargins(ByValue):
-    """Margins of a two-port on the imaginary axis over frequency; numerical.
-
-    Nonnegative margins are necessary and not sufficient. They show neither poles in the right half
-    plane nor residues at poles on the axis. `passive` and `absolutely_stable` check all conditions.
-
-    frequency: Hz, (n,)
-    passive: smallest eigenvalue of the Hermitian part, N s/m, (n,); < 0 where a motion takes energy
-        out
-    llewellyn: (2 Re z11 Re z22 - Re z12 z21)/abs(z12 z21) - 1, dimensionless, (n,); -inf where
-        Re z11 or Re z22 < 0; < 0 where some pair of terminations makes it unstable
-    """
-
-    frequency: np.ndarray
-    passive: np.ndarray
-    llewellyn: np.ndarray
-
-    def graph(self) -> Graph:
-        """Llewellyn's margin over frequency: below the limit unstable, above it not yet stable."""
-        f = self.frequency
-        series = (
-            Series("Llewellyn's margin", f, self.llewellyn, "model"),
-            Series("needed, not enough", f[[0, -1]], np.zeros(2), "limit"),
-        )
-        return Graph("frequency (Hz)", "Llewellyn's margin on the axis (1)", series)
-
-
-def sweep_margins(
-    system: TwoPort, frequency: np.ndarray | Sequence[float] | None = None
-) -> FrequencyMargins:
-    """Margins of passivity and of absolute stability (Llewellyn) over frequency.
-
-    The result is numerical. Nothing is known between the frequencies, nor about poles off the axis.
-
-    frequency: Hz, (n,); default: 4001 points from 1e-4 to 1e4
-    returns: both margins, >= 0 at every frequency if the two-port is passive or absolutely stable;
-        NaN at a pole of the two-port
-    """
-    f = np.geomspace(1e-4, 1e4, 4001) if frequency is None else np.asarray(frequency, dtype=float)
-    z = system.over(f)
-    return FrequencyMargins(f, passive_margin(z), stable_margin(z))
 
 
 def passive(system: TwoPort) -> Claim:

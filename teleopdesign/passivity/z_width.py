@@ -1,11 +1,11 @@
 """Z-width of a haptic interface: the range from its free impedance to the stiffest passive wall.
 
-The wall is a sampled law, linear in its stiffness K and damping B; by default
+The wall is a sampled law of stiffness K and damping B, with a delay of d samples:
 
     H(z) = z^-d (K + B (z - 1)/(T z))
 
-Passive walls lie on one side of a curve K(B). With this law and no delay the curve is
-K = 2 (b - |B|)/T. Colgate and Schenkel, J. Robotic Systems 14 (1997) 37.
+Passive walls lie on one side of a curve K(B). Without delay the curve is K = 2 (b - |B|)/T. Colgate
+and Schenkel, J. Robotic Systems 14 (1997) 37.
 """
 
 from __future__ import annotations
@@ -19,14 +19,11 @@ import sympy as sp
 from ..base.errors import ModelError
 from ..base.finding import Graph, Series
 from ..base.frozen import ByValue
-from .linear.conditions import is_exactly_passive
-from .linear.family import family_of_impedance
+from .linear.excess import is_passive
 from .linear.impedance import exact
 from .search.growing_wave import Z
 from .theorems.sampled_data import travel_operator
 
-WALL_STIFFNESS = sp.Symbol("K")
-WALL_DAMPING = sp.Symbol("B")
 _ANGLES = 20001  # angles w T from 0 to pi; the exact test then verifies the limit
 #: distance from the limit, as a share of b/T, at which the exact test must agree on both sides
 _AGREE = 1e-6
@@ -80,49 +77,38 @@ def z_width(
     sample_time: Any,
     inertia: float = 0.0,
     delay: int = 0,
-    law: sp.Expr | None = None,
     wall_damping: np.ndarray | None = None,
 ) -> ZWidth:
     """Limits of the passive walls of a device.
 
     damping: b of the device, N s/m;  sample_time: T, s;  inertia: kg, used by `ZWidth.width` only
     delay: d, whole samples of computing time
-    law: another H(z), linear in WALL_STIFFNESS and WALL_DAMPING
     wall_damping: values of B, N s/m; default: 0 to b
-    raises ModelError: damping or sample time not > 0, or a law that is not linear in both
+    raises ModelError: damping or sample time not > 0
     """
     b, late = exact(damping, "z_width: damping: "), exact(sample_time, "z_width: sample_time: ")
     if b <= 0 or late <= 0:
         raise ModelError(f"z_width: damping and sample time must be > 0, found {b} and {late}")
-    if law is None:
-        law = WALL_STIFFNESS + WALL_DAMPING * (Z - 1) / (late * Z)
-    law = sp.sympify(law, strict=True) * Z**-delay
     grid = np.linspace(0, float(b), 21) if wall_damping is None else np.asarray(wall_damping, float)
-    per_stiffness, per_damping = _shares(law, late)
+    theta = np.linspace(0, np.pi, _ANGLES)[1:]
+    step = 1 - np.exp(-1j * theta)  # (z - 1)/z on the unit circle
+    # damping of the device that one unit of K, and one of B, needs at each angle
+    per_stiffness, per_damping = (
+        float(late) / 2 * (step * h * np.exp(-1j * delay * theta)).real / (1 - np.cos(theta))
+        for h in (1.0, step / float(late))
+    )
     largest = np.array([_largest(per_stiffness, per_damping * x, float(b)) for x in grid])
-    verified = bool(np.isfinite(largest).any()) and all(
-        _agrees(law, b, late, exact(float(x)), float(k))
-        for x, k in zip(grid, largest, strict=True)
-        if np.isfinite(k)
+
+    def is_wall_passive(stiffness: float, damping: float) -> bool:
+        wall = (exact(stiffness) + exact(damping) * (Z - 1) / (late * Z)) * Z**-delay
+        return is_passive(travel_operator(wall, b, late, sp.S(0)))
+
+    margin, finite = _AGREE * float(b / late), np.isfinite(largest)
+    verified = bool(finite.any()) and all(
+        is_wall_passive(max(k - margin, 0.0), x) and not is_wall_passive(k + margin, x)
+        for k, x in zip(largest[finite].tolist(), grid[finite].tolist(), strict=True)
     )
     return ZWidth(grid, largest, float(b), inertia, float(late), verified)
-
-
-def _shares(law: sp.Expr, late: sp.Expr) -> tuple[np.ndarray, np.ndarray]:
-    """Damping of the device that one unit of K, and one unit of B, needs.
-
-    returns: both at each angle w T, (n,)
-    """
-    theta = np.linspace(0, np.pi, _ANGLES)[1:]
-    z = np.exp(1j * theta)
-    out = []
-    for symbol in (WALL_STIFFNESS, WALL_DAMPING):
-        part = sp.diff(sp.expand(law), symbol)
-        if part.free_symbols - {Z}:
-            raise ModelError("z_width: the law must be linear in WALL_STIFFNESS and WALL_DAMPING")
-        h = np.broadcast_to(np.asarray(sp.lambdify(Z, part, "numpy")(z), dtype=complex), z.shape)
-        out.append(float(late) / 2 * ((1 - 1 / z) * h).real / (1 - np.cos(theta)))
-    return out[0], out[1]
 
 
 def _largest(per_stiffness: np.ndarray, spent: np.ndarray, b: float) -> float:
@@ -135,15 +121,3 @@ def _largest(per_stiffness: np.ndarray, spent: np.ndarray, b: float) -> float:
     if np.any(left[per_stiffness == 0] < 0) or highest < lowest:
         return float("nan")
     return float(highest)
-
-
-def _agrees(law: sp.Expr, b: sp.Expr, late: sp.Expr, x: sp.Expr, k: float) -> bool:
-    """Whether the exact test accepts a little less stiffness, and refuses a little more."""
-
-    def passive(stiffness: float) -> bool:
-        wall = law.subs({WALL_STIFFNESS: exact(stiffness), WALL_DAMPING: x})
-        operator = travel_operator(wall, b, late, sp.S(0))
-        return is_exactly_passive(family_of_impedance(operator))
-
-    margin = _AGREE * float(b / late)
-    return passive(max(k - margin, 0.0)) and not passive(k + margin)

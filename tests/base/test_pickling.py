@@ -129,7 +129,7 @@ DEAR = set(
     HorizonError RecordedLoop SimulationComparison ArmPaths DeterminedParameter
     Proposal Workbench Reference Remedy Rival Separation SimulatedDiagnosis
     ForceDisplacement Loop BlockDiagnosis Verification
-    CoulombLevel LargestStiffness LevelAtSpeed Line SteadyRun MarginMap FrequencyMargins
+    CoulombLevel LargestStiffness LevelAtSpeed Line SteadyRun MarginMap
     PassivityControlled Region SecondOpinion SimulatedMotion Given SimulationFit Tuned CheckedLimit
     ParetoFront Point PointOutcome Progress TunedControllers Setup BodyEquation ControllerEquation
     RecordFacts EnvironmentDescription ExperimentError ModelError TeleopDesignError

@@ -17,7 +17,7 @@ from teleopdesign.controllers import (
 )
 from teleopdesign.diagrams import haptic_interface, wave_variables
 from teleopdesign.effects import BLOCK_EFFECTS, Parameter, load_effect
-from teleopdesign.passivity import ports
+from teleopdesign.passivity import ports, wave_claim
 from teleopdesign.passivity.declarations import (
     falsely_linear,
     is_shipped,
@@ -25,7 +25,6 @@ from teleopdesign.passivity.declarations import (
 from teleopdesign.passivity.diagram_claims import composed_claim
 from teleopdesign.passivity.friction_pairs import friction_pairs, pair_claims
 from teleopdesign.passivity.ports import nonlinear_parts
-from teleopdesign.passivity.theorems.wave_channel import wave_claim
 
 DAHL = controller("dahl", {"level": 0.4, "stiffness": 1e4})
 EFFECT_FILE = '''"""An effect of one's own."""

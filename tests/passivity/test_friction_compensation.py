@@ -1,7 +1,5 @@
 """How much friction may be cancelled: Coulomb, presliding, changing level, LuGre."""
 
-import math
-
 import numpy as np
 import pytest
 
@@ -10,7 +8,6 @@ from teleopdesign.passivity import (
     lugre_passivity,
     read_record,
     region,
-    self_motion_speed,
     write_record,
 )
 
@@ -19,15 +16,6 @@ def compensated(level, stiffness=1e4, **true):
     """True friction of 1 N, unless said otherwise."""
     arguments = {"coulomb_level": 1} | true
     return dahl_compensation(compensator_level=level, compensator_stiffness=stiffness, **arguments)
-
-
-# --- cycles -----------------------------------------------------------------------------------
-
-
-def test_viscous_damping_bounds_the_speed_of_self_motion():
-    assert self_motion_speed(coulomb_level=1, compensator_level=1.5, damping=10) == 0.05
-    assert self_motion_speed(coulomb_level=1, compensator_level=0.5, damping=0) == 0
-    assert self_motion_speed(coulomb_level=1, compensator_level=2, damping=0) == math.inf
 
 
 # --- true friction with presliding ------------------------------------------------------------

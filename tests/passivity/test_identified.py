@@ -6,7 +6,7 @@ import teleopdesign as td
 from teleopdesign.controllers import Controller, controller
 from teleopdesign.diagrams import haptic_interface
 from teleopdesign.effects import EFFECTS
-from teleopdesign.passivity.device_claims import Compensator, margins
+from teleopdesign.passivity.device_claims import margins
 from teleopdesign.passivity.friction_pairs import friction_pairs, pair_claims
 from teleopdesign.passivity.identified import DIGITS, identify_device
 from teleopdesign.passivity.theorems import Question, Wall, settle
@@ -28,10 +28,15 @@ def body_of(**more):
     return body
 
 
+def dahl(level, stiffness):
+    (stage,) = td.controller("dahl", {"level": level, "stiffness": stiffness}).stages
+    return stage
+
+
 def claims_on(body, level=0.4, stiffness=1e4, reach=None):
     """Topic -> claim about a Dahl compensator, by theorems."""
-    stage = Compensator("dahl", level, stiffness).stage
-    claims = settle(Question(identify_device(body, reach), stage), simulated=False)
+    question = Question(identify_device(body, reach), dahl(level, stiffness))
+    claims = settle(question, simulated=False)
     return {s.topic: s.claim for s in claims}
 
 
@@ -123,10 +128,7 @@ def test_a_claim_is_proved_up_to_the_stated_limit_and_no_further(slope, level):
     def is_proved(level, stiffness):
         return claims_on(body, level, stiffness)["95 % interval"].status == "proved"
 
-    limits = {
-        m.text.partition(" at ")[0]: m.value
-        for m in margins(device, Compensator("dahl", level, 1.5e4))
-    }
+    limits = {m.text.partition(" at ")[0]: m.value for m in margins(device, dahl(level, 1.5e4))}
     softest = limits["largest sigma_D"]
     assert is_proved(level, softest) and not is_proved(level, 1.01 * softest)
     least = limits["least f_D"]

@@ -7,7 +7,6 @@ import sympy as sp
 
 from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import (
-    WALL_DAMPING,
     read_record,
     required_damping,
     sampled_passivity,
@@ -68,13 +67,6 @@ def test_the_z_width_of_a_wall_without_delay():
     wall = abs(free + 1e4 / (2j * np.pi)) / abs(free)
     assert width.width(1.0) == pytest.approx(20 * np.log10(wall))
     assert "K (N/m)" in width.graph().y_label
-
-
-def test_a_wall_of_damping_alone_is_passive_up_to_that_of_the_device():
-    """No stiffness is asked for, so none is too large."""
-    law = WALL_DAMPING * (Z - 1) / (sp.Rational(1, 1000) * Z)
-    width = z_width(damping=5, sample_time=0.001, law=law, wall_damping=np.array([0, 4.9, 5.1, 50]))
-    assert np.isinf(width.stiffness[:2]).all() and np.isnan(width.stiffness[2:]).all()
 
 
 z = sp.Symbol("z")

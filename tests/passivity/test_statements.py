@@ -35,8 +35,8 @@ def proved_claims(function, number=3, tries=60):
     return theorem_claims
 
 
-@pytest.mark.parametrize(("theorem", "function"), FUNCTIONS, ids=NAMES)
-def test_the_statement_of_every_theorem_holds_its_values_and_no_words_of_a_file(theorem, function):
+@pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)
+def test_the_statement_of_every_theorem_holds_its_values_and_no_words_of_a_file(function):
     if function.__name__ in NEVER_PROVED:
         pytest.skip("a search: nothing is proved")
     claims = proved_claims(function)

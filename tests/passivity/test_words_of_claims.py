@@ -42,13 +42,13 @@ def test_numbers_that_differ_in_their_last_digit_have_claims_of_other_words():
 
 
 @pytest.mark.parametrize(
-    ("theorem", "function"),
+    "function",
     [
-        pytest.param(t, f, marks=pytest.mark.slow if n == "sampled_compensation" else (), id=n)
-        for (t, f), n in zip(FUNCTIONS, NAMES, strict=True)
+        pytest.param(f, marks=pytest.mark.slow if n == "sampled_compensation" else (), id=n)
+        for f, n in zip(FUNCTIONS, NAMES, strict=True)
     ],
 )
-def test_the_same_words_never_have_opposite_verdicts(theorem, function):
+def test_the_same_words_never_have_opposite_verdicts(function):
     """Each number in turn, by one unit in its last place and by decades."""
     rng = random.Random(17)
     arguments = inside(function, rng)
@@ -64,8 +64,8 @@ def test_the_same_words_never_have_opposite_verdicts(theorem, function):
             assert not (opposite and changed.statement == first.statement), (name, value, other)
 
 
-@pytest.mark.parametrize(("theorem", "function"), FUNCTIONS, ids=NAMES)
-def test_a_claim_on_a_rotary_joint_has_its_units(theorem, function):
+@pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)
+def test_a_claim_on_a_rotary_joint_has_its_units(function):
     rng = random.Random(19)
     arguments = inside(function, rng)
     linear, rotary = function(**arguments), function(**arguments, axis="revolute")

@@ -93,8 +93,8 @@ def judge_late(
 _STEPS, _NEWTON = 20, 3
 #: of the distance of a zero from the axis: no other zero is nearer than this
 _SHARE = 0.999
-#: over the shortest dead time: no first zero is searched further from the axis
-_REACH = 1e3
+#: over the shortest dead time: no first zero is searched nearer to the axis, or further from it
+_NEAREST, _REACH = 1e-6, 1e3
 #: most minima of abs(f) along the axis from which a search for zeros starts
 _LOWEST = 12
 
@@ -137,28 +137,19 @@ def slowest_decay(terms: Terms) -> float:
         return rate
     if count_growing(terms):
         return -np.inf
+    late = [t for t in terms if t > 0]
     if np.isinf(rate):  # the search reached no zero: how far from the axis is the first?
-        rate = _first_zero_within(terms)
-    low, high = (0.0, rate) if np.isfinite(rate) else (rate, rate)
+        if not late:
+            return rate
+        rate = _NEAREST / min(late)
+        while rate * min(late) < _REACH and not count_growing(_move_axis(terms, rate)):
+            rate *= 2
+    low, high = 0.0, rate
     # halves of a share: the first zero may be at 0.7 of the rate
-    while low < high and high - low > (1 - _SHARE) / 2 * rate:
+    while high - low > (1 - _SHARE) / 2 * rate:
         middle = (low + high) / 2
         low, high = (low, middle) if count_growing(_move_axis(terms, middle)) else (middle, high)
     return low
-
-
-def _first_zero_within(terms: Terms) -> float:
-    """A distance from the axis within which there is a zero, 1/s, or the largest that is searched.
-
-    returns: inf for a polynomial of degree 0 without dead times, which has no zero at all
-    """
-    if max(map(len, terms.values())) == 1 and not any(terms):
-        return np.inf
-    shortest = min((t for t in terms if t > 0), default=1.0)
-    for rate in np.geomspace(1e-6, _REACH, 60) / shortest:
-        if count_growing(_move_axis(terms, float(rate))):
-            return float(rate)
-    return _REACH / shortest
 
 
 def _move_axis(terms: Terms, right: float) -> Terms:

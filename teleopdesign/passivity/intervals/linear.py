@@ -21,6 +21,7 @@ from ..claims.certificate import Certificate
 from ..claims.claim import Claim
 from ..linear.conditions import impedance_certificate, is_shown, stability_certificate, take_damping
 from ..linear.family import Family, family_of_states
+from ..linear.matrices import rational
 from ..linear.signs import Signs
 from ..linear_diagrams import linear_claims
 from ..ports import drop_absent_effects, ports
@@ -123,7 +124,7 @@ def _judge_polynomial(p: Any, name: str, box: ValueBox, points: int, seed: int) 
 def _move_axis(p: Any, left: Fraction) -> Any:
     """The polynomial with all roots moved to the right by `left` (1/s)."""
     s = p.ring.gens[0]
-    return p.compose(s, s - sp.QQ(left.numerator, left.denominator))
+    return p.compose(s, s - rational(left))
 
 
 def judge_linear(

@@ -23,24 +23,11 @@ from typing import Any, Literal
 
 import sympy as sp
 
-from ...derive.polynomials import X, as_poly, cross, is_hurwitz, is_non_negative, where_negative
-from ...realise.lti import S
+from ...derive.polynomials import X, as_poly, cross, where_negative
 from ..claims.certificate import Certificate, checker_text, seal
 from .family import Family
-from .matrices import Matrix, close, dampers, determinant, hold
+from .matrices import Matrix, close, dampers, determinant, hold, rational
 from .signs import Ends, Signs, axis_unit, coefficient, degree
-
-
-def is_exactly_passive(family: Family, margin: Fraction = Fraction(0)) -> bool:
-    """Whether a family without values and dead times is passive.
-
-    margin: damping that Z loses at each port, N s/m
-    """
-    n, d = take_damping(family, margin), family.d
-    held = family.held if n is family.n else close(n, d, dampers(n, d))
-    tests = axis_conditions(n, d, "passive")
-    decays = not family.unseen and is_hurwitz(as_poly(held, S))
-    return decays and all(is_non_negative(as_poly(p, X)) for p in tests)
 
 
 def is_shown(signs: Signs, family: Family, claim: str, margin: Fraction = Fraction(0)) -> bool:
@@ -100,7 +87,7 @@ def take_damping(family: Family, margin: Fraction) -> Matrix:
     """Numerators of Z less a damper at each port, N s/m."""
     if not margin:
         return family.n
-    damper = sp.QQ(margin.numerator, margin.denominator)
+    damper = rational(margin)
     return hold(family.n, family.d, [-damper] * family.size)
 
 

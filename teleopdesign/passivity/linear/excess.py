@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from ...derive.polynomials import (
-    X,
-    even_part,
-    has_positive_root,
-    positive_roots,
-    value,
-)
-from .conditions import is_exactly_passive
+from ...derive.polynomials import X, even_part, has_positive_root, positive_roots, value
+from .conditions import is_shown
 from .family import family_of_impedance
 from .impedance import Impedance, MotionKind, exact, impedance
+from .signs import Signs
 
 
 def describe_equality(z: Impedance, margin: Excess) -> str:
@@ -85,29 +80,24 @@ def _infimum(real: sp.Poly, size: sp.Poly) -> tuple[float, float]:
 def _verify_bounds(z: Impedance, lowest: float) -> tuple[Fraction | float, Fraction | float]:
     """Bounds c- and c+ near `lowest`, by the exact test: Z - c- is passive, Z - c+ is not.
 
-    Both are -inf where no such bounds are close to `lowest`.
+    Both are -inf where no such bounds are close to `lowest`; c+ is inf where it alone is not.
     """
-    infinite = float("-inf"), float("-inf")
     if not np.isfinite(lowest):
-        return infinite
+        return float("-inf"), float("-inf")
     middle = Fraction(str(exact(lowest)))
-    family = family_of_impedance(z)
-
-    def is_passive(less: Fraction) -> bool:
-        return is_exactly_passive(family, less)
-
-    if is_passive(middle) and not is_passive(middle + _step(middle, 1e-12)):
-        return middle, middle + _step(middle, 1e-12)
+    is_below = is_passive(z, middle)
     for relative in (1e-12, 1e-9, 1e-6):
-        step = _step(middle, relative)
-        if is_passive(middle - step):
-            upper = middle if not is_passive(middle) else middle + step
-            return middle - step, upper
-    return infinite
+        step = abs(middle) * Fraction(relative) or Fraction(relative) ** 2
+        other = middle + step if is_below else middle - step
+        if is_passive(z, other) != is_below:
+            return min(middle, other), max(middle, other)
+    return (middle, float("inf")) if is_below else (float("-inf"), float("-inf"))
 
 
-def _step(middle: Fraction, relative: float) -> Fraction:
-    return abs(middle) * Fraction(relative) or Fraction(relative) ** 2
+def is_passive(z: Impedance, less: Fraction = Fraction(0)) -> bool:
+    """Whether Z - c is shown to be passive;  less: c, N s/m."""
+    other = replace(z, p=z.p - sp.Rational(less) * z.q)
+    return not z.unseen and is_shown(Signs(()), family_of_impedance(other), "passive")
 
 
 def _real_part(z: Impedance) -> tuple[sp.Poly, sp.Poly]:

@@ -30,10 +30,9 @@ from ...derive.polynomials import as_poly, element
 from ...diagrams import Diagram
 from ...frequency.late_zeros import count_growing, terms_of, zeros_at_origin
 from ...realise.lti import S
-from .impedance import Impedance, exact, impedance_of
+from .impedance import Impedance, exact, impedance_of, not_decaying
 from .matrices import Matrix, close, cofactors, damper, dampers, determinant, divide_out, hold
 from .signs import Ends, degree
-from .unseen import not_decaying
 
 if TYPE_CHECKING:
     from ..ports import Port

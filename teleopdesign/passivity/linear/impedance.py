@@ -19,10 +19,9 @@ from ...base.arguments import describe_value
 from ...base.errors import ModelError
 from ...controllers import resolvent
 from ...derive.linear_rows import read_late_ratios
-from ...derive.polynomials import as_poly, element, fraction
+from ...derive.polynomials import as_poly, element, fraction, is_hurwitz, roots_of
 from ...realise.lti import S
 from .matrices import parts_of, value_at
-from .unseen import not_decaying
 
 MotionKind = Literal["velocity", "position"]
 _LONGEST = 9  # most characters of a fraction that a text contains as a fraction
@@ -33,6 +32,8 @@ _SMALLEST = sp.Rational(1, 10**300)  # smallest size of a number that is also wr
 _HIGHEST = 40
 #: highest degree of an expression as it is written, of which factors may cancel
 _UNCANCELLED = 10 * _HIGHEST
+#: share of its size by which a root may lie on the left by rounding alone
+_NEAR = 1e-9
 
 
 @dataclass(frozen=True)
@@ -67,15 +68,12 @@ class Impedance:
 
     def __reduce__(self) -> Any:
         # sympy pickles a polynomial without the domain of its coefficients
-        pairs = ((poly.as_expr(), str(poly.domain)) for poly in (self.p, self.q))
-        return _impedance_of_domains, (*pairs, self.unseen)
+        return _restore, (self.p.as_expr(), self.q.as_expr(), self.unseen)
 
 
-def _impedance_of_domains(
-    p: tuple[sp.Expr, str], q: tuple[sp.Expr, str], unseen: tuple[complex, ...]
-) -> Impedance:
-    above, below = (sp.Poly(e, S, domain=domain) for e, domain in (p, q))
-    return Impedance(above, below, unseen)
+def _restore(above: sp.Expr, below: sp.Expr, unseen: tuple[complex, ...]) -> Impedance:
+    p, q = (sp.Poly(e, S, domain="QQ") for e in (above, below))
+    return Impedance(p, q, unseen)
 
 
 def decimal(number: sp.Expr) -> str:
@@ -250,3 +248,12 @@ def from_state_space(a: Any, b: Any, c: Any, d: Any) -> Impedance:
 def _with_unseen(above: Any, below: Any) -> Impedance:
     """The impedance above/below of a system; the roots that cancel are modes that it hides."""
     return replace(impedance_of(above, below), unseen=not_decaying(as_poly(above.gcd(below), S)))
+
+
+def not_decaying(p: sp.Poly) -> tuple[complex, ...]:
+    """Roots that are not in the open left half plane, one of each pair; none, decided exactly."""
+    if is_hurwitz(p):
+        return ()
+    s = roots_of(element(p.sqf_part()))
+    near = s[(s.real >= -_NEAR * np.abs(s)) & (s.imag >= 0)]
+    return tuple(map(complex, near if len(near) else s[[s.real.argmax()]]))

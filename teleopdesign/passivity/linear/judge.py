@@ -17,11 +17,12 @@ import sympy as sp
 from ...base.errors import ModelError
 from ...derive.effort import TooMuchEffort, bounded_effort
 from ...derive.polynomials import X, as_poly, element, where_negative
+from ...realise.lti import S
 from ..claims.certificate import matrix_certificate
 from ..claims.claim import Claim, Evidence, Proof, Refutation, Unknown, Verdict
 from ..growing_mode import far_termination, growing_mode
 from ..search.growing_wave import GrowingWave, wave_of
-from ..search.points import candidates, near_axis, near_poles, wave_out_of
+from ..search.points import candidates, near_axis, near_poles, waves_out_of
 from .conditions import KINDS, axis_conditions, is_shown, stability_certificate
 from .excess import damping_excess, describe_equality
 from .family import Family, family_of_impedance
@@ -29,7 +30,6 @@ from .impedance import Impedance, MotionKind, impedance, readable
 from .matrices import parts_of, round_point, value
 from .signs import Signs
 from .sweep import fails_in_a_limit, holds_at, least_over, margin_of, resonances, zeros_and_poles
-from .unseen import explain_unseen
 
 _METHODS = {
     "passive": "the positive-real test of the matrix",
@@ -125,19 +125,17 @@ def _write_out(family: Family) -> str:
 
 
 def _judge(family: Family, claim: str, statement: str) -> Claim:
-    judge = _judge_late if family.times else _judge_exactly
     try:
         with bounded_effort():
-            verdict = judge(family, claim, statement)
+            if family.times:
+                verdict = _judge_late(family, claim)
+            else:
+                verdict = prove(family, claim, statement) or _refute(family, claim)
     except TooMuchEffort as problem:
         return Claim(statement, Unknown(str(problem)))
     if verdict.holds and (modes := family.unseen or (family.hides and family.undecayed)):
-        return Claim(statement, Unknown(explain_unseen(modes)))
+        return Claim(statement, Unknown(_explain_unseen(modes)))
     return Claim(statement, verdict)
-
-
-def _judge_exactly(family: Family, claim: str, statement: str) -> Verdict:
-    return prove(family, claim, statement) or _refute(family, claim)
 
 
 def prove(family: Family, claim: str, title: str) -> Proof | Evidence | None:
@@ -173,10 +171,7 @@ def prove(family: Family, claim: str, title: str) -> Proof | Evidence | None:
 
 def _refute(family: Family, claim: str) -> Verdict:
     if claim == "passive":
-        wave = wave_out_of(family)
-        if wave is None:
-            return Unknown(NO_WAVE)
-        return Refutation(_describe_wave(wave), wave)
+        return _refute_by_wave(family, (), NO_WAVE)
     why = _describe_failure(family)
     mode = growing_mode(family)
     if mode is None:
@@ -186,6 +181,12 @@ def _refute(family: Family, claim: str) -> Verdict:
     if mode.frequency:
         method += f" and swings at {float(mode.frequency):.4g} rad/s"
     return Refutation(method, mode)
+
+
+def _refute_by_wave(family: Family, frequencies: Sequence[float], why: str) -> Verdict:
+    """The first wave that takes energy out; why: what an unknown claim says."""
+    wave = next(waves_out_of(family, frequencies), None)
+    return Refutation(_describe_wave(wave), wave) if wave else Unknown(why)
 
 
 def _describe_wave(wave: GrowingWave) -> str:
@@ -206,7 +207,7 @@ def _describe_failure(family: Family) -> str:
     return "a mode does not decay between dampers"
 
 
-def _judge_late(family: Family, claim: str, statement: str) -> Verdict:
+def _judge_late(family: Family, claim: str) -> Verdict:
     """With dead times: evidence, a motion, or unknown."""
     margin = margin_of(claim)
     swept = _sweep(family)
@@ -230,10 +231,8 @@ def _judge_late(family: Family, claim: str, statement: str) -> Verdict:
     if not why:
         return Evidence(True, _SWEPT.format(len(swept), swept[0], swept[-1]), least, unit)
     if claim == "passive":
-        wave = wave_out_of(family, frequencies)
-        if wave is not None:
-            return Refutation(_describe_wave(wave), wave)
-        return Unknown(f"{why}; no wave that takes energy out was found")
+        why = f"{why}; no wave that takes energy out was found"
+        return _refute_by_wave(family, frequencies, why)
     held = dict(islice(_terminated_waves(family, frequencies), 3))
     if held:
         wave = max(held, key=lambda w: w.rate / (w.frequency or w.rate))  # the plainest
@@ -263,7 +262,17 @@ def _terminated_waves(
     for s, second, turned in candidates(family, points):
         far = far_termination(s, second)
         z11, z12, z21, z22 = reversed(list(family.z)) if turned else family.z
-        at_port = z11 if far.clamped else z11 - z12 * z21 / (z22 + far.expression)
+        at_port = z11 if far.clamped else z11 - z12 * z21 / (z22 + far.at(S, sp.Rational))
         wave = wave_of(sp.ImmutableMatrix([[at_port]]), *round_point(s))
         if wave is not None and wave.energy > 0:
             yield wave, f"moved, port 1 {far}" if turned else f"{far}"
+
+
+def _explain_unseen(modes: Sequence[complex]) -> str:
+    """The reason of an unknown claim beside modes that no port shows and that do not decay, 1/s."""
+    start = "from rest its impedance is that of a passive port, but"
+    if any(np.isnan(m) for m in modes):
+        return f"{start} with its dead times a mode that no port shows is not shown to decay"
+    shown = ", ".join(f"{m.real:.4g}{f' +- {m.imag:.4g}j' * bool(m.imag)}" for m in modes)
+    number = "a mode that no port shows does" if len(modes) == 1 else "modes that no port shows do"
+    return f"{start} {number} not decay, at s = {shown} 1/s"

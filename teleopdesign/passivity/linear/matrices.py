@@ -94,8 +94,7 @@ def damper(n: Any, d: Any) -> Any:
     low, high = min(both), max(both)
     rate = (both[low] / both[high]) ** (1 / (high - low)) if high > low else 1.0
     first, second = (sum(c * rate**k for k, c in side.items()) for side in (above, below))
-    near = Fraction(2.0 ** round(np.log2(first / second)))
-    return sp.QQ(near.numerator, near.denominator)
+    return rational(Fraction(2.0 ** round(np.log2(first / second))))
 
 
 #: a complex number: real and imaginary part
@@ -127,9 +126,14 @@ def square_root(x: Fraction, digits: int) -> Fraction:
     return Fraction(isqrt(x.numerator * x.denominator * ten**2), x.denominator * ten)
 
 
+def rational(x: Fraction) -> Any:
+    """The number as an element of sympy's domain of rationals, which computes."""
+    return sp.QQ(x.numerator, x.denominator)
+
+
 def exact_complex(at: Gaussian) -> Any:
     """The number as an element of sympy's domain of exact complex numbers, which computes."""
-    return sp.QQ_I(*(sp.QQ(x.numerator, x.denominator) for x in at))
+    return sp.QQ_I(*map(rational, at))
 
 
 def parts_of(number: Any) -> Gaussian:

@@ -116,11 +116,6 @@ def _best_far(loop: np.ndarray, z22: np.ndarray, s: np.ndarray) -> np.ndarray:
 _TESTED = 20
 
 
-def wave_out_of(family: Family, frequencies: Sequence[float] = ()) -> GrowingWave | None:
-    """The first of `waves_out_of`; None where the search has no result."""
-    return next(waves_out_of(family, frequencies), None)
-
-
 def waves_out_of(family: Family, frequencies: Sequence[float] = ()) -> Iterator[GrowingWave]:
     """Waves that take energy out of the ports, the plainest first.
 

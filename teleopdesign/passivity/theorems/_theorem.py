@@ -1,8 +1,4 @@
-"""Types of a theorem, of a question about a device, and of the claims that answer the question.
-
-A file of this folder states the mathematics of one theorem as functions of numbers, each with its
-hypotheses. Its `THEOREM` says which questions about a device or a diagram the theorem answers.
-"""
+"""A question about a device, the claims that answer it, and how a theorem makes a claim."""
 
 from __future__ import annotations
 
@@ -28,7 +24,6 @@ from ..rate_independent import Coulomb, Cycle, Dahl
 from ..search.by_simulation import SimulatedMotion, confirmed_motion, search_counterexample
 from ..search.growing_wave import wave_of
 from ..search.stroke_motion import Strokes
-from ._hypotheses import hypotheses_of
 
 Time = Literal["continuous", "sampled", "any"]
 
@@ -82,6 +77,16 @@ class Question:
         return None if level is None or stiffness is None else (level, stiffness)
 
     @property
+    def lengths(self) -> list[float]:
+        """Travels over which friction, and the cancelling force, build up, m or rad."""
+        lengths = []
+        if self.device.presliding is not None:
+            lengths.append(self.device.lowest.estimate / self.device.presliding.estimate)
+        if self.bristle is not None:
+            lengths.append(self.bristle[0] / self.bristle[1])
+        return lengths
+
+    @property
     def late(self) -> int | None:
         """Delay of the computer in whole samples; None where it is not a whole number of samples.
 
@@ -105,6 +110,7 @@ class TopicClaim(ByValue):
     time: of the controllers: "sampled", "continuous", or "any" where the claim holds for both
     of_any_law: whether it is about any law within a bound: another law than that of the question
         may then be the one that refutes it
+    covers: names of further effects of the device that its theorem covers
     """
 
     topic: str
@@ -114,6 +120,7 @@ class TopicClaim(ByValue):
     spends_damping: bool = False
     time: Time = "continuous"
     of_any_law: bool = False
+    covers: Sequence[str] = ()
 
     @property
     def refutes(self) -> bool:
@@ -142,30 +149,6 @@ class TopicClaim(ByValue):
         """Status of the claim in words; a proof for continuous time alone says so."""
         limited = self.claim.status == "proved" and self.time == "continuous"
         return f"{self.claim.heading}{' (in continuous time)' * limited}"
-
-
-@dataclass(frozen=True)
-class Theorem:
-    """A theorem: its functions of numbers, and the questions about devices that it answers.
-
-    mathematics: functions of numbers with their hypotheses (`require_hypotheses`). All claims come
-        from these functions, so no claim is made outside of the hypotheses
-    order: place among all theorems: continuous time before computers, friction before walls
-    claims: the claims that answer a question, about friction, walls and computers alone; none where
-        the theorem says nothing about it. Default: the theorem is about numbers alone
-    covers: names of further effects of the device that the theorem covers
-    simulate: the motion of a refutation in the compiled simulation; None where not confirmed
-    """
-
-    mathematics: tuple[Callable[..., Claim], ...]
-    order: int
-    claims: Callable[[Question], Sequence[TopicClaim]] = lambda question: ()
-    covers: Callable[[Question], Sequence[str]] = lambda question: ()
-    simulate: Callable[[Counterexample], SimulatedMotion | None] = lambda motion: None
-
-    def __post_init__(self) -> None:
-        for function in self.mathematics:
-            hypotheses_of(function)
 
 
 def decide(
@@ -206,11 +189,6 @@ def refute_by_wave(
     wave = next((wave for wave in waves if wave is not None), None)
     how = wave and f"a growing wave at {float(wave.frequency) / (2 * math.pi):.4g} Hz"
     return refute(statement, wave, how or "", "the condition fails, but no wave was found")
-
-
-def leave_open(topic: str, statement: str, why: str, **more: Any) -> TopicClaim:
-    """A claim that no theorem answers."""
-    return TopicClaim(topic, Claim(statement, Unknown(why)), **more)
 
 
 def simulate_cycle(cycle: Counterexample) -> SimulatedMotion | None:

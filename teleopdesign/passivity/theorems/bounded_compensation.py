@@ -18,7 +18,9 @@ from ..claims.claim import Claim, Evidence, Proof, Unknown
 from ..linear.impedance import decimal, exact
 from ..rate_independent import Coulomb, Cycle, Dahl, symmetric_cycle
 from ._hypotheses import Positive, certificate, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim, decide, simulate_cycle
+from ._theorem import Question, TopicClaim, decide
+
+ORDER = 10
 
 #: N/m for each N of level: a bristle so stiff that its length does not matter to a hand
 _STIFFEST = 1e3
@@ -74,21 +76,24 @@ def proof_of_level(
     return Proof(method, tuple(certificates), float(f_c - f_d), "N of level", text)
 
 
-def _claims(question: Question) -> list[TopicClaim]:
+def claims(question: Question) -> list[TopicClaim]:
+    """The claim about any law within the bound of the law, and the same with viscous damping."""
     device, bound = question.device, question.law.bound
     # for friction that deflects before it slides, a bound of the force alone is not sufficient
     if bound is None or device.presliding is not None:
         return []
     acting, time = device.acting_force(bound), question.time_of_bound
+    topic = "any law within the level"
     if math.isinf(acting):
         why = "no bound is known of the force that the actuation makes of a command"
         claim = Claim("no law within the friction level drives a motion", Unknown(why))
-    else:
-        claim = bounded_compensation(coulomb_level=device.lowest.low, bound=acting)
-    claims = [TopicClaim("any law within the level", claim, time=time, of_any_law=True)]
-    if not question.estimates or math.isinf(acting):
-        return claims
-    least, unit = device.least_resistance.low, device.force_unit.replace("*", " ")
+        return [TopicClaim(topic, claim, time=time, of_any_law=True)]
+    covers = device.actuation  # the bound of the acting force is known
+    claim = bounded_compensation(coulomb_level=device.lowest.low, bound=acting)
+    first = TopicClaim(topic, claim, time=time, of_any_law=True, covers=covers)
+    if not question.estimates:
+        return [first]
+    least, unit = device.least_resistance.low, device.unit("force").replace("*", " ")
     statement = (
         f"ideal friction of the device and its viscous damping resist with more than "
         f"{decimal(exact(acting))} {unit} at every speed, so that no law within it drives a motion"
@@ -96,22 +101,5 @@ def _claims(question: Question) -> list[TopicClaim]:
     searched = (
         f"interval arithmetic: the resistance is at least {least:.4g} {unit} in the 95 % interval"
     )
-    verdict = Evidence(least >= acting, searched, least - acting, unit)
-    damped = Claim(statement, verdict)
-    return [*claims, TopicClaim("the same, with damping", damped, of_any_law=True)]
-
-
-def _covers(question: Question) -> Sequence[str]:
-    """Effects of the actuation, where the bound of the acting force is known."""
-    device, bound = question.device, question.law.bound
-    is_known = bound is not None and math.isfinite(device.acting_force(bound))
-    return device.actuation if is_known else ()
-
-
-THEOREM = Theorem(
-    mathematics=(bounded_compensation,),
-    claims=_claims,
-    order=10,
-    covers=_covers,
-    simulate=simulate_cycle,
-)
+    damped = Claim(statement, Evidence(least >= acting, searched, least - acting, unit))
+    return [first, TopicClaim("the same, with damping", damped, of_any_law=True, covers=covers)]

@@ -27,7 +27,6 @@ from ..rate_independent import (
     symmetric_cycle,
 )
 from ._hypotheses import Free, NonNegative, Positive, Whole, certificate, require_hypotheses
-from ._theorem import Theorem
 from .dahl_compensation import dahl_compensation
 
 
@@ -179,6 +178,3 @@ def _paths(
         scale = np.exp(rng.uniform(np.log(0.1 * min(lengths)), np.log(10 * max(lengths))))
         points = scale * rng.standard_normal(rng.integers(2, 11))
         yield Cycle(helps, tuple(against), tuple(map(float, points)), rounds=30)
-
-
-THEOREM = Theorem(mathematics=(any_environment, free_motion), order=76)

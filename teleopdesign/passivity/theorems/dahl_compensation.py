@@ -19,9 +19,11 @@ from ..identified import IdentifiedDevice
 from ..linear.impedance import decimal
 from ..rate_independent import Cycle, Dahl, dahl_loss, lost_share, symmetric_cycle
 from ._hypotheses import Positive, PositiveOrNone, certificate, require_hypotheses
-from ._theorem import Question, Theorem, Time, TopicClaim, decide, simulate_cycle
+from ._theorem import Question, Time, TopicClaim, decide
 from .bounded_compensation import cycle_beyond_onset, proof_of_level
 from .lugre import add_bristle_damping
+
+ORDER = 20
 
 
 @require_hypotheses
@@ -160,21 +162,6 @@ def onset_amplitude(
     return float(u) * f_d / stiffness
 
 
-def self_motion_speed(*, coulomb_level: float, compensator_level: float, damping: float) -> float:
-    """Steady speed of a motion that over-compensation drives, m/s: (f_D - f_C)/B, or 0.
-
-    Viscous damping B bounds the speed, but the pair of friction and compensator is still not
-    passive.
-
-    coulomb_level: f_C, N;  compensator_level: f_D, N;  damping: B, N s/m
-    returns: inf with over-compensation and without damping
-    """
-    excess = max(compensator_level - coulomb_level, 0.0)
-    if damping <= 0:
-        return math.inf if excess else 0.0
-    return excess / damping
-
-
 def _pair_proof(
     f_c: sp.Expr, top: sp.Expr, f_d: sp.Expr, stiffness: sp.Expr, presliding: sp.Expr
 ) -> Proof:
@@ -234,7 +221,7 @@ def dahl_claim(
     )
 
 
-def _claims(question: Question) -> list[TopicClaim]:
+def claims(question: Question) -> list[TopicClaim]:
     """Claims at the estimates, and for all values within the intervals; in continuous time."""
     if question.bristle is None:
         return []
@@ -248,11 +235,3 @@ def _claims(question: Question) -> list[TopicClaim]:
         return [certain]
     estimate = dahl_claim(device, level, stiffness, certain=False)
     return [TopicClaim(f"estimate{when}", estimate, time=time), certain]
-
-
-THEOREM = Theorem(
-    mathematics=(dahl_compensation,),
-    claims=_claims,
-    order=20,
-    simulate=simulate_cycle,
-)

@@ -25,7 +25,9 @@ from ..identified import DIGITS
 from ..linear.impedance import decimal, exact
 from ..rate_independent import AbstractMotion, Dahl, strongest
 from ._hypotheses import NonNegative, Positive, certificate, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim, decide
+from ._theorem import Question, TopicClaim, decide
+
+ORDER = 50
 
 _STRIBECK = EFFECTS["stribeck"]
 #: extra friction level (N) of the effect `stribeck`, a function of velocity, F_S - F_C, v_S
@@ -171,7 +173,7 @@ def _recoil(
     return next((jumps for jumps in best if jumps is not None), None)
 
 
-def _claims(question: Question) -> list[TopicClaim]:
+def claims(question: Question) -> list[TopicClaim]:
     """The claim about a device alone with all parts of LuGre friction identified."""
     device = question.device
     alone = question.cancellation is None and question.wall is None
@@ -202,12 +204,5 @@ def _claims(question: Question) -> list[TopicClaim]:
             "the condition fails, and no motion is searched where the level is not Stribeck's alone"
         )
         claim = Claim(claim.statement, Unknown(why))
-    return [TopicClaim("the device's own friction", claim, time="any")]
-
-
-THEOREM = Theorem(
-    mathematics=(lugre_passivity,),
-    claims=_claims,
-    order=50,
-    covers=lambda question: question.device.actuation,  # what acts on commands is no part of it
-)
+    # what acts on commands is no part of it
+    return [TopicClaim("the device's own friction", claim, time="any", covers=device.actuation)]

@@ -25,8 +25,10 @@ from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, Dahl
 from ..search.stroke_motion import Strokes
 from ._hypotheses import NonNegative, Positive, PositiveOrNone, Whole, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim, leave_open, refute, simulate_cycle
+from ._theorem import Question, TopicClaim, refute
 from .bounded_compensation import bounded_compensation
+
+ORDER = 40
 
 #: most samples, one way, of a motion that refutes a claim
 LONGEST = 10_000_000
@@ -179,7 +181,7 @@ def _find_best(
     return None if best is None or best[1].energy <= 0 else best[1]
 
 
-def _claims(question: Question) -> list[TopicClaim]:
+def claims(question: Question) -> list[TopicClaim]:
     """The claim about presliding and a Dahl bristle in a computer, at the estimates, any motion."""
     device, computer = question.device, question.computer
     if device.presliding is None or question.bristle is None:
@@ -188,9 +190,7 @@ def _claims(question: Question) -> list[TopicClaim]:
         return []
     level, stiffness = question.bristle
     if device.bristle_damping.high > 0:
-        why = "no theorem covers bristle damping beside a compensator in a computer"
-        statement = "the device's friction with its sampled compensator is passive"
-        return [leave_open("any motion, sampled", statement, why)]
+        return []  # no theorem covers it beside a compensator in a computer
     claim = sampled_compensation(
         coulomb_level=device.highest.estimate,
         compensator_level=level,
@@ -201,11 +201,3 @@ def _claims(question: Question) -> list[TopicClaim]:
         late=question.late,
     )
     return [TopicClaim("any motion, sampled", claim, time="sampled")]
-
-
-THEOREM = Theorem(
-    mathematics=(sampled_compensation,),
-    claims=_claims,
-    order=40,
-    simulate=simulate_cycle,
-)

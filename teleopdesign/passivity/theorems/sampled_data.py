@@ -36,7 +36,9 @@ from ..rate_independent import strongest
 from ..search.growing_wave import Z, sampled_wave
 from ..search.points import waves_out_of
 from ._hypotheses import Free, NonNegative, Positive, Real, require_hypotheses
-from ._theorem import Question, Theorem, TopicClaim, refute
+from ._theorem import Question, TopicClaim, refute
+
+ORDER = 30
 
 #: most waves of which the motion at the samples is made
 _MOST = 2
@@ -174,7 +176,7 @@ def _transfer_function(system: Any, sample_time: float) -> sp.Expr:
     return law
 
 
-def _claims(question: Question) -> list[TopicClaim]:
+def claims(question: Question) -> list[TopicClaim]:
     """Claims about a virtual wall with damping alone, and about a Dahl bristle in small motion.
 
     In small motion the bristle is a negative spring.
@@ -182,7 +184,7 @@ def _claims(question: Question) -> list[TopicClaim]:
     device, computer, wall = question.device, question.computer, question.wall
     if computer is None or question.late is None:
         return []
-    period, claims = computer.period, []
+    period, answers = computer.period, []
     if wall is not None:
         law = sp.Float(wall.stiffness) + sp.Float(wall.damping) * (Z - 1) / (period * Z)
         law = law * Z**-question.late
@@ -190,7 +192,7 @@ def _claims(question: Question) -> list[TopicClaim]:
         if wall.damping and not computer.takes_differences:
             why = "the theorem takes the velocity of the wall from the difference of two readings"
             claim = Claim(claim.statement, Unknown(why))
-        claims.append(TopicClaim("virtual wall, damping alone", claim, time="sampled"))
+        answers.append(TopicClaim("virtual wall, damping alone", claim, time="sampled"))
     if question.bristle is not None and device.presliding is not None:
         claim = sampled_passivity(
             -sp.Float(question.bristle[1]) * Z**-question.late,
@@ -198,14 +200,11 @@ def _claims(question: Question) -> list[TopicClaim]:
             sample_time=period,
             stiffness=device.presliding.low,
         )
-        claims.append(TopicClaim("small motion, sampled", claim, time="sampled"))
+        answers.append(TopicClaim("small motion, sampled", claim, time="sampled"))
     if not computer.encoder_step:
-        return claims
+        return answers
     exactly = "with readings that have no steps"
     return [
         replace(one, claim=replace(one.claim, statement=f"{one.claim.statement}, {exactly}"))
-        for one in claims
+        for one in answers
     ]
-
-
-THEOREM = Theorem(mathematics=(sampled_passivity, sampled_coupling), claims=_claims, order=30)

@@ -25,12 +25,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from types import SimpleNamespace
-from typing import Any
 
 import sympy as sp
 
-from ...controllers import laws_that_declare
+from ...controllers import SIGNALS, equation_of, laws_that_declare, symbols_of
 from ..claims.claim import Claim, Proof
 from ..linear.impedance import decimal
 from ..rate_independent import AbstractMotion, Coulomb, Dahl
@@ -42,21 +40,19 @@ from ._hypotheses import (
     certificate,
     require_hypotheses,
 )
-from ._theorem import Question, Theorem, Time, TopicClaim, decide, leave_open
+from ._theorem import Question, Time, TopicClaim, decide
 
-_SYMBOLS = sp.symbols("velocity level smoothing", real=True)
+ORDER = 15
 
-
-def _law() -> Any:
-    """Force of the catalogue's smoothed law: a function of velocity, level, smoothing velocity."""
-    v, level, smoothing = _SYMBOLS
-    made = laws_that_declare("smoothing")[0]
-    now = SimpleNamespace(velocity=v, speed=sp.Abs(v))
-    values = SimpleNamespace(**{made.bound: level, made.smoothing: smoothing})
-    return sp.lambdify(_SYMBOLS, made.law(now, values), "math")
-
-
-_COMMAND = _law()
+_LAW = laws_that_declare("smoothing")[0]
+_EQUATION, _VELOCITY = equation_of(_LAW, sp.S(0)), SIGNALS["velocity"]
+assert _EQUATION is not None
+#: force (N) of the catalogue's smoothed law, a function of velocity, level and smoothing velocity
+_COMMAND = sp.lambdify(
+    [_VELOCITY, *(symbols_of(_LAW)[n] for n in (_LAW.bound, _LAW.smoothing))],
+    _EQUATION.output.subs(SIGNALS["speed"], sp.Abs(_VELOCITY)),
+    "math",
+)
 
 
 @dataclass(frozen=True)
@@ -211,7 +207,7 @@ def _fastest_gain(f_d: float, a: float, least: float, b: float) -> float:
     return (f_d - least) / (2 * b) if b else 0.01
 
 
-def _claims(question: Question) -> list[TopicClaim]:
+def claims(question: Question) -> list[TopicClaim]:
     """The claim for all values within the intervals, with the damping present at every speed.
 
     In a computer the velocity must be the plain difference of readings without steps.
@@ -221,11 +217,8 @@ def _claims(question: Question) -> list[TopicClaim]:
         return []
     if computer is not None and (computer.encoder_step or not computer.takes_differences):
         return []
-    topic = "law of velocity, with damping"
     if device.bristle_damping.high > 0:
-        why = "no theorem covers bristle damping beside a law of velocity"
-        statement = "the device's friction beside its compensator of velocity is passive"
-        return [leave_open(topic, statement, why, spends_damping=True)]
+        return []  # no theorem covers it beside a law of velocity
     claim = velocity_compensation(
         coulomb_level=device.lowest.low,
         compensator_level=law.bound,
@@ -236,7 +229,4 @@ def _claims(question: Question) -> list[TopicClaim]:
         late=question.late,
     )
     time: Time = "sampled" if computer else "continuous"
-    return [TopicClaim(topic, claim, spends_damping=True, time=time)]
-
-
-THEOREM = Theorem(mathematics=(velocity_compensation,), claims=_claims, order=15)
+    return [TopicClaim("law of velocity, with damping", claim, spends_damping=True, time=time)]

@@ -5,7 +5,7 @@ from collections import Counter
 import numpy as np
 from passivity.attacks.budget import attacked, near
 
-from teleopdesign.passivity.theorems.wave_channel import wave_channel
+from teleopdesign.passivity import wave_channel
 
 STEPS = 6000
 

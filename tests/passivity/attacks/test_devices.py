@@ -15,7 +15,7 @@ from passivity.attacks.test_friction import ROUNDING, coulomb, dahl, gain, veloc
 
 from teleopdesign import EFFECTS, Body, Value
 from teleopdesign.base.errors import ModelError
-from teleopdesign.passivity.device_claims import Compensator
+from teleopdesign.controllers import controller
 from teleopdesign.passivity.identified import identify_device
 from teleopdesign.passivity.theorems import Question, settle
 
@@ -23,6 +23,8 @@ from teleopdesign.passivity.theorems import Question, settle
 WITHIN = 1.959
 #: claims at the estimate are about measured numbers of four digits: half a unit of the last, twice
 DIGITS = 1e-3
+#: second parameter of each law
+SECOND = {"dahl": "stiffness", "smoothed_coulomb": "smoothing_velocity"}
 ANY_LAW = ("any law within the level", "the same, with damping")
 
 
@@ -133,7 +135,8 @@ def interval_claim(rng):
     except ModelError as problem:
         assert "nothing can be compensated" in str(problem), (effects, problem)
         return [("refused", False)]
-    stage = Compensator(name, float(level), float(second)).stage
+    values = {"level": float(level), SECOND[name]: float(second)}
+    (stage,) = controller(name, values).stages
     claims = settle(Question(device, stage), simulated=False)
     law = dahl(level, level, second) if name == "dahl" else velocity_law(level, second)
     lengths, speeds = [length, level / second if name == "dahl" else length], [speed]

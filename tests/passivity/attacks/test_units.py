@@ -13,12 +13,10 @@ import pytest
 import sympy as sp
 from passivity.attacks.budget import attacked
 from passivity.attacks.rational import KINDS, random_ratio
-from passivity.test_hypotheses import inside
+from passivity.test_hypotheses import FUNCTIONS, inside
 
 from teleopdesign.base.errors import ModelError
 from teleopdesign.passivity import absolutely_stable, passive, positive_real, two_port
-from teleopdesign.passivity.theorems import THEOREMS
-from teleopdesign.passivity.theorems._hypotheses import hypotheses_of
 from teleopdesign.realise.lti import S
 
 #: powers of the units of force, length and time in each number of a theorem, by a word of its name
@@ -41,10 +39,9 @@ DIMENSIONS = {
 }
 #: numbers without a unit, and what is no number
 PLAIN = {"late", "order", "scale", "paths", "rng", "delay_growth"}
-FUNCTIONS = [
+WITH_UNITS = [
     function
-    for theorem in THEOREMS.values()
-    for function in theorem.mathematics
+    for function in FUNCTIONS
     if function.__name__ not in ("wave_teleoperator", "free_motion", "energy_tank")
 ]
 
@@ -76,13 +73,13 @@ def agree(first, second):
     return first == second or {first, second} == {"refuted", "unknown"}
 
 
-@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda f: f.__name__)
+@pytest.mark.parametrize("function", WITH_UNITS, ids=lambda f: f.__name__)
 @attacked(1, 10)
 def test_numbers_in_other_units_have_the_same_claim(function, seed, number):
     rng, counts = random.Random(seed), Counter()
     for _ in range(number):
         numbers = inside(function, rng)
-        for name, needs in hypotheses_of(function).items():
+        for name, needs in function.hypotheses.items():
             if needs.text.endswith("or None") and rng.random() < 0.5:
                 numbers[name] = None
         factors = units(rng)

@@ -1,4 +1,13 @@
-"""How much inertia may be cancelled with an acceleration that is delayed and low-passed.
+"""How late a force may arrive: a cancellation of friction or of inertia, and a spring between arms.
+
+A late compensator of friction. Along x = A sin(w t) a Dahl compensator of describing function N,
+whose position input is late by tau, releases
+
+    W = pi A^2 Im(N e^(-j w tau))
+
+per cycle. For w tau < pi this is less than without delay.
+
+A delayed and low-passed cancellation of inertia:
 
     Z = m s + B - mhat s F(s) e^(-s tau),   F = 1/(T s + 1)^r
 
@@ -10,10 +19,19 @@ pi B A^2 w:
 Without a low-pass g = w sin(w tau) (P48) has no bound, so no damping is sufficient. With a
 low-pass, abs(g) < 1/T for r = 1, approached at high frequency for any delay; and
 abs(g) <= 1/(2 T) for r = 2, reached at w T = 1 without delay.
+
+A teleoperator whose master and slave are coupled by a late spring. With dampings b_m, b_s of master
+and slave, stiffness P and one-way delay T, Llewellyn's criterion reads b_m b_s >= (P T)^2 q(w),
+q = (sin(w T)/(w T))^2 <= 1, with equality for w -> 0. The other conditions
+(`checker/matrices.py`) hold for every such coupling. The entries have no pole but s = 0, where
+e^(-s T) = 1. The residues there are P, P and -P, so that k11 k22 = k12 k21. At infinity the masses
+grow like s, and the coupling between the ports does not. The product z12 z21 is bounded at high
+frequency.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Annotated, Any, Literal
 
@@ -26,8 +44,55 @@ from ..claims.claim import Claim, Evidence, Proof, Unknown
 from ..linear.impedance import decimal
 from ..linear.judge import positive_real
 from ..search.growing_wave import rates_at
-from ._hypotheses import NonNegative, certificate, one_of, require_hypotheses
-from ._theorem import Theorem, refute_by_wave
+from ..two_port import absolutely_stable, teleoperator_two_port
+from ._hypotheses import NonNegative, Real, certificate, one_of, require_hypotheses
+from ._theorem import refute_by_wave
+
+#: just above 0.2172336, which is minus the least value of sin(y)/y (at tan y = y, y = 4.4934)
+SINC_LEAST = sp.Rational(21724, 100000)
+
+
+@require_hypotheses
+def delayed_small_motion(
+    *,
+    damping: NonNegative,
+    compensator_stiffness: NonNegative,
+    delay: NonNegative,
+    presliding_stiffness: NonNegative,
+) -> Claim:
+    """Is small motion passive: friction is then a spring, the compensator a late negative spring.
+
+        Z = B + (sigma_p - sigma_D e^(-s tau))/s
+
+    It is passive if and only if sigma_D <= sigma_p and B >= 0.21723.. sigma_D tau. This factor is
+    minus the least value of sin(y)/y.
+
+    damping: B, N s/m;  compensator_stiffness: sigma_D, N/m;  delay: tau, s
+    presliding_stiffness: sigma_p, N/m
+    returns: proved, or refuted by a growing wave; unknown where the search has no wave
+    """
+    b, tau, sigma_d, sigma_p = damping, delay, compensator_stiffness, presliding_stiffness
+    margin = b - SINC_LEAST * sigma_d * tau
+    late = sp.exp(-S * tau) if tau else sp.S(1)
+    statement = (
+        f"small motion with damping {decimal(b)} N s/m, presliding {decimal(sigma_p)} N/m and a "
+        f"compensator {decimal(sigma_d)} N/m that is {decimal(tau)} s late is passive"
+    )
+    if sigma_d > sigma_p or margin < 0:
+        z = b + (sigma_p - sigma_d * late) / S
+        return refute_by_wave(statement, z, _where(float(tau)))
+    method = "Re Z >= 0 at every frequency, pole at 0 with residue sigma_p - sigma_D >= 0"
+    made = certificate("late_negative_spring", B=b, sigma_D=sigma_d, tau=tau)
+    return Claim(statement, Proof(method, (made,), float(margin), "N s/m"))
+
+
+def _where(tau: float) -> Iterator[tuple[Fraction, Fraction]]:
+    """Rates and frequencies about the first minimum of sin(w tau)/(w tau), then exponentials."""
+    for y in (4.4934, 4.0, 5.0, 3.5, 5.5) if tau else ():
+        yield from rates_at(Fraction(y / tau), 24)
+    for k in range(40, -41, -1):
+        yield Fraction(2) ** k, Fraction(0)
+
 
 Order = Literal[1, 2]
 #: longest delay, in time constants, for which the maximum of g is searched: 2.5 million samples
@@ -147,4 +212,39 @@ def _maximum(delay: float, time_constant: float) -> tuple[float, float]:
     return float(maximum.x), -float(maximum.fun)
 
 
-THEOREM = Theorem(mathematics=(cancelled_inertia,), order=74)
+@require_hypotheses
+def delayed_spring(
+    *,
+    master_inertia: NonNegative,
+    master_damping: Real,
+    slave_inertia: NonNegative,
+    slave_damping: Real,
+    stiffness: NonNegative,
+    delay: NonNegative,
+) -> Claim:
+    """Is the teleoperator absolutely stable: if and only if b_m, b_s >= 0 and b_m b_s >= (P T)^2?
+
+    master_inertia, slave_inertia: kg;  master_damping, slave_damping: b_m, b_s, N s/m
+    stiffness: P, N/m;  delay: T, one way, s
+    returns: proved (equality allowed); else the verdict of `absolutely_stable`, which refutes by a
+        wave with a passive termination at one port
+    """
+    b_m, b_s, k, late = master_damping, slave_damping, stiffness, delay
+    statement = (
+        f"the teleoperator with dampings {decimal(b_m)}, {decimal(b_s)} N s/m, spring "
+        f"{decimal(k)} N/m and delay {decimal(late)} s each way is absolutely stable"
+    )
+    margin = b_m * b_s - (k * late) ** 2
+    if min(b_m, b_s) < 0 or margin < 0:
+        master, slave = master_inertia * S + b_m, slave_inertia * S + b_s
+        coupled = teleoperator_two_port(
+            master=master, slave=slave, stiffness=k, damping=0, delay=late
+        )
+        return Claim(statement, absolutely_stable(coupled).verdict)
+    method = (
+        "Llewellyn's criterion with the exact delay, b_m b_s >= (P T)^2, and residues at s = 0 "
+        "that meet it with equality"
+    )
+    made = certificate("late_coupling", b_m=b_m, b_s=b_s, P=k, T=late)
+    equality = "for w -> 0" if margin == 0 else ""
+    return Claim(statement, Proof(method, (made,), float(margin), "(N s/m)^2", equality))

@@ -1,5 +1,6 @@
-"""Wave variables: a channel that is passive at both ends together, for slowly growing delays.
+"""Channels of a teleoperator that release no energy: wave variables, and energy tanks.
 
+Wave variables are passive at both ends together, for slowly growing delays.
 At the ends the waves are W_1 = b v_m + F_c and W_2 = b v_d - F_P. They arrive as f W_1(t - T_1) and
 f W_2(t - T_2). The power into the channel is
 
@@ -13,25 +14,34 @@ For constant delays of any length, which may be unknown, f = 1 is sufficient (Ni
 IEEE J. Oceanic Eng. 16 (1991) 145). Delays that grow no faster than d need a scale below 1 (Lozano,
 Chopra, Spong, Mechatronics 2002). The theorem does not cover waves that arrive at a jump of T, or
 that are lost and replaced by others.
+
+Energy tanks at the ends of a channel are never overdrawn, whatever the channel does. Before a
+sample a tank contains W = E_0 + arrived - supplied. The held force f obeys abs(f) d <= W, and f = 0
+where W < 0. Over a travel x with abs(x) <= d the tank supplies f x <= abs(f) d <= W. So the
+supplied energy is never above E_0 plus the largest count that has arrived: late, in any order, held
+or interpolated. A count only grows, so the count that has arrived is at most the energy that the
+other end has taken by now. Summed over both ends: the energy that the computers supply to the
+bodies, less the energy that they take from the bodies, is at most 2 E_0.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import reduce
 
 import sympy as sp
 
 from ...base.errors import ModelError
-from ...diagrams import Diagram, wave_variables
+from ...derive.all_states import all_states
+from ...derive.polynomials import as_poly
+from ...diagrams import Block, Diagram, wave_variables
 from ...realise.lti import S, linear_blocks
 from ..claims.claim import Claim, Proof, Unknown
 from ..declarations import falsely_linear, is_shipped
-from ..linear.impedance import decimal, exact
+from ..linear.impedance import decimal, exact, not_decaying
 from ..linear.judge import positive_real
-from ..linear.unseen import unseen_within
 from ..ports import drop_absent_effects, without_holders
 from ._hypotheses import Free, NonNegative, Positive, certificate, require_hypotheses
-from ._theorem import Theorem
 
 
 @require_hypotheses
@@ -127,12 +137,23 @@ def wave_claim(diagram: Diagram) -> Claim:
     bent = bent or [
         f"a mode within {part.name} that it does not show and that does not decay"
         for part in alone.blocks
-        if unseen_within(part)
+        if _unseen_within(part)
     ]
     if bent and isinstance(claim.verdict, Proof):
         why = f"not in the impedances that were judged: {', '.join(bent)}"
         return Claim(claim.statement, Unknown(why))
     return claim
+
+
+def _unseen_within(part: Block) -> tuple[complex, ...]:
+    """Modes of a block with values that it does not show and that do not decay, 1/s."""
+    driver = getattr(part, "driver", "")
+    outside = dict.fromkeys((*part.inputs, *([driver] if driver else ())), "force")
+    states = all_states(Diagram(part.name, (part,), (), outside, ()))
+    d, n = states.solve(part.outputs, tuple(dict.fromkeys(part.inputs)))
+    shared = reduce(lambda a, b: a.gcd(b), (e for row in n for e in row), d)
+    is_late = any(any(k[1:]) for k in shared)
+    return not_decaying(as_poly(shared, S)) if d and not is_late else ()
 
 
 def _wave_impedance(diagram: Diagram) -> float:
@@ -164,4 +185,21 @@ def _wave_impedance(diagram: Diagram) -> float:
     )
 
 
-THEOREM = Theorem(mathematics=(wave_channel, wave_teleoperator), order=71)
+@require_hypotheses
+def energy_tank(*, reserve: NonNegative, travel: Positive) -> Claim:
+    """Bound of the energy that two ends with energy tanks (`energy_tanks`) release.
+
+    reserve: E_0 in each tank, J;  travel: d, largest travel of any sample, m or rad
+    returns: proved, if positions are exact, forces act as commanded and from their sample on, and
+        counts of energy arrive no larger than they were sent; they may be late, jittered, lost or
+        held
+    """
+    statement = (
+        f"two ends with energy tanks of {decimal(reserve)} J give their bodies at most "
+        f"{decimal(2 * reserve)} J more than they take from them, as long as no sample's travel "
+        f"exceeds {decimal(travel)} m, positions are exact and commands act from their sample on"
+    )
+    method = "what a held force gives over the largest travel, and counts that only grow"
+    force = reserve / travel
+    made = certificate("energy_tank", W=reserve, F=force, f=force, d=travel)
+    return Claim(statement, Proof(method, (made,), equality="at the largest travel"))
