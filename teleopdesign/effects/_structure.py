@@ -32,10 +32,10 @@ Coupling = Callable[[Any, Any], Any]
 #: a fitted resonance may be a hum if its frequency is within BESIDE (relative) of the mains and its
 #: damping ratio is below TONE. Higher limits would doubt true transmissions
 BESIDE, TONE = 0.05, 0.1
-#: unexplained force over the friction of a tip, up to which this friction keeps it in step. With
-#: 1 a gear with a play of 3 mm was taken for slipping springs; without a bound, a trace of friction
-#: would change the whole motion of a tip
-HOLDS = 10.0
+#: unexplained force over the friction of a tip, up to which this friction keeps it in step. Two
+#: simulated gears are named whole with 2, 3, 5 and 30. With 1 one of them is taken for slipping
+#: springs; without a bound, a trace of friction would change the whole motion of a tip
+HOLDS = 3.0
 #: a gap counts if K g/2 is at least this part of the largest measured force: this is the largest
 #: difference between the coupling and a spring without a gap. Half a percent is less than models of
 #: real machines leave. A lower limit names other differences from a spring a gap; a higher one
