@@ -141,17 +141,25 @@ def unknown_symbols(law: ControlLaw) -> list[sp.Symbol]:
 
 @lru_cache(maxsize=256)
 def _acts_linearly(stage: Stage) -> bool:
-    """Whether a law is linear at all values, where parameters that are zero here stay zero.
+    """Whether a law is linear at all values, but for a constant that is zero at those of the stage.
 
-    One of these may be the reading from which positions count: elsewhere it adds a constant force.
+    So is a force that counts from a reading of the position, where this reading is zero.
     """
     made, symbols = equation_of(stage.law, CONTINUOUS), symbols_of(stage.law)
     if made is None:
         return False
+    driving = [*(SIGNALS[n] for n in ("input", "velocity", "travel_rate")), *made.rates]
+    laws = (made.output, *made.rates.values())
+    if is_linear(laws, driving):
+        return True
     zero = {symbols[n]: sp.S(0) for n, value in stage.values.items() if value == 0}
-    driving = [SIGNALS[n] for n in ("input", "velocity", "travel_rate")]
-    laws = (x.xreplace(zero) for x in (made.output, *made.rates.values()))
-    return is_linear(laws, [*driving, *made.rates])
+    constants = [
+        x.replace(delayed, lambda signal, _: signal).xreplace(dict.fromkeys(driving, sp.S(0)))
+        for x in laws
+    ]
+    if any(constant.xreplace(zero) != 0 for constant in constants):
+        return False
+    return is_linear((x - c for x, c in zip(laws, constants, strict=True)), driving)
 
 
 def _keeps_transfer(stage: Stage) -> bool:

@@ -12,8 +12,8 @@ import sympy as sp
 
 import teleopdesign as td
 from teleopdesign.blocks import compose_equation
-from teleopdesign.controllers import why_not_cancelled
-from teleopdesign.effects import EFFECTS, SIGNALS, with_block_effects
+from teleopdesign.controllers import ControlLaw, Stage, broken_declarations, why_not_cancelled
+from teleopdesign.effects import EFFECTS, SIGNALS, Parameter, with_block_effects
 from teleopdesign.realise.c_header import as_c_header
 
 CANCELLED = [n for n in EFFECTS if not why_not_cancelled(EFFECTS[n])]
@@ -165,3 +165,18 @@ def test_a_spring_that_is_cancelled_in_part_is_a_softer_spring():
     ]
     assert [left for _, left in forms] == [(), ()]
     np.testing.assert_allclose(forms[0][0](s), forms[1][0](s), rtol=1e-12)
+
+
+def test_a_coefficient_that_is_zero_makes_no_law_linear():
+    """Claims over ranges of values have it at others, too; a constant that is zero adds nothing."""
+    quantities = {"stiffness": "stiffness", "square": "stiffness", "force": "force"}
+    values = {"stiffness": 2.0, "square": 0.0, "force": 0.0}
+    for law, broken in (
+        (lambda now, p: p.stiffness * now.input + p.square * now.input**2, True),
+        (lambda now, p: p.stiffness * now.input + p.force, False),
+    ):
+        made = ControlLaw(
+            law=law, parameters={n: Parameter(q, n) for n, q in quantities.items()}, linear=True
+        ).named("mine", "")
+        assert bool(broken_declarations(made, Stage(made, values))) is broken
+        assert broken_declarations(made, Stage(made, values | {"force": 1.0, "square": 1.0}))
