@@ -24,7 +24,7 @@ from ..diagnose.criteria import CRITERIA
 from ..diagnose.fit import block_numbers, standard_errors
 from ..effects import EFFECTS
 from ..measurement.filtering import Array
-from ..measurement.first_guess import SURELY_LESS
+from ..measurement.first_guess import SURELY_LESS, least_squares
 from ..measurement.limits import HALF
 from ..measurement.prepare import Prepared, Stretch
 from ..model import Model
@@ -171,9 +171,8 @@ def _balance_of(
 
 def _left_of_law(rows: Array) -> float:
     """Rms that a law of the second force and its rate leaves of the first one; rows: `rows_of`."""
-    law = np.stack([rows[1], rows[3], np.ones(rows.shape[1])], axis=1)
-    left = rows[0] - law @ np.linalg.lstsq(law, rows[0], rcond=1e-9)[0]
-    return float(np.sqrt(np.mean(left**2)))
+    law = np.stack([rows[1], rows[3], np.ones(rows.shape[1])])
+    return least_squares(law, rows[0], 1.0)[2]  # in any unit of time: its errors do not count
 
 
 def _brakes(body: Body, strength: str) -> bool:

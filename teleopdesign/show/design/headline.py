@@ -42,7 +42,7 @@ def _error_to_expect(design: Design) -> str:
     line = f"expected force error: {size}, without "
     line += f"compensation {e.without:.3g}"
     if e.simulated > e.without:
-        line += ": more than without, for what is cancelled balanced other forces in this motion"
+        line += ": more than without, in this motion"
     if e.unexplained > 0 and not math.isnan(e.low):
         line += f"; in the upper end {e.unexplained:.2g} {unit} that no effect explains"
     return line
